@@ -1,0 +1,1 @@
+"""What does the clinician see and keep?"""

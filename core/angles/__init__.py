@@ -1,0 +1,1 @@
+"""From orientations and a calibration to joint angles."""

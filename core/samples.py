@@ -1,0 +1,154 @@
+"""What was measured? One visit's recordings as they came from the sensors, in SI units and sensor axes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.body import Joint, Site
+from core.findings import Finding
+
+FloatArray = NDArray[np.float64]
+BoolArray = NDArray[np.bool_]
+
+
+class RateKind(StrEnum):
+    """What one angular-rate sample stands for: the instant of its stamp, or the mean over the interval before it."""
+
+    INSTANTANEOUS = "instantaneous"
+    AVERAGED = "averaged"
+
+
+class RecordingKind(StrEnum):
+    STANDING = "standing"
+    FREE_MOTION = "free_motion"
+    WALKING = "walking"
+
+
+@dataclass(frozen=True, slots=True)
+class ImuBlock:
+    """Consecutive samples of one sensor.
+
+    Attributes
+    ----------
+    sensor
+        Serial number or name of the sensor.
+    time_s : (n,)
+        Ascending stamps on the session's clock. A missing stretch is a gap.
+    gyr_rad_s, acc_m_s2 : (n, 3)
+        Angular rate and specific force in sensor axes; NaN where a sample is missing.
+    q_earth_from_sensor : (n, 4) or None
+        The device's own orientation, scalar first, earth z up; NaN where missing.
+    mag : (n, 3) or None
+        Magnetic field in sensor axes, any unit.
+    is_rate_derived
+        The rates were computed from the device's orientation, because it sent none.
+    unknown : column name -> (n,)
+        Columns of the file that mean nothing to us, kept as they were read.
+
+    Raises
+    ------
+    ValueError
+        Shapes that disagree.
+    """
+
+    sensor: str
+    time_s: FloatArray
+    gyr_rad_s: FloatArray
+    acc_m_s2: FloatArray
+    q_earth_from_sensor: FloatArray | None = None
+    mag: FloatArray | None = None
+    is_rate_derived: bool = False
+    unknown: Mapping[str, NDArray[np.generic]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        n = len(self.time_s)
+        expected = {
+            "time_s": (n,),
+            "gyr_rad_s": (n, 3),
+            "acc_m_s2": (n, 3),
+            "q_earth_from_sensor": (n, 4),
+            "mag": (n, 3),
+        }
+        for name, shape in expected.items():
+            array = getattr(self, name)
+            if array is not None and array.shape != shape:
+                raise ValueError(f"{name} has shape {array.shape}, expected {shape}")
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+
+@dataclass(frozen=True, slots=True)
+class SensorInfo:
+    """What is known of the sensor worn at one site. `rate_kind` None: not told, to be found from the data."""
+
+    serial: str = ""
+    model: str = ""
+    firmware: str = ""
+    rate_hz: float | None = None
+    rate_kind: RateKind | None = None
+    unknown: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Patient:
+    """What the clinic typed. Sides are left, right, both, none or empty."""
+
+    code: str = ""
+    birth_year: int | None = None
+    sex: str = ""
+    height_m: float | None = None
+    mass_kg: float | None = None
+    device: str = ""
+    aids: str = ""
+    affected_side: str = ""
+    prosthetic_side: str = ""
+    unknown: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """All sensors from one start to one stop.
+
+    `imu` says which site each block of samples was worn at; the sites share one clock up to a small lag.
+    """
+
+    name: str
+    kind: RecordingKind
+    folder: str
+    imu: Mapping[Site, ImuBlock]
+    condition: str = ""
+    started: str = ""
+    is_kept: bool = True
+    note: str = ""
+    is_restrapped_before: bool = False
+    unknown: Mapping[str, object] = field(default_factory=dict)
+
+    def holds(self, *sites: Site) -> bool:
+        return all(site in self.imu for site in sites)
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """One visit of one patient: its recordings in order of time, and what was said about them.
+
+    `zero_rad` holds goniometer values while standing in the clinical sign, `turned_sign` the user's word on a joint's
+    sign: -1 turns the sign that was found, 1 confirms it. `findings` is what the reader noticed.
+    """
+
+    recordings: tuple[Recording, ...]
+    patient: Patient = Patient()
+    sensors: Mapping[Site, SensorInfo] = field(default_factory=dict)
+    zero_rad: Mapping[Joint, float] = field(default_factory=dict)
+    turned_sign: Mapping[Joint, int] = field(default_factory=dict)
+    started: str = ""
+    operator: str = ""
+    surface: str = ""
+    notes: str = ""
+    software: str = ""
+    is_simulated: bool = False
+    findings: tuple[Finding, ...] = ()
+    unknown: Mapping[str, object] = field(default_factory=dict)

@@ -1,0 +1,1 @@
+"""Files of recordings, ours and other vendors': one module per format."""
