@@ -1,12 +1,12 @@
 """From a session to joint angles: which recording calibrates which walk, and every step in its order."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
 from core.body import Joint
 from core.findings import Finding
-from core.samples import FloatArray, RecordingKind
+from core.samples import FloatArray, RecordingKind, Session
 
 
 class Method(StrEnum):
@@ -106,3 +106,14 @@ class Analysis:
     calibrations: tuple[Calibration, ...]
     recordings: tuple[RecordingAnalysis, ...]
     findings: tuple[Finding, ...] = field(default=())
+
+
+Progress = Callable[[float, str], None]
+"""Called with the share done (0 to 1) and what is being done (a recording's or joint's name). May raise to stop the analysis."""
+
+
+def analyse(
+    session: Session, method: Method = Method.ROBUST, tau_s: float = 2.0, progress: Progress | None = None
+) -> Analysis:
+    """Identify every joint of `session` and compute its angles in every kept recording but standing."""
+    raise NotImplementedError
