@@ -12,6 +12,7 @@ from core.findings import Finding
 
 FloatArray = NDArray[np.float64]
 BoolArray = NDArray[np.bool_]
+IntArray = NDArray[np.int64]
 
 
 class RateKind(StrEnum):

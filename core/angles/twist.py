@@ -1,0 +1,36 @@
+"""How far is the joint bent? The twist of the relative orientation about the joint axis.
+
+On a human joint the integral of g1.j1 - g2.j2 (eq 11) collects what moves beside the axis; the twist does not.
+"""
+
+import numpy as np
+
+from core.pair import Pair
+from core.rotations import joint_frame, turn_about_vertical
+from core.samples import FloatArray
+
+
+def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: FloatArray) -> FloatArray:
+    """Rotation (n,) of the distal segment against the proximal one about the joint axis, radians, without jumps.
+
+    theta = arg(u - i v) with u = z(R12 x2), v = z(R12 y2) in the joint plane of sensor 1. Its sign and zero are those of
+    -alpha in Seel et al. 2014, eqs 10 to 14.
+
+    Parameters
+    ----------
+    heading_rad : (n,)
+        Heading of the distal sensor's earth in the proximal one's.
+    """
+    x1, y1 = (pair.earth_from_1 @ v for v in joint_frame(axis_1))
+    x2, y2 = (turn_about_vertical(heading_rad, pair.earth_from_2 @ v) for v in joint_frame(axis_2))
+    cosine = np.sum(x2 * x1, axis=1) + np.sum(y2 * y1, axis=1)
+    sine = np.sum(x2 * y1, axis=1) - np.sum(y2 * x1, axis=1)
+    return np.unwrap(np.arctan2(sine, cosine))
+
+
+def off_axis_rate(pair: Pair, axis_1: FloatArray, heading_rad: FloatArray) -> FloatArray:
+    """The two components (n, 2), rad/s, of the relative rate across the joint axis: what a hinge does not do."""
+    rate_1 = np.einsum("nij,nj->ni", pair.earth_from_1, pair.g1)
+    rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", pair.earth_from_2, pair.g2))
+    relative = rate_2 - rate_1
+    return np.stack([np.sum(relative * (pair.earth_from_1 @ v), axis=1) for v in joint_frame(axis_1)], axis=1)

@@ -1,0 +1,109 @@
+"""Which samples identify a joint? The sets S(i) of eq 2, from any number of stretches and recordings."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.pair import Pair
+from core.samples import BoolArray, FloatArray, IntArray
+
+KNOT_SPACING_S = 10.0  # relative heading is linear between knots this far apart
+HEADING_WALK_RAD = np.deg2rad(0.3)  # per square root of a second: drift of two gyroscopes' headings
+
+
+@dataclass(frozen=True, slots=True)
+class Datasets:
+    """Samples of both sensors at chosen instants of several stretches, each stretch with heading knots of its own.
+
+    Signals as in `Pair`, all (n, ...); `index` (n,) is the sample's index in its pair, `stretch` (n,) which pair.
+    `knot_left` (n,) and `knot_share` (n,): the heading at a sample is (1 - share) knot[left] + share knot[left + 1].
+    """
+
+    pairs: tuple[Pair, ...]
+    stretch: IntArray
+    index: IntArray
+    time_s: FloatArray
+    g1: FloatArray
+    g2: FloatArray
+    a1: FloatArray
+    a2: FloatArray
+    dg1: FloatArray
+    dg2: FloatArray
+    earth_from_1: FloatArray
+    earth_from_2: FloatArray
+    knot_left: IntArray
+    knot_share: FloatArray
+    knot_spacing_s: FloatArray  # (knots - 1,), NaN between two stretches
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @property
+    def knots(self) -> int:
+        return len(self.knot_spacing_s) + 1
+
+    def heading(self, knots_rad: FloatArray) -> FloatArray:
+        """Headings (..., n) at the samples from knots (..., k)."""
+        left = knots_rad[..., self.knot_left]
+        right = knots_rad[..., np.minimum(self.knot_left + 1, self.knots - 1)]
+        return left + self.knot_share * (right - left)
+
+    def only(self, keep: BoolArray) -> "Datasets":
+        """The samples where `keep` (n,) holds, with all knots."""
+        mine = {name: getattr(self, name)[keep] for name in _PER_SAMPLE}
+        return replace(self, **mine)
+
+    def thinned(self, count: int) -> "Datasets":
+        """About `count` of the samples, evenly spread."""
+        keep = np.zeros(len(self), dtype=bool)
+        keep[np.linspace(0, len(self) - 1, min(count, len(self))).astype(int)] = True
+        return self.only(keep)
+
+
+_SIGNALS = ("time_s", "g1", "g2", "a1", "a2", "dg1", "dg2", "earth_from_1", "earth_from_2")
+_PER_SAMPLE = (*_SIGNALS, "stretch", "index", "knot_left", "knot_share")
+
+
+def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
+    """Indices of the known samples from the first to the last movement, below a rate."""
+    moving = np.flatnonzero(pair.is_moving)
+    if len(moving) == 0:
+        return np.empty(0, dtype=np.int64)
+    is_used = pair.is_known.copy()
+    is_used[: moving[0]] = is_used[moving[-1] + 1 :] = False
+    if np.isfinite(max_rate_rad_s):
+        is_used &= np.sum(pair.g1**2, axis=1) < max_rate_rad_s**2
+        is_used &= np.sum(pair.g2**2, axis=1) < max_rate_rad_s**2
+    return np.flatnonzero(is_used)
+
+
+def gather(pairs: tuple[Pair, ...], indices: list[IntArray]) -> Datasets:
+    """Join the samples at `indices` of each pair."""
+    left, share, spacing, stretch = [], [], [], []
+    first_knot = 0
+    for s, (pair, index) in enumerate(zip(pairs, indices, strict=True)):
+        duration_s = float(pair.time_s[-1] - pair.time_s[0])
+        intervals = max(1, round(duration_s / KNOT_SPACING_S))
+        position = (pair.time_s[index] - pair.time_s[0]) / duration_s * intervals
+        whole = np.minimum(position.astype(int), intervals - 1)
+        left.append(first_knot + whole)
+        share.append(position - whole)
+        if s:
+            spacing.append([np.nan])
+        spacing.append([duration_s / intervals] * intervals)
+        stretch.append(np.full(len(index), s))
+        first_knot += intervals + 1
+
+    signals = {
+        name: np.concatenate([getattr(pair, name)[index] for pair, index in zip(pairs, indices, strict=True)])
+        for name in _SIGNALS
+    }
+    return Datasets(
+        pairs=pairs,
+        stretch=np.concatenate(stretch),
+        index=np.concatenate(indices),
+        knot_left=np.concatenate(left),
+        knot_share=np.concatenate(share),
+        knot_spacing_s=np.concatenate(spacing),
+        **signals,
+    )

@@ -1,0 +1,82 @@
+"""Is the joint a true hinge? Then the published constraint, from a good start, finds its axis best.
+
+On a hinge the rates of both sensors have the same length across the axis (Seel et al. 2014, doi 10.3390/s140406891,
+eqs 3 and 6), whatever the headings. On a human joint that length is biased by everything else that moves, so it is never
+used there.
+"""
+
+import numpy as np
+
+from core.calibration.coincidence import lever_matrix
+from core.calibration.datasets import Datasets
+from core.calibration.joint_axis import moved
+from core.rotations import angle_between, joint_frame
+from core.samples import FloatArray
+
+MAX_HINGE_RESIDUAL_RAD_S = 0.06  # mechanical hinges 0.02, human joints 0.07 to 1.0
+ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
+MIN_SCALE_RAD_S = 0.002
+MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum
+STEPS = 8
+
+
+def robust_sd(values: FloatArray) -> float:
+    """Standard deviation by the median of the absolute values."""
+    return float(1.4826 * np.median(np.abs(values))) if values.size else float("nan")
+
+
+def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
+    """|g1 x j1| - |g2 x j2| (n,), rad/s: zero on a hinge (eq 3)."""
+    length_1 = np.linalg.norm(np.cross(data.g1, axis_1), axis=1)
+    length_2 = np.linalg.norm(np.cross(data.g2, axis_2), axis=1)
+    return np.asarray(length_1 - length_2)
+
+
+def hinge_residual(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    return robust_sd(in_plane_difference(data, axis_1, axis_2))
+
+
+def hinge_axes(
+    data: Datasets, axis_1: FloatArray, axis_2: FloatArray, unknowns: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+    """Axes (3,) in both sensors by eq 6 and by equal acceleration along the axis; None where it leads elsewhere.
+
+    Parameters
+    ----------
+    unknowns : (12,)
+        Centres and accelerometer biases as `coincidence` found them.
+
+    Returns
+    -------
+    Both axes, and the slopes (n, 2, 4) of the two residuals per sample by the four tangent coordinates, each already
+    divided by its scale, with the residuals in column 4: (n, 2, 5).
+    """
+    shifted_1 = data.a1 - unknowns[6:9] - lever_matrix(data.g1, data.dg1) @ unknowns[0:3]
+    shifted_2 = data.a2 - unknowns[9:12] - lever_matrix(data.g2, data.dg2) @ unknowns[3:6]
+    j1, j2 = axis_1, axis_2
+    for _ in range(STEPS):
+        value, slope = _residuals(data, shifted_1, shifted_2, j1, j2)
+        scale = np.array([max(robust_sd(value[:, k]), MIN_SCALE_RAD_S) for k in range(2)])
+        value, slope = value / scale, slope / scale[:, None]
+        weight = 1 / np.sqrt(1 + value**2)
+        information = np.einsum("nr,nri,nrj->ij", weight, slope, slope)
+        step = -np.linalg.solve(information + 1e-9 * np.eye(4), np.einsum("nr,nri->i", weight * value, slope))
+        j1, j2 = moved(j1[None], step[None, :2])[0], moved(j2[None], step[None, 2:])[0]
+    if max(angle_between(j1, axis_1), angle_between(j2, axis_2)) > MAX_MOVE_RAD:
+        return None
+    return j1, j2, np.concatenate([slope, value[..., None]], axis=2)
+
+
+def _residuals(
+    data: Datasets, shifted_1: FloatArray, shifted_2: FloatArray, j1: FloatArray, j2: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    value = np.empty((len(data), 2))
+    slope = np.empty((len(data), 2, 4))
+    value[:, 1] = ACCELERATION_WEIGHT_S_M * (shifted_1 @ j1 - shifted_2 @ j2)
+    value[:, 0] = in_plane_difference(data, j1, j2)
+    for sign, rate, shifted, axis, at in ((1, data.g1, shifted_1, j1, 0), (-1, data.g2, shifted_2, j2, 2)):
+        length = np.maximum(np.linalg.norm(np.cross(rate, axis), axis=1), 1e-6)
+        tangents = np.stack(joint_frame(axis), axis=1)
+        slope[:, 0, at : at + 2] = -sign * ((rate @ axis) / length)[:, None] * (rate @ tangents)
+        slope[:, 1, at : at + 2] = sign * ACCELERATION_WEIGHT_S_M * (shifted @ tangents)
+    return value, slope

@@ -1,0 +1,191 @@
+"""How do two sensors sit on their joint? The robust identification, step by step."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibration import certainty
+from core.calibration.coincidence import fit_coincidence, relative_rotation
+from core.calibration.datasets import Datasets, gather, moving_indices
+from core.calibration.heading import residual_scales
+from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_residual
+from core.calibration.joint_axis import (
+    Candidates,
+    candidates,
+    joined,
+    loss_and_weights,
+    polish,
+    residuals,
+)
+from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
+from core.calibration.lag import Lag, find_lag
+from core.pair import FAST_RAD_S, Pair
+from core.rotations import angle_between, wrap
+from core.samples import FloatArray
+
+CANDIDATE_SAMPLES = 200
+DECISION_SAMPLES = 400
+POLISH_SAMPLES = 1500
+CANDIDATE_STEPS = 5
+POLISH_STEPS = 6
+MIN_MOVING_S = 2.0  # less movement than this identifies nothing
+DISTINCT_RAD = np.deg2rad(14.0)
+RIVAL_HEADING_RAD = np.deg2rad(45.0)
+ACCELERATION_COST_FLOOR = 0.05
+ELEVATION_SD_RAD = np.deg2rad(25.0)
+MAX_ELEVATION_RAD = np.deg2rad(40.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Identification:
+    """Axes (3,) as the data pair them (their common sign is not clinical), centres, and how sure all that is."""
+
+    axis_1: FloatArray
+    axis_2: FloatArray
+    axis_sd_rad: float
+    centre: JointCentre | None
+    centre_sd_m: float | None
+    sign_margin: float
+    lag: Lag
+    hinge_residual_rad_s: float
+    is_hinge: bool
+    elevation_rad: float | None
+
+
+PairsAtLag = Callable[[float], Mapping[str, tuple[Pair, ...]]]
+"""Pairs of every recording that identifies the joint, by the recording's name, with a lag applied."""
+
+
+def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
+    """All samples that tell about the joint; None when there is too little movement."""
+    slow = [moving_indices(pair, FAST_RAD_S) for pair in pairs]
+    every = [moving_indices(pair) for pair in pairs]
+    # jumps and turns are left out where enough remains without them
+    indices = [s if len(s) > 0.5 * len(e) else e for s, e in zip(slow, every, strict=True)]
+    used = [(pair, index) for pair, index in zip(pairs, indices, strict=True) if len(index) * pair.step_s >= 0.5]
+    if sum(len(index) * pair.step_s for pair, index in used) < MIN_MOVING_S:
+        return None
+    return gather(tuple(pair for pair, _ in used), [index for _, index in used])
+
+
+def identify_joint(
+    pairs_at: PairsAtLag, is_knee: bool, is_from_walking: bool, down_1: FloatArray | None
+) -> Identification | None:
+    """Identify one joint; None where the recordings hold too little movement.
+
+    Parameters
+    ----------
+    down_1 : (3,) or None
+        Specific force of the proximal sensor in standing.
+    """
+    data = moving_data(_all(pairs_at(0.0)))
+    if data is None:
+        return None
+    fits, margin = decide(data, down_1)
+    lag = find_lag(data.thinned(DECISION_SAMPLES), fits.knots_rad[0])
+    if lag.lag_s:
+        data = moving_data(_all(pairs_at(lag.lag_s))) or data
+        fits, margin = decide(data, down_1)
+        rest = find_lag(data.thinned(DECISION_SAMPLES), fits.knots_rad[0])
+        del rest
+    return _refined(data, fits, margin, lag, is_knee, is_from_walking, down_1)
+
+
+def _all(by_recording: Mapping[str, tuple[Pair, ...]]) -> tuple[Pair, ...]:
+    return tuple(pair for pairs in by_recording.values() for pair in pairs)
+
+
+def decide(data: Datasets, down_1: FloatArray | None) -> tuple[Candidates, float]:
+    """The best hypothesis about axes and heading, and how much better it is than its best rival.
+
+    Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates alone.
+    """
+    few = data.thinned(CANDIDATE_SAMPLES)
+    found = joined([candidates(data, s) for s in _richest_stretches(data)])
+    found = polish(few, found, CANDIDATE_STEPS)
+    some = data.thinned(DECISION_SAMPLES)
+    coincidence = fit_coincidence(some, relative_rotation(some, some.heading(found.knots_rad)))
+    cost = np.log(found.cost) + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
+    best = int(np.argmin(cost))
+    rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
+    margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
+    return found.pick(best), margin
+
+
+def _richest_stretches(data: Datasets) -> list[int]:
+    """The stretch with the most samples of each half of the data: free motion and walking both propose."""
+    counts = np.bincount(data.stretch, minlength=len(data.pairs))
+    first = int(np.argmax(counts))
+    order = [int(s) for s in np.argsort(-counts) if counts[s] > 0]
+    return [first, *[s for s in order if s != first][:1]]
+
+
+def _is_rival(found: Candidates, best: int, k: int) -> bool:
+    apart = np.median(np.abs(wrap(found.knots_rad[k] - found.knots_rad[best])))
+    pairing = np.dot(found.axis_1[k], found.axis_1[best]) * np.dot(found.axis_2[k], found.axis_2[best])
+    return bool(apart > RIVAL_HEADING_RAD or pairing < 0)
+
+
+def _refined(
+    data: Datasets,
+    start: Candidates,
+    margin: float,
+    lag: Lag,
+    is_knee: bool,
+    is_from_walking: bool,
+    down_1: FloatArray | None,
+) -> Identification:
+    many = data.thinned(POLISH_SAMPLES)
+    fit = polish(many, start, POLISH_STEPS, *residual_scales(many, start))
+    j1, j2 = fit.axis_1[0], fit.axis_2[0]
+    residual = hinge_residual(many, j1, j2)
+    is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S
+    centre = centre_by_vectors(many, fit.knots_rad[0])
+    floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
+    axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit), floor)
+    if is_hinge:
+        better = hinge_axes(many, j1, j2, centre.unknowns)
+        if better is not None:
+            j1, j2, rows = better
+            slope, value = rows[..., :4], rows[..., 4]
+            weight = 1 / np.sqrt(1 + value**2)
+            covariance = certainty.sandwich_covariance(slope, value, weight, certainty.time_blocks(many))
+            axis_sd = certainty.axis_sd_rad(covariance, certainty.AXIS_FLOOR_HINGE_RAD)
+            again = polish(
+                many,
+                Candidates(j1[None], j2[None], fit.knots_rad, fit.cost),
+                POLISH_STEPS,
+                *residual_scales(many, fit),
+                is_axis_fixed=True,
+            )
+            centre = centre_by_vectors(many, again.knots_rad[0])
+            residual = hinge_residual(many, j1, j2)
+    else:
+        centre = centre_by_lengths(many, centre.unknowns)
+    elevation = None
+    if down_1 is not None:
+        elevation = abs(np.pi / 2 - angle_between(j1, down_1))
+    return Identification(
+        axis_1=j1,
+        axis_2=j2,
+        axis_sd_rad=axis_sd,
+        centre=centre,
+        centre_sd_m=centre_sd_m(centre, j1, j2, is_hinge, is_knee),
+        sign_margin=margin,
+        lag=lag,
+        hinge_residual_rad_s=residual,
+        is_hinge=is_hinge,
+        elevation_rad=elevation,
+    )
+
+
+def _axis_covariance(data: Datasets, fit: Candidates) -> FloatArray:
+    scales = residual_scales(data, fit)
+    r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), *scales)
+    _, weight = loss_and_weights(r.value)
+    # the heading is a nuisance: one slope per sample is taken out of the axes' slopes
+    heading, axes, w = r.by_heading[0], r.by_axes[0], weight[0]
+    share = np.einsum("nr,nr,nri->i", w, heading, axes) / max(float(np.sum(w * heading**2)), 1e-12)
+    axes = axes - heading[..., None] * share
+    return certainty.sandwich_covariance(axes, r.value[0], w, certainty.time_blocks(data))

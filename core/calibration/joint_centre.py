@@ -1,0 +1,108 @@
+"""Where does the joint lie, seen from each sensor? Vectors o from the joint to the sensor, in sensor axes."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibration.coincidence import (
+    BIAS_PRIOR_M_S2,
+    CENTRE_PRIOR_M,
+    fit_coincidence,
+    lever_matrix,
+    relative_rotation,
+)
+from core.calibration.datasets import Datasets
+from core.calibration.hinge import robust_sd
+from core.rotations import joint_frame
+from core.samples import FloatArray
+
+MIN_SCALE_M_S2 = 0.02
+NORM_STEPS = 10
+SD_FACTOR = 3.0  # errors are this much larger than the residuals' covariance says
+MIN_SD_HINGE_M = 0.002
+MIN_SD_HUMAN_M = 0.010
+MAX_SD_M = 0.040  # less certain than this is unknown
+
+
+@dataclass(frozen=True, slots=True)
+class JointCentre:
+    """`unknowns` (12,) = o1, o2 (m), b1, b2 (m/s2): centres and accelerometer biases; covariance (12, 12)."""
+
+    unknowns: FloatArray
+    covariance: FloatArray
+
+    @property
+    def proximal_m(self) -> FloatArray:
+        return self.unknowns[0:3]
+
+    @property
+    def distal_m(self) -> FloatArray:
+        return self.unknowns[3:6]
+
+
+def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
+    """The vector form of eq 7 under known relative orientation: best on a hinge."""
+    rotation = relative_rotation(data, data.heading(knots_rad)[None])
+    first = fit_coincidence(data, rotation)
+    scale = max(MIN_SCALE_M_S2, _vector_residual(data, rotation[0], first.unknowns[0]))
+    fit = fit_coincidence(data, rotation, scale)
+    return JointCentre(fit.unknowns[0], fit.covariance[0])
+
+
+def _vector_residual(data: Datasets, rotation: FloatArray, x: FloatArray) -> float:
+    one = data.a1 - x[6:9] - lever_matrix(data.g1, data.dg1) @ x[0:3]
+    two = data.a2 - x[9:12] - lever_matrix(data.g2, data.dg2) @ x[3:6]
+    return robust_sd(one - np.einsum("nij,nj->ni", rotation, two))
+
+
+def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
+    """Eq 8 (Seel et al. 2014) with an accelerometer bias per sensor and a robust loss: needs no orientation.
+
+    Parameters
+    ----------
+    start : (12,)
+        From `centre_by_vectors`.
+    """
+    lever_1, lever_2 = lever_matrix(data.g1, data.dg1), lever_matrix(data.g2, data.dg2)
+    prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6)
+    x = start.copy()
+    for _ in range(NORM_STEPS):
+        one, two = data.a1 - x[6:9] - lever_1 @ x[0:3], data.a2 - x[9:12] - lever_2 @ x[3:6]
+        length_1, length_2 = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
+        error = length_1 - length_2
+        scale = max(MIN_SCALE_M_S2, robust_sd(error))
+        unit_1, unit_2 = one / length_1[:, None], two / length_2[:, None]
+        slope = np.concatenate(
+            [
+                -np.einsum("ni,nij->nj", unit_1, lever_1),
+                np.einsum("ni,nij->nj", unit_2, lever_2),
+                -unit_1,
+                unit_2,
+            ],
+            axis=1,
+        )
+        weight = 1 / np.sqrt(1 + (error / scale) ** 2) / scale**2
+        information = (slope * weight[:, None]).T @ slope + prior
+        step = -np.linalg.solve(information, slope.T @ (weight * error) + prior @ x)
+        x = x + step
+        if np.max(np.abs(step[:6])) < 1e-6:
+            break
+    return JointCentre(x, np.linalg.inv(information))
+
+
+def centre_sd_m(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray, is_hinge: bool, is_knee: bool) -> float:
+    """Standard deviation along the weakest observable direction; along a knee's or a hinge's axis it is not observable."""
+    worst = 0.0
+    for axis, part in ((axis_1, slice(0, 3)), (axis_2, slice(3, 6))):
+        covariance = centre.covariance[part, part]
+        if is_knee or is_hinge:
+            plane = np.stack(joint_frame(axis), axis=1)
+            covariance = plane.T @ covariance @ plane
+        worst = max(worst, float(np.linalg.eigvalsh(covariance)[-1]))
+    return float(max(SD_FACTOR * np.sqrt(worst), MIN_SD_HINGE_M if is_hinge else MIN_SD_HUMAN_M))
+
+
+def nearest_to_sensors(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Of all points on the axis the one nearest to both sensors (Seel et al. 2014, eq 9)."""
+    along = 0.5 * float(centre.proximal_m @ axis_1 + centre.distal_m @ axis_2)
+    return centre.proximal_m - axis_1 * along, centre.distal_m - axis_2 * along

@@ -1,0 +1,98 @@
+"""How late is the distal sensor's clock? Found from accelerations, which see a shift of a millisecond.
+
+The rates' own criterion (eq 3) invents lags of tens of milliseconds at joints that are no perfect hinge.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.calibration.coincidence import fit_coincidence, relative_rotation
+from core.calibration.datasets import Datasets
+from core.samples import FloatArray, IntArray
+
+SEARCH_S = 0.08
+COARSE_S = 0.02
+MAX_LAG_S = 0.075  # nearer to the border of the search it is not a lag but not the same joint
+MIN_LAG_S = 0.001
+MIN_COST_RATIO = 1.15
+
+
+@dataclass(frozen=True, slots=True)
+class Lag:
+    """`lag_s` is to be added to the distal sensor's stamps (0: none found); `is_at_border`: not the same joint."""
+
+    lag_s: float
+    sd_s: float | None
+    cost_ratio: float
+    is_at_border: bool
+
+
+def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
+    """Shift the distal sensor by up to 80 ms and see where the accelerations of the joint coincide best.
+
+    Parameters
+    ----------
+    knots_rad : (k,)
+        Relative heading, decided before.
+    """
+    step_s = data.pairs[0].step_s
+    reach = int(np.ceil(SEARCH_S / step_s))
+    inner = _with_room(data, reach)
+    if len(inner) < 50:
+        return Lag(0.0, None, 1.0, False)
+    coarse = max(1, round(COARSE_S / step_s))
+    costs: dict[int, float] = {}
+
+    def cost(shift: int) -> float:
+        if shift not in costs:
+            shifted = _shifted(inner, shift)
+            rotation = relative_rotation(shifted, inner.heading(knots_rad)[None])
+            costs[shift] = float(fit_coincidence(shifted, rotation).cost[0])
+        return costs[shift]
+
+    best = min(range(-(reach // coarse) * coarse, reach + 1, coarse), key=cost)
+    best = min(range(max(-reach, best - coarse + 1), min(reach, best + coarse - 1) + 1), key=cost)
+    if abs(best) >= reach:
+        return Lag(0.0, None, cost(0) / cost(best), cost(0) / cost(best) > MIN_COST_RATIO)
+    before, here, after = cost(best - 1), cost(best), cost(best + 1)
+    bend = before - 2 * here + after
+    offset = 0.5 * (before - after) / bend if bend > 0 else 0.0
+    lowest = here - 0.125 * (before - after) ** 2 / bend if bend > 0 else here
+    lag_s = (best + offset) * step_s
+    ratio = cost(0) / max(lowest, 1e-12)
+    independent = max(1.0, len(inner) * min(1.0, _spacing_s(inner) / 0.1))
+    sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * independent))) if bend > 0 else None
+    if abs(lag_s) > MAX_LAG_S:
+        return Lag(0.0, None, ratio, ratio > MIN_COST_RATIO)
+    is_found = ratio > MIN_COST_RATIO and abs(lag_s) > MIN_LAG_S
+    return Lag(lag_s if is_found else 0.0, sd_s, ratio, False)
+
+
+def _spacing_s(data: Datasets) -> float:
+    return float(np.median(np.diff(data.time_s)))
+
+
+def _with_room(data: Datasets, reach: int) -> Datasets:
+    """The samples whose neighbours within `reach` are all known."""
+    keep = np.ones(len(data), dtype=bool)
+    for s, pair in enumerate(data.pairs):
+        mine = data.stretch == s
+        index = data.index[mine]
+        unknown = np.concatenate([[0], np.cumsum(~pair.is_known)])
+        first, last = index - reach, index + reach + 1
+        is_inside = (first >= 0) & (last <= len(pair))
+        first, last = np.clip(first, 0, len(pair)), np.clip(last, 0, len(pair))
+        keep[mine] = is_inside & (unknown[last] == unknown[first])
+    return data.only(keep)
+
+
+def _shifted(data: Datasets, shift: int) -> Datasets:
+    """Distal samples stamped `shift` samples earlier: what they measured then belongs to now."""
+    index: IntArray = data.index - shift
+
+    def of(name: str) -> FloatArray:
+        parts = [getattr(pair, name)[index[data.stretch == s]] for s, pair in enumerate(data.pairs)]
+        return np.concatenate(parts)
+
+    return replace(data, a2=of("a2"), g2=of("g2"), dg2=of("dg2"), earth_from_2=of("earth_from_2"))

@@ -1,0 +1,127 @@
+"""What do the two sensors at one joint measure at the same instants?"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.rotations import matrix_from_quaternion
+from core.samples import BoolArray, FloatArray
+from core.tracks import Track, at_positions
+
+MOVING_RAD_S = 0.3  # both sensors' rates together, averaged over
+MOVING_WINDOW_S = 0.5
+FAST_RAD_S = 6.0  # above, impacts and whole-body turns dominate what the sensors feel
+
+
+@dataclass(frozen=True, slots=True)
+class OrientedTrack:
+    """A track with its gyroscope bias removed and its orientation (n, 4), earth from sensor, any heading."""
+
+    track: Track
+    q_earth_from_sensor: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """Samples of the proximal (1) and the distal (2) sensor of a joint over one stretch, on the proximal one's clock.
+
+    Rates `g`, specific forces `a` and angular accelerations `dg` are (n, 3) in sensor axes, rotations `earth_from` are
+    (n, 3, 3); the two earths differ by a heading. `is_measured` and `is_known` (n,): both sensors were heard; and their
+    angular accelerations exist too.
+    """
+
+    time_s: FloatArray
+    step_s: float
+    g1: FloatArray
+    g2: FloatArray
+    a1: FloatArray
+    a2: FloatArray
+    dg1: FloatArray
+    dg2: FloatArray
+    earth_from_1: FloatArray
+    earth_from_2: FloatArray
+    is_measured: BoolArray
+    is_known: BoolArray
+
+    def __len__(self) -> int:
+        return len(self.time_s)
+
+    @property
+    def is_moving(self) -> BoolArray:
+        speed = np.sqrt(np.sum(self.g1**2, axis=1) + np.sum(self.g2**2, axis=1))
+        return moving_mean(speed, max(1, round(MOVING_WINDOW_S / self.step_s))) > MOVING_RAD_S
+
+
+def moving_mean(values: FloatArray, width: int) -> FloatArray:
+    """Centred mean of (n,) over up to `width` samples, fewer at the borders."""
+    total = np.concatenate([[0.0], np.cumsum(values)])
+    index = np.arange(len(values))
+    first, last = np.maximum(index - width // 2, 0), np.minimum(index + (width - width // 2), len(values))
+    return (total[last] - total[first]) / (last - first)
+
+
+def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
+    """Derivative (n, 3) of rates on an even clock, unknown (NaN) for two samples at each end.
+
+    Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 1.
+    """
+    derivative = np.full_like(rate, np.nan)
+    derivative[2:-2] = (rate[:-4] - 8 * rate[1:-3] + 8 * rate[3:-1] - rate[4:]) / (12 * step_s)
+    return derivative
+
+
+def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pair | None:
+    """Bring the distal track to the proximal one's clock; None where they do not overlap for a second.
+
+    Parameters
+    ----------
+    lag_s
+        What is added to the distal sensor's stamps.
+    """
+    one, two = proximal.track, distal.track
+    first = max(0, int(np.ceil((two.start_s + lag_s - one.start_s) / one.step_s - 1e-6)))
+    last = min(len(one) - 1, int(np.floor((two.end_s + lag_s - one.start_s) / one.step_s + 1e-6)))
+    if (last - first) * one.step_s < 1.0:
+        return None
+    part = slice(first, last + 1)
+    time_s = one.start_s + one.step_s * np.arange(first, last + 1)
+    position = (time_s - lag_s - two.start_s) / two.step_s
+    whole = np.round(position)
+    if np.max(np.abs(position - whole)) < 1e-3:  # one clock: no interpolation
+        position = whole
+    q2 = at_positions(_continuous(distal.q_earth_from_sensor), position)
+    g1, g2 = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
+    is_measured = one.is_measured[part] & two.is_measured[np.clip(whole, 0, len(two) - 1).astype(int)]
+    dg1, dg2 = angular_acceleration(g1, one.step_s), angular_acceleration(g2, one.step_s)
+    return Pair(
+        time_s=time_s,
+        step_s=one.step_s,
+        g1=g1,
+        g2=g2,
+        a1=one.acc_m_s2[part],
+        a2=at_positions(two.acc_m_s2, position),
+        dg1=dg1,
+        dg2=dg2,
+        earth_from_1=matrix_from_quaternion(proximal.q_earth_from_sensor[part]),
+        earth_from_2=matrix_from_quaternion(q2),
+        is_measured=is_measured,
+        is_known=_known(is_measured),
+    )
+
+
+def _known(is_measured: BoolArray) -> BoolArray:
+    """Where the sample and its two neighbours on each side were measured."""
+    is_known = is_measured.copy()
+    is_known[:2] = is_known[-2:] = False
+    for shift in (1, 2):
+        is_known[shift:] &= is_measured[:-shift]
+        is_known[:-shift] &= is_measured[shift:]
+    return is_known
+
+
+def _continuous(q: FloatArray) -> FloatArray:
+    """The same rotations without jumps between q and -q."""
+    flips = np.sign(np.sum(q[1:] * q[:-1], axis=1))
+    if np.all(flips > 0):
+        return q
+    return q * np.concatenate([[1.0], np.cumprod(np.where(flips < 0, -1.0, 1.0))])[:, None]
