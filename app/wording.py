@@ -1,0 +1,179 @@
+"""What do we tell the clinician? Every message: what happened, then what to do or what follows.
+
+At most two sentences, the part first and its side before it, numbers with units, no blame. English is the source; other
+languages come from the gettext catalogues in `resources/locale`. To add a message, add its key to `SENTENCES`: the
+figures in braces are those that the finding carries in its `numbers`.
+"""
+
+import gettext
+from pathlib import Path
+
+from core.body import Joint, Site
+from core.findings import Finding
+
+_LOCALE = Path(__file__).parents[1] / "resources" / "locale"
+_catalogue = gettext.translation("gaitwright", _LOCALE, languages=["en"], fallback=True)
+
+SENTENCES = {
+    # what the reader noticed
+    "unknown_key": "the key “{name}” of session.toml means nothing here. It is kept as it is.",
+    "unknown_column": "the column “{name}” means nothing here. It is kept as it is.",
+    "file_left_out": (
+        "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
+    ),
+    "doubled_rows": "{count} rows repeat the time before them. The first of each was kept.",
+    "no_sites": "no sensor data. Nothing can be computed from this recording.",
+    "rate_from_orientation": (
+        "the file holds no angular rates, so they come from the sensor's own orientation. Fast movements are "
+        "smoother than they were."
+    ),
+    "sensor_changed": (
+        "another sensor was worn than in the recording before. A calibration does not carry over to it; record "
+        "free motion again."
+    ),
+    # what the data look like
+    "too_few_samples": "only {samples} samples. Nothing can be computed from them; record at least three seconds.",
+    "all_zero": "every sample is zero. Check this sensor; its joints are left out.",
+    "gaps": (
+        "samples are missing in {count} places, {missing_percent:.1f} % in all, the longest {longest_s:.2f} s. "
+        "The angles have gaps there."
+    ),
+    "acc_in_g": (
+        "the acceleration at rest is {median_m_s2:.2f} m/s² where 9.81 m/s² is expected, as if it were in g. "
+        "Convert the file and import it again."
+    ),
+    "rate_in_deg_s": (
+        "angular rates reach {p99_rad_s:.0f} rad/s, as if they were in degrees per second. Convert the file and "
+        "import it again."
+    ),
+    "same_data": "both hold the same data. One of the two files is a copy; find the right one and import again.",
+    "clock_offset": (
+        "the clocks are {offset_s:.1f} s apart, more than can be mended. Use one receiver for all sensors, then "
+        "record again."
+    ),
+    "clipped": (
+        "{percent:.1f} % of the samples are at the end of the sensor's range. Peaks are cut off; choose a wider range."
+    ),
+    "missing_site": "no sensor data. The joints beside it have no angles.",
+    "gyro_bias_unknown": (
+        "the sensor was never still, so its rate at rest is unknown. Angles may drift; let the patient stand for "
+        "three seconds before the next walk."
+    ),
+    "moved_while_standing": "the patient moved while standing. The zero is less certain; repeat standing still.",
+    "rate_kind_found": (
+        "the file does not say what an angular rate stands for; the data fit {kind} rates best. Note it as "
+        "rate_kind in session.toml."
+    ),
+    # what was found of the joints
+    "no_joint": (
+        "no two neighbouring sensors, so no joint angle. Wear sensors on thigh and shank, or on shank and foot."
+    ),
+    "too_little_motion": (
+        "only {moving_s:.1f} s of motion, too little to find the joint axis. Record ten seconds of free motion."
+    ),
+    "sign_in_doubt": (
+        "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or"
+        " record free motion."
+    ),
+    "clinical_sign_uncertain": (
+        "the motion does not tell flexion from extension (margin {margin:.2f}). Look at the curve and turn the "
+        "sign if the joint bends the wrong way."
+    ),
+    "sign_turned": "the sign was turned by hand. The angle is shown as it was corrected.",
+    "sign_confirmed": "the sign was confirmed by hand. It is used as it was found.",
+    "not_a_hinge": (
+        "turns about more than one axis (residual {hinge_residual_rad_s:.2f} rad/s). The angle is the part about "
+        "its main axis."
+    ),
+    "is_a_hinge": "moves like a true hinge. The stricter method was used and the angle is more certain.",
+    "flexion_did_not_dominate": (
+        "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat"
+        " free motion and bend this joint more."
+    ),
+    "lag_corrected": "the farther sensor's clock was {lag_ms:.0f} ms off. It has been corrected.",
+    "not_the_same_joint": (
+        "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one"
+        " receiver for all sensors."
+    ),
+    "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
+    "axis_from_walking": (
+        "the joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
+    ),
+    "no_standing": "no standing recording, so there is no zero. Range and shape hold, absolute angles do not.",
+    "zero_from_goniometer": (
+        "reads {value_deg:.1f}° in standing, as measured with the goniometer. All angles refer to it."
+    ),
+    "published_sign_unsure": (
+        "the published method could not pair the directions of the two axes with certainty. Its curve may be mirrored."
+    ),
+    "published_differs": (
+        "the published method differs by {difference_deg:.1f}° on average. Compare the two curves before relying on it."
+    ),
+    # what the session is made of
+    "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
+    "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
+    "calibration_after_walk": (
+        "was calibrated with a recording made after this walk, as there is none before. It holds only if no "
+        "sensor moved in between."
+    ),
+    "simulated": "these data are simulated. They come from no patient.",
+    "axis_uncertain": "the joint axis is certain to {axis_sd_deg:.1f}° only. Record free motion, or move longer.",
+    "short_recording": "a short recording. Its angles are less certain.",
+    "labels_look_swapped": "thigh and shank, or shank and foot, seem swapped. Swap them, or keep them as worn.",
+}
+
+
+def tr(message: str) -> str:
+    """Give the message in the user's language."""
+    return _catalogue.gettext(message)
+
+
+def sentence(finding: Finding) -> str:
+    """Give a finding in words: where, what happened, what to do or what follows.
+
+    A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
+    """
+    try:
+        said = tr(SENTENCES[finding.key]).format_map(finding.numbers)
+    except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
+        figures = ", ".join(f"{name} {value}" for name, value in finding.numbers.items())
+        said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
+    text = f"{place(finding.where)}: {said}" if finding.where else said
+    return text[0].upper() + text[1:]
+
+
+def name_of(part: Site | Joint) -> str:
+    """Name a site or joint as the screen does: "L thigh", "left knee"."""
+    names = {
+        Site.LEFT_THIGH: tr("L thigh"),
+        Site.LEFT_SHANK: tr("L shank"),
+        Site.LEFT_FOOT: tr("L foot"),
+        Site.RIGHT_THIGH: tr("R thigh"),
+        Site.RIGHT_SHANK: tr("R shank"),
+        Site.RIGHT_FOOT: tr("R foot"),
+        Joint.LEFT_KNEE: tr("left knee"),
+        Joint.LEFT_ANKLE: tr("left ankle"),
+        Joint.RIGHT_KNEE: tr("right knee"),
+        Joint.RIGHT_ANKLE: tr("right ankle"),
+    }
+    return names[part]
+
+
+def place(where: str) -> str:
+    """Put a finding's `where` into words, the part of the body before the recording: "L thigh and L shank, walk 1"."""
+    names = [name for name in where.split(", ") if name]
+    parts = [name_of(part) for name in names if (part := _part(name)) is not None]
+    others = [name for name in names if _part(name) is None]
+    return ", ".join(filter(None, [_joined(parts), *others]))
+
+
+def _part(name: str) -> Site | Joint | None:
+    if name in set(Site):
+        return Site(name)
+    return Joint(name) if name in set(Joint) else None
+
+
+def _joined(names: list[str]) -> str:
+    if len(names) < 2:
+        return "".join(names)
+    return tr("{first} and {last}").format(first=", ".join(names[:-1]), last=names[-1])

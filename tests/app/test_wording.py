@@ -1,0 +1,97 @@
+"""Does every finding have its sentence, and do the sentences keep the rules of the house?"""
+
+import ast
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from string import Formatter
+
+import pytest
+
+from app.wording import SENTENCES, name_of, place, sentence
+from core.body import Joint, Site
+from core.findings import Finding, Severity
+
+ROOT = Path(__file__).parents[2]
+FORBIDDEN = re.compile(r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|wrong sensor|you)\b|!", re.IGNORECASE)
+NAMES = {"name": "battery_percent", "kind": "averaged"}
+
+
+def sample(key: str, where: str = "walk 1, left_knee") -> Finding:
+    fields = [field for _, field, _, _ in Formatter().parse(SENTENCES[key]) if field]
+    return Finding(key, Severity.WARNING, where, {field: NAMES.get(field, 12) for field in fields})
+
+
+@pytest.mark.parametrize("key", SENTENCES)
+def test_a_sentence_says_where_and_carries_its_numbers(key: str) -> None:
+    finding = sample(key)
+    text = sentence(finding)
+    assert text.startswith("Left knee, walk 1: ")
+    assert "{" not in text
+    for number in finding.numbers.values():
+        assert str(number) in text
+
+
+@pytest.mark.parametrize("key", SENTENCES)
+def test_a_sentence_is_at_most_two_and_blames_nobody(key: str) -> None:
+    text = sentence(sample(key, where=""))
+    assert text[0] == text[0].upper()
+    assert text.endswith(".")
+    assert len(re.findall(r"[.?](?=\s|$)", text)) <= 2
+    assert FORBIDDEN.search(text) is None
+
+
+@pytest.mark.parametrize("key", SENTENCES)
+def test_a_figure_in_a_sentence_is_followed_by_its_unit(key: str) -> None:
+    units = {"_percent": " %", "_s": " s", "_ms": " ms", "_deg": "°", "_rad_s": " rad/s", "_m_s2": " m/s²"}
+    pieces = list(Formatter().parse(SENTENCES[key]))
+    for (_, field, _, _), (after, _, _, _) in zip(pieces, [*pieces[1:], ("", None, None, None)], strict=True):
+        for ending in sorted(units, key=len, reverse=True):
+            if field and field.endswith(ending):
+                assert after.startswith(units[ending])
+                break
+
+
+def keys_used() -> Iterator[tuple[str, str]]:
+    """Find the first argument, or `key`, of every `Finding(...)` in what the application runs."""
+    for package in ("core", "devices", "app"):
+        for file in (ROOT / package).rglob("*.py"):
+            for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+                if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == "Finding":
+                    given = node.args[0] if node.args else next(k.value for k in node.keywords if k.arg == "key")
+                    if isinstance(given, ast.Constant):
+                        yield str(given.value), f"{file.name}:{node.lineno}"
+
+
+def test_every_finding_in_the_code_has_a_sentence() -> None:
+    assert [(key, line) for key, line in keys_used() if key not in SENTENCES] == []
+
+
+def test_a_finding_without_a_sentence_is_still_told_with_its_figures() -> None:
+    told = sentence(Finding("strap_slipped", Severity.GRAVE, "right_shank", {"at_s": 41.0}))
+    assert told == "R shank: strap slipped at_s 41.0."
+
+
+def test_a_sentence_that_lacks_its_figure_is_told_by_its_key() -> None:
+    assert sentence(Finding("gaps", Severity.INFO, "", {"count": 2})) == "Gaps count 2."
+    assert sentence(Finding("clipped", Severity.INFO, "", {"percent": "many"})) == "Clipped percent many."
+
+
+def test_the_part_of_the_body_comes_before_the_recording() -> None:
+    assert place("walk 1, left_thigh") == "L thigh, walk 1"
+    assert place("left_thigh, left_shank, right_foot, walk 1") == "L thigh, L shank and R foot, walk 1"
+    assert place("") == ""
+
+
+def test_every_part_is_named_side_first() -> None:
+    for site in Site:
+        assert name_of(site) == f"{site.side[0].upper()} {site.segment}"
+    for joint in Joint:
+        assert name_of(joint) == joint.value.replace("_", " ")
+
+
+def test_wording_needs_no_screen() -> None:
+    program = "import sys, app.wording; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False).returncode == 0
