@@ -6,6 +6,7 @@ figures in braces are those that the finding carries in its `numbers`.
 """
 
 import gettext
+import math
 from pathlib import Path
 
 from core.body import Joint, Site
@@ -22,6 +23,9 @@ SENTENCES = {
         "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
     ),
     "doubled_rows": "{count} rows repeat the time before them. The first of each was kept.",
+    "doubled_stamps": "{count} rows repeat the time before them. The first of each was kept.",
+    "infinite_values": "{count} values are infinite. They are no measurement and count as missing.",
+    "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
     "no_sites": "no sensor data. Nothing can be computed from this recording.",
     "rate_from_orientation": (
         "the file holds no angular rates, so they come from the sensor's own orientation. Fast movements are "
@@ -133,10 +137,11 @@ def sentence(finding: Finding) -> str:
 
     A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
     """
+    known = {name: value for name, value in finding.numbers.items() if isinstance(value, str) or math.isfinite(value)}
     try:
-        said = tr(SENTENCES[finding.key]).format_map(finding.numbers)
+        said = tr(SENTENCES[finding.key]).format_map(known)
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
-        figures = ", ".join(f"{name} {value}" for name, value in finding.numbers.items())
+        figures = ", ".join(f"{name} {value}" for name, value in known.items())
         said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
     text = f"{place(finding.where)}: {said}" if finding.where else said
     return text[0].upper() + text[1:]

@@ -1,6 +1,7 @@
 """Does every finding have its sentence, and do the sentences keep the rules of the house?"""
 
 import ast
+import math
 import re
 import subprocess
 import sys
@@ -77,6 +78,7 @@ def test_a_finding_without_a_sentence_is_still_told_with_its_figures() -> None:
 def test_a_sentence_that_lacks_its_figure_is_told_by_its_key() -> None:
     assert sentence(Finding("gaps", Severity.INFO, "", {"count": 2})) == "Gaps count 2."
     assert sentence(Finding("clipped", Severity.INFO, "", {"percent": "many"})) == "Clipped percent many."
+    assert sentence(Finding("clipped", Severity.INFO, "", {"percent": math.nan})) == "Clipped."
 
 
 def test_the_part_of_the_body_comes_before_the_recording() -> None:
