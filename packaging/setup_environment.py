@@ -1,0 +1,200 @@
+"""What must be here before Gaitwright can run? The locked parts in `.venv`, and the system libraries Qt is linked to.
+
+Standard library only: this is what a machine with nothing but Python runs first. A finished environment carries a stamp
+of what it was made from, so that the next start has only to compare it.
+"""
+
+import sys
+
+if sys.version_info < (3, 11):  # noqa: UP036 - an older Python has to be told in words, not by a syntax error
+    sys.exit(f"Gaitwright needs Python 3.11 or newer; this is {sys.version.split()[0]}. Start it with a newer one.")
+
+import ctypes
+import hashlib
+import importlib.util
+import os
+import shutil
+import signal
+import subprocess
+from collections.abc import Sequence
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+VENV = ROOT / ".venv"
+STAMP = VENV / "made-from"
+UNFINISHED = "unfinished"
+
+# Debian and Ubuntu keep the part of Python that makes environments in a package of its own.
+VENV_PACKAGE = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
+
+# What the wheels of PySide6 link to or load at run time and do not bring along: library, and Debian's name for it.
+QT_LIBRARIES = {
+    "libGL.so.1": "libgl1",
+    "libEGL.so.1": "libegl1",
+    "libxkbcommon.so.0": "libxkbcommon0",
+    "libdbus-1.so.3": "libdbus-1-3",
+    "libfontconfig.so.1": "libfontconfig1",
+    "libglib-2.0.so.0": "libglib2.0-0",
+    "libxcb-cursor.so.0": "libxcb-cursor0",
+    "libxkbcommon-x11.so.0": "libxkbcommon-x11-0",
+    "libxcb-icccm.so.4": "libxcb-icccm4",
+    "libxcb-keysyms.so.1": "libxcb-keysyms1",
+    "libxcb-shape.so.0": "libxcb-shape0",
+}
+
+
+class SetUpError(Exception):
+    """Something is missing that only the user can bring. The message says what to do."""
+
+
+def prepare(*, is_screen_needed: bool) -> Path:
+    """Make everything ready and return the environment's Python.
+
+    System libraries are installed where this user may; where not, only a window or the tests cannot do without them.
+
+    Raises
+    ------
+    SetUpError
+        In sentences for the user.
+    """
+    try:
+        missing = missing_libraries()
+        if not is_current() and not can_make_environments():
+            missing.append(VENV_PACKAGE)
+        if missing and not install(missing) and (is_screen_needed or VENV_PACKAGE in missing):
+            raise SetUpError(how_to_install(missing))
+        if not is_current():
+            make_environment()
+    except KeyboardInterrupt:
+        raise SetUpError("Stopped before everything was ready. Start again to go on.") from None
+    return python()
+
+
+def python() -> Path:
+    return VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def fingerprint() -> str:
+    """Tell what the environment is made from. The folder counts, because the commands inside name it."""
+    made_from = hashlib.sha256(f"{sys.version}\n{ROOT}\n".encode())
+    for name in ("pyproject.toml", "packaging/requirements.lock"):
+        made_from.update((ROOT / name).read_bytes())
+    return made_from.hexdigest()
+
+
+def is_current() -> bool:
+    return _stamp() == fingerprint() and python().exists()
+
+
+def make_environment() -> None:
+    """Bring `.venv` to what the lock says: a sound one is updated, a half-made or foreign one is made anew."""
+    if _stamp() == UNFINISHED or not _is_sound():
+        say(f"Making a place for Gaitwright's parts in {VENV}.")
+        shutil.rmtree(VENV, ignore_errors=True)
+        # started by the environment that has just been removed, the Python behind it is still there
+        base = getattr(sys, "_base_executable", sys.executable)
+        _run_quietly(
+            [base, "-m", "venv", str(VENV)],
+            f"The folder {VENV} could not be made. Check that you may write there and that the disk has 2 GB free.",
+        )
+    STAMP.write_text(UNFINISHED, encoding="utf-8")
+    say("Installing the parts Gaitwright is made of. This happens once and takes a minute or two.")
+    pip = [str(python()), "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps"]
+    advice = "The parts could not be installed. Check the connection to the internet, then start again."
+    lock = str(ROOT / "packaging" / "requirements.lock")
+    _run_quietly([*pip, "--only-binary", ":all:", "--require-hashes", "--requirement", lock], advice)
+    _run_quietly([*pip, "--no-build-isolation", "--editable", str(ROOT)], advice)
+    STAMP.write_text(fingerprint(), encoding="utf-8")
+
+
+def can_make_environments() -> bool:
+    return importlib.util.find_spec("ensurepip") is not None
+
+
+def missing_libraries() -> list[str]:
+    """Name what Qt lacks as Debian names it; elsewhere the names at least say what to look for."""
+    if not sys.platform.startswith("linux"):
+        return []
+    return [package for library, package in QT_LIBRARIES.items() if not _loads(library)]
+
+
+def install(packages: Sequence[str]) -> bool:
+    """Install system packages where this user may; tell whether they are there now."""
+    if shutil.which("apt-get") is None or os.geteuid() != 0:
+        return False
+    names = " ".join(packages)
+    say(f"Installing system libraries: {names}.")
+    # a source that cannot be refreshed must not stop an installation from the others
+    steps = f"apt-get update; apt-get install -y --no-install-recommends {names}"
+    try:
+        _run_quietly(
+            ["sh", "-c", steps], "The system libraries could not be installed.", DEBIAN_FRONTEND="noninteractive"
+        )
+    except SetUpError as failure:
+        say(str(failure))
+        return False
+    return True
+
+
+def how_to_install(packages: Sequence[str]) -> str:
+    names = " ".join(packages)
+    if shutil.which("apt-get") is None:
+        return f"System libraries are missing. Install what your system calls these, then start again: {names}"
+    return (
+        "System libraries are missing. Run this line, then start again:\n"
+        f"    sudo apt-get update && sudo apt-get install -y {names}"
+    )
+
+
+def run(command: Sequence[str]) -> int:
+    """Run `command` where the user stands and return its exit code."""
+    # Ctrl-C reaches the command too: its own last words and exit code are the ones that count
+    signal.signal(signal.SIGINT, lambda *_: None)
+    code = subprocess.call(command)
+    return code if code >= 0 else 128 - code
+
+
+def say(sentence: str) -> None:
+    # standard output belongs to the command that is started
+    print(sentence, file=sys.stderr, flush=True)
+
+
+def _stamp() -> str:
+    try:
+        return STAMP.read_text(encoding="utf-8")
+    except OSError:
+        return ""
+
+
+def _is_sound() -> bool:
+    """Tell whether `.venv` runs, has pip, and is of this Python."""
+    try:
+        answer = subprocess.run(
+            [python(), "-c", "import sys, pip; print(sys.version)"], capture_output=True, text=True, check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return False
+    return answer.stdout.strip() == sys.version.strip()
+
+
+def _loads(library: str) -> bool:
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
+
+
+def _run_quietly(command: Sequence[str], advice: str, **environment: str) -> None:
+    """Run one step of the set-up; what it prints is shown only when it fails."""
+    answer = subprocess.run(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        env={**os.environ, **environment},
+        check=False,
+    )
+    if answer.returncode != 0:
+        raise SetUpError(f"{answer.stdout.strip()}\n\n{advice}")

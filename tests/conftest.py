@@ -1,0 +1,73 @@
+"""What does every test get? No screen, repeatable examples, the shared recordings, and a look at what it left behind."""
+
+import gc
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+os.environ["QT_QPA_PLATFORM"] = "offscreen"  # before anything imports Qt
+
+import pytest
+from hypothesis import settings
+from PySide6.QtCore import QEvent, QThread, QTimer
+from PySide6.QtWidgets import QApplication, QWidget
+
+# a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
+settings.register_profile("here", deadline=None)
+settings.register_profile("ci", deadline=None, derandomize=True)
+settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+
+@pytest.fixture(scope="session")
+def test_data() -> Callable[[str], Path]:
+    """Find a file or folder of the shared recordings, as `test_data("hinge_mechanical")`, or skip the test."""
+    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+
+    def find(path: str) -> Path:
+        if not told:
+            pytest.skip("GAITWRIGHT_TEST_DATA does not name the folder of shared recordings")
+        found = Path(told) / path
+        if not found.exists():
+            pytest.skip(f"the shared recordings hold no {path}")
+        return found
+
+    return find
+
+
+@pytest.fixture(autouse=True)
+def _nothing_left_behind(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Fail a test after which a thread or timer still runs or a widget still exists."""
+    started: list[Any] = []
+    for kind in (QThread, QTimer):
+        monkeypatch.setattr(kind, "start", _noting(kind.start, started))
+    before = set(_widgets())
+    yield
+    application = QApplication.instance()
+    if application is None:
+        return
+    application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
+    if set(_widgets()) - before:
+        gc.collect()  # widgets and their slots refer to each other
+    widgets = [repr(widget) for widget in _widgets() if widget not in before]
+    assert widgets == [], "widgets left: give them to qtbot.addWidget or to a parent"
+    assert [repr(one) for one in started if _is_running(one)] == [], "threads or timers still running"
+
+
+def _noting(start: Callable[..., None], started: list[Any]) -> Callable[..., None]:
+    def noted(one: QThread | QTimer, *arguments: object) -> None:
+        started.append(one)
+        start(one, *arguments)
+
+    return noted
+
+
+def _is_running(one: QThread | QTimer) -> bool:
+    try:
+        return one.isRunning() if isinstance(one, QThread) else one.isActive()
+    except RuntimeError:  # Qt has deleted it
+        return False
+
+
+def _widgets() -> list[QWidget]:
+    return QApplication.topLevelWidgets() if QApplication.instance() else []
