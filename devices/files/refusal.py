@@ -1,0 +1,26 @@
+"""What do we say when a file is not what it says it is?"""
+
+
+class FileRefusedError(Exception):
+    """A file that cannot be used: what is wrong, where, and what to do, as one line for the person who chose it.
+
+    `where` is the file as the reader knows it, with a line or a time where there is one; `what` a clause,
+    `remedy` a sentence without its full stop. What files hold ends up in these words, so whatever would break the line
+    is made visible or dropped.
+    """
+
+    def __init__(self, where: str, what: str, remedy: str) -> None:
+        self.where = one_line(where)
+        self.what = one_line(what)
+        self.remedy = one_line(remedy)
+        super().__init__(f"{self.where}: {self.what}. {self.remedy}.")
+
+
+def one_line(text: str) -> str:
+    return " ".join("".join(c if c.isprintable() else " " for c in text).split())
+
+
+def quoted(value: object, longest: int = 40) -> str:
+    """`value` as it can be shown inside a sentence; the end of a long text is left off."""
+    text = one_line(str(value))
+    return f'"{text}"' if len(text) <= longest else f'"{text[:longest]}..."'

@@ -1,0 +1,196 @@
+"""How is one visit read from a session folder, and written into one?
+
+The folder is a public interface: `session.toml` and, per recording, a folder with one table per site. Reading checks
+every file whole, so that nothing is refused later, in the middle of an analysis. Beyond `HELD_BYTES` of files the
+samples are then let go and read again when asked for.
+"""
+
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import ImuBlock, Recording, Session
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME, Plan, default_sensor, parse, render, unknown_keys
+from devices.files.site_files import Shelf, SiteFile, SitesOnDemand, write_site
+
+HELD_BYTES = 500_000_000  # some nine hours of one sensor at 100 Hz as text; in memory half of that
+SUFFIXES = (".csv", ".parquet")
+
+
+def read_session(folder: Path) -> Session:
+    """Read a session folder.
+
+    Everything the folder says and everything odd about it is in the result, its recordings in the file's order.
+    `Recording.imu` of a large session reads a site when asked for; then asking can raise, if a file changed since.
+
+    Raises
+    ------
+    FileRefusedError
+        The folder is not what it says it is: see `session_toml.parse` and `site_files.read_site`; a recording's folder
+        missing or outside of the session folder, a site there twice, no samples at all.
+    """
+    try:
+        return _read(folder)
+    except OSError as error:
+        what = f"this cannot be read ({error.strerror})"
+        raise FileRefusedError(str(error.filename or folder), what, "Check the folder and its permissions") from error
+
+
+def write_session(session: Session, folder: Path) -> None:
+    """Write `session` into `folder`, whole or not at all: beside it first, then renamed.
+
+    Samples are written as CSV and read back bit for bit. A session folder that is there is replaced; what it holds
+    beside its session (a reference, a note) is taken along.
+
+    Raises
+    ------
+    FileRefusedError
+        `folder` holds something that is not a session, or `session` could not be read back.
+    OSError
+        The disk is full or cannot be written to.
+    """
+    render(session, [Plan(recording, {}, frozenset()) for recording in session.recordings])  # refuses what it must
+    folder = folder.resolve()
+    strays = _strays(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as beside:
+        new, old = Path(beside) / "new", Path(beside) / "old"
+        new.mkdir()
+        plans = [_write_recording(recording, session, new) for recording in session.recordings]
+        (new / FILE_NAME).write_bytes(render(session, plans).encode())
+        for stray in strays:
+            target = new / stray.relative_to(folder)
+            if not target.exists():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copy2(stray, target, follow_symlinks=False)
+        if folder.exists():
+            folder.rename(old)
+        try:
+            new.rename(folder)
+        except OSError:
+            if old.exists():
+                old.rename(folder)
+            raise
+
+
+def _read(folder: Path) -> Session:
+    session, plans = parse(_read_toml(folder))
+    files = {plan.recording.name: _site_files(folder, plan, session) for plan in plans}
+    if not any(files.values()):
+        what = "no recording has a file named after a site"
+        raise FileRefusedError(FILE_NAME, what, "Name the files left_thigh.csv, left_shank.csv and so on")
+    shelf = Shelf() if _size(files) > HELD_BYTES else None
+    recordings, findings = [], []
+    for plan in plans:
+        imu, noticed = _read_recording(files[plan.recording.name], shelf)
+        recordings.append(replace(plan.recording, imu=imu))
+        findings += [*_folder_findings(folder, plan), *noticed]
+    session = replace(session, recordings=tuple(recordings))
+    return replace(session, findings=(*unknown_keys(session), *findings))
+
+
+def _read_toml(folder: Path) -> str:
+    path = folder / FILE_NAME
+    if not path.is_file():
+        remedy = f"Choose the folder that holds {FILE_NAME}, or import the recordings first"
+        raise FileRefusedError(str(folder), f"this is not a session folder, it holds no {FILE_NAME}", remedy)
+    try:
+        return path.read_bytes().decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise FileRefusedError(FILE_NAME, "this is not UTF-8 text", f"Save {FILE_NAME} as UTF-8") from error
+
+
+def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFile]:
+    recording = plan.recording
+    files = {}
+    _check_inside(folder / recording.folder, folder, recording.folder)
+    if not (folder / recording.folder).is_dir():
+        what = f"the folder of this recording is missing ({recording.folder})"
+        raise FileRefusedError(recording.name, what, f"Put it back or take the recording out of {FILE_NAME}")
+    for site in Site:
+        names = [site + suffix for suffix in SUFFIXES if (folder / recording.folder / (site + suffix)).exists()]
+        if len(names) > 1:
+            remedy = "Keep one of the two files"
+            raise FileRefusedError(recording.folder, f"{site} is there twice: {' and '.join(names)}", remedy)
+        for name in names:
+            path, where = folder / recording.folder / name, f"{recording.folder}/{name}"
+            _check_inside(path, folder, where)
+            if not path.is_file():
+                raise FileRefusedError(where, "this is not a file", "Put the sensor's file in its place")
+            sensor = plan.sensors.get(site) or default_sensor(session, site)
+            place = f"{recording.name}, {site}"
+            files[site] = SiteFile(path, where, place, sensor, site in plan.rates_derived)
+    return files
+
+
+def _check_inside(path: Path, folder: Path, where: str) -> None:
+    """Links may lead anywhere within the session folder, not out of it."""
+    try:
+        is_inside = path.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):
+        is_inside = False  # a link that leads to itself
+    if not is_inside:
+        raise FileRefusedError(where, "this leads outside of the session folder", "Copy the files into the folder")
+
+
+def _size(files: Mapping[str, Mapping[Site, SiteFile]]) -> int:
+    return sum(file.path.stat().st_size for sites in files.values() for file in sites.values())
+
+
+def _read_recording(
+    files: Mapping[Site, SiteFile], shelf: Shelf | None
+) -> tuple[Mapping[Site, ImuBlock], list[Finding]]:
+    held: dict[Site, ImuBlock] = {}
+    findings: list[Finding] = []
+    for site, file in files.items():
+        block, noticed = shelf.fetch(file) if shelf else file.read()
+        findings += noticed
+        if shelf is None:
+            held[site] = block
+        del block  # at most two large blocks at a time
+    return held if shelf is None else SitesOnDemand(files, shelf), findings
+
+
+def _folder_findings(folder: Path, plan: Plan) -> Iterator[Finding]:
+    name = plan.recording.name
+    expected = {site + suffix for site in Site for suffix in SUFFIXES}
+    present = {path.name for path in (folder / plan.recording.folder).iterdir() if path.is_file()}
+    if not expected & present:
+        yield Finding("recording_without_data", Severity.WARNING, name)
+    for other in sorted(present - expected):
+        if not other.startswith(".") and other != FILE_NAME:
+            yield Finding("file_left_out", Severity.INFO, name, {"name": other})
+
+
+def _strays(folder: Path) -> Sequence[Path]:
+    """Files of the session folder to be replaced that are not part of its session."""
+    if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
+        return []
+    if not (folder / FILE_NAME).is_file():
+        what = "this is there already and is not a session folder"
+        raise FileRefusedError(str(folder), what, "Choose another folder")
+    session, plans = parse(_read_toml(folder))
+    sites = {file.path for plan in plans for file in _site_files(folder, plan, session).values()}
+    return [
+        path for path in sorted(folder.rglob("*")) if not path.is_dir() and path not in {*sites, folder / FILE_NAME}
+    ]
+
+
+def _write_recording(recording: Recording, session: Session, folder: Path) -> Plan:
+    """Write the samples; what `session.toml` must say beyond the recording itself comes back."""
+    sensors, rates_derived = {}, set()
+    (folder / recording.folder).mkdir(parents=True, exist_ok=True)
+    for site in recording.imu:
+        block = recording.imu[site]
+        write_site(block, folder / recording.folder / f"{site}.csv")
+        if block.sensor != default_sensor(session, site):
+            sensors[site] = block.sensor
+        if block.is_rate_derived:
+            rates_derived.add(site)
+        del block  # at most two large blocks at a time
+    return Plan(recording, sensors, frozenset(rates_derived))

@@ -1,0 +1,338 @@
+"""What does `session.toml` say about a session, and how is it said again?
+
+Every key that means something stands in one of the tables below, once, with the check that its value must pass. What
+stands in none of them is unknown: it is kept where it was, with a finding.
+"""
+
+import datetime
+import math
+import re
+import tomllib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields
+from pathlib import PurePosixPath
+from typing import Any
+
+import tomli_w
+
+from core.body import Joint, Site
+from core.findings import Finding, Severity
+from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from devices.files.refusal import FileRefusedError, quoted
+
+FORMAT = "gaitwright-session/1"
+FILE_NAME = "session.toml"
+CORRECT_IT = f"Correct {FILE_NAME}"
+SIDES = ("left", "right", "both", "none", "")
+
+Check = Callable[[object], Any]
+Known = tuple[str, Check]
+Table = Mapping[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """One `[[recordings]]` table: a recording whose samples are still to be read."""
+
+    recording: Recording
+    sensors: Mapping[Site, str]
+    rates_derived: frozenset[Site]
+
+
+def _text(value: object) -> str:
+    if isinstance(value, datetime.datetime | datetime.date | datetime.time):
+        return value.isoformat()
+    if not isinstance(value, str):
+        raise ValueError("a text in quotation marks")
+    return value
+
+
+def _truth(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise ValueError("true or false")
+    return value
+
+
+def _number(lowest: float, highest: float, unit: str) -> Check:
+    def check(value: object) -> float:
+        if isinstance(value, bool) or not isinstance(value, int | float) or not lowest <= value <= highest:
+            raise ValueError(f"a number of {unit} from {lowest:g} to {highest:g}")
+        return float(value)
+
+    return check
+
+
+def _year(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or not 1850 <= value <= 2200:
+        raise ValueError("a year such as 1950")
+    return value
+
+
+def _sign(value: object) -> int:
+    if isinstance(value, bool) or not isinstance(value, int) or value not in (1, -1):
+        raise ValueError("1 or -1")
+    return value
+
+
+def _one_of(words: Iterable[str], make: Callable[[str], Any] = str) -> Check:
+    allowed = tuple(words)
+
+    def check(value: object) -> Any:
+        if not isinstance(value, str) or value not in allowed:
+            raise ValueError(f"one of {', '.join(word for word in allowed if word)}")
+        return make(value)
+
+    return check
+
+
+def _filled(value: object) -> str:
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError("a text that is not empty")
+    return value
+
+
+def _inside(value: object) -> str:
+    """A folder below the session folder, and not that folder itself."""
+    parts = re.split(r"[/\\]", value) if isinstance(value, str) else [""]
+    is_absolute = not parts[0] or ":" in parts[0]
+    if not isinstance(value, str) or is_absolute or ".." in parts or "\0" in value or not PurePosixPath(value).name:
+        raise ValueError("the name of a folder inside of the session folder")
+    return value
+
+
+def _site_texts(value: object) -> dict[Site, str]:
+    """Which sensor was where, in one recording; empty when the key holds something else, which is then unknown."""
+    is_ours = isinstance(value, dict) and all(k in list(Site) and isinstance(v, str) for k, v in value.items())
+    return {Site(site): text for site, text in value.items()} if isinstance(value, dict) and is_ours else {}
+
+
+def _site_list(value: object) -> frozenset[Site]:
+    """Where rates were derived; empty when the key holds something else, which is then unknown."""
+    is_ours = isinstance(value, list) and all(site in list(Site) for site in value)
+    return frozenset(Site(site) for site in value) if isinstance(value, list) and is_ours else frozenset()
+
+
+# Key in the file -> name of the attribute and check. The order is the order of writing.
+SESSION: Mapping[str, Known] = {
+    "started": ("started", _text),
+    "operator": ("operator", _text),
+    "surface": ("surface", _text),
+    "notes": ("notes", _text),
+    "software": ("software", _text),
+    "simulated": ("is_simulated", _truth),
+}
+PATIENT: Mapping[str, Known] = {
+    "code": ("code", _text),
+    "birth_year": ("birth_year", _year),
+    "sex": ("sex", _text),
+    "height_m": ("height_m", _number(0.3, 2.8, "metres")),
+    "mass_kg": ("mass_kg", _number(1.0, 500.0, "kilograms")),
+    "device": ("device", _text),
+    "aids": ("aids", _text),
+    "affected_side": ("affected_side", _one_of(SIDES)),
+    "prosthetic_side": ("prosthetic_side", _one_of(SIDES)),
+}
+SENSOR: Mapping[str, Known] = {
+    "serial": ("serial", _text),
+    "model": ("model", _text),
+    "firmware": ("firmware", _text),
+    "rate_hz": ("rate_hz", _number(0.001, 100_000.0, "hertz")),
+    "rate_kind": ("rate_kind", _one_of(RateKind, RateKind)),
+}
+RECORDING: Mapping[str, Known] = {
+    "name": ("name", _filled),
+    "kind": ("kind", _one_of(RecordingKind, RecordingKind)),
+    "folder": ("folder", _inside),
+    "condition": ("condition", _text),
+    "started": ("started", _text),
+    "kept": ("is_kept", _truth),
+    "note": ("note", _text),
+    "restrapped_before": ("is_restrapped_before", _truth),
+}
+REQUIRED = ("name", "kind", "folder")
+TABLES = ("session", "patient", "sensors", "zero", "sign")
+ZERO: Mapping[str, Known] = {joint.value: (joint.value, _number(-180.0, 180.0, "degrees")) for joint in Joint}
+SIGN: Mapping[str, Known] = {joint.value: (joint.value, _sign) for joint in Joint}
+
+
+def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
+    """What the file says: a session without recordings, and the recordings to read.
+
+    Raises
+    ------
+    FileRefusedError
+        Not TOML, another format, no recording, a recording without name, kind or folder or with those of another, a
+        value of the wrong type or out of range.
+    """
+    try:
+        document = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
+        raise FileRefusedError(FILE_NAME, f"this is not TOML ({error})", CORRECT_IT) from error
+    _check_format(document)
+    tables = {name: _table(document, name, f"[{name}]") for name in TABLES}
+    session_values, session_unknown = _take(tables["session"], SESSION, "[session]")
+    patient_values, patient_unknown = _take(tables["patient"], PATIENT, "[patient]")
+    zero_deg, zero_unknown = _take(tables["zero"], ZERO, "[zero]")
+    signs, sign_unknown = _take(tables["sign"], SIGN, "[sign]")
+    sensors = {site: _sensor(tables["sensors"], site) for site in Site if site in tables["sensors"]}
+    nested = {
+        "session": session_unknown,
+        "sensors": {key: value for key, value in tables["sensors"].items() if key not in sensors},
+        "zero": zero_unknown,
+        "sign": sign_unknown,
+    }
+    top = {key: value for key, value in document.items() if key not in ("format", "recordings", *TABLES)}
+    session = Session(
+        recordings=(),
+        patient=Patient(**patient_values, unknown=patient_unknown),
+        sensors=sensors,
+        zero_rad={Joint(key): math.radians(value) for key, value in zero_deg.items()},
+        turned_sign={Joint(key): value for key, value in signs.items()},
+        unknown=top | {key: value for key, value in nested.items() if value},
+        **session_values,
+    )
+    return session, _plans(document.get("recordings", []))
+
+
+def render(session: Session, plans: Sequence[Plan]) -> str:
+    """The text that `parse` reads as this session: keys in the order of the format, unknown ones last in their table.
+
+    Raises
+    ------
+    FileRefusedError
+        A session that could not be read back: see `parse`.
+    """
+    nested = {key: _unknown_table(session, key) for key in TABLES}
+    zero_deg = {joint.value: round(math.degrees(value), 9) for joint, value in session.zero_rad.items()}
+    sensors = {site.value: _render(info, SENSOR) | dict(info.unknown) for site, info in session.sensors.items()}
+    document: dict[str, object] = {
+        "format": FORMAT,
+        "session": _render(session, SESSION) | nested["session"],
+        "patient": _render(session.patient, PATIENT) | dict(session.patient.unknown),
+        "sensors": sensors | nested["sensors"],
+        "zero": zero_deg | nested["zero"],
+        "sign": {joint.value: sign for joint, sign in session.turned_sign.items()} | nested["sign"],
+    }
+    document = {key: value for key, value in document.items() if value != {}}
+    document |= {key: value for key, value in session.unknown.items() if key not in document and key not in TABLES}
+    document["recordings"] = [_render_plan(plan) for plan in plans]
+    text = tomli_w.dumps(document)
+    parse(text)
+    return text
+
+
+def unknown_keys(session: Session) -> tuple[Finding, ...]:
+    """A finding for every key that means nothing to us. One under `zero` or `sign` was meant to turn a result."""
+    places: list[tuple[str, Table]] = [
+        (FILE_NAME, {key: value for key, value in session.unknown.items() if key not in TABLES}),
+        *((name, _unknown_table(session, name)) for name in TABLES),
+        ("patient", session.patient.unknown),
+        *((site.value, info.unknown) for site, info in session.sensors.items()),
+        *((recording.name, recording.unknown) for recording in session.recordings),
+    ]
+    return tuple(
+        Finding("unknown_key", Severity.WARNING if place in ("zero", "sign") else Severity.INFO, place, {"name": key})
+        for place, table in places
+        for key in table
+    )
+
+
+def default_sensor(session: Session, site: Site) -> str:
+    """What a sensor is called when its recording does not say."""
+    return session.sensors.get(site, SensorInfo()).serial or site.value
+
+
+def _check_format(document: Table) -> None:
+    name = document.get("format")
+    if name == FORMAT:
+        return
+    later = re.fullmatch(r"gaitwright-session/(\d{1,9})", name) if isinstance(name, str) else None
+    if later and int(later[1]) > 1:
+        what = f"this session was written by a later version ({quoted(name)})"
+        raise FileRefusedError(FILE_NAME, what, "Update Gaitwright, then open it again")
+    what = "the format is not named" if name is None else f"the format {quoted(name)} is not known"
+    raise FileRefusedError(FILE_NAME, what, f'A session folder says format = "{FORMAT}" in its first line')
+
+
+def _plans(tables: object) -> tuple[Plan, ...]:
+    if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
+        raise FileRefusedError(FILE_NAME, "recordings is not a list of tables", "Start each one with [[recordings]]")
+    if not tables:
+        remedy = "Add one with [[recordings]] and its name, kind and folder"
+        raise FileRefusedError(FILE_NAME, "there is no recording at all", remedy)
+    plans: list[Plan] = []
+    for number, table in enumerate(tables, 1):
+        name = table.get("name")
+        where = f"[[recordings]] {quoted(name) if isinstance(name, str) and name else f'number {number}'}"
+        for key in REQUIRED:
+            if key not in table:
+                raise FileRefusedError(f"{FILE_NAME}, {where}", f"{key} is missing", CORRECT_IT)
+        values, unknown = _take(table, RECORDING, where)
+        sensors = _site_texts(unknown.get("sensors"))
+        rates_derived = _site_list(unknown.get("rates_derived"))
+        unknown = {key: value for key, value in unknown.items() if not (key == "sensors" and sensors)}
+        unknown = {key: value for key, value in unknown.items() if not (key == "rates_derived" and rates_derived)}
+        recording = Recording(imu={}, unknown=unknown, **values)
+        for other in (plan.recording for plan in plans):
+            for key in ("name", "folder"):
+                if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
+                    what = f"two recordings have the {key} {quoted(getattr(recording, key))}"
+                    raise FileRefusedError(f"{FILE_NAME}, {where}", what, f"Give each recording a {key} of its own")
+        plans.append(Plan(recording, sensors, rates_derived))
+    return tuple(plans)
+
+
+def _normal(text: str, key: str) -> str:
+    return str(PurePosixPath(text)) if key == "folder" else text
+
+
+def _sensor(sensors: Table, site: Site) -> SensorInfo:
+    values, unknown = _take(_table(sensors, site.value, f"[sensors.{site}]"), SENSOR, f"[sensors.{site}]")
+    return SensorInfo(**values, unknown=unknown)
+
+
+def _table(document: Table, name: str, where: str) -> Table:
+    table = document.get(name, {})
+    if not isinstance(table, dict):
+        raise FileRefusedError(f"{FILE_NAME}, {where}", "this is not a table of keys and values", CORRECT_IT)
+    return table
+
+
+def _take(table: Table, known: Mapping[str, Known], where: str) -> tuple[dict[str, Any], dict[str, object]]:
+    """Checked values by attribute, and all that is unknown."""
+    values: dict[str, Any] = {}
+    for key, value in table.items():
+        if key not in known:
+            continue
+        attribute, check = known[key]
+        try:
+            values[attribute] = check(value)
+        except ValueError as error:
+            what = f"{key} is {quoted(value)}, expected {error}"
+            raise FileRefusedError(f"{FILE_NAME}, {where}", what, CORRECT_IT) from error
+    return values, {key: value for key, value in table.items() if key not in known}
+
+
+def _render(thing: Session | Patient | SensorInfo | Recording, known: Mapping[str, Known]) -> dict[str, object]:
+    """Keys and values of all that differs from its default."""
+    defaults = {field.name: field.default for field in fields(thing)}
+    values = {key: (getattr(thing, attribute), defaults[attribute]) for key, (attribute, _) in known.items()}
+    return {key: _plain(value) for key, (value, default) in values.items() if value != default}
+
+
+def _render_plan(plan: Plan) -> dict[str, object]:
+    table = _render(plan.recording, RECORDING)
+    if plan.sensors:
+        table["sensors"] = {site.value: plan.sensors[site] for site in Site if site in plan.sensors}
+    if plan.rates_derived:
+        table["rates_derived"] = [site.value for site in Site if site in plan.rates_derived]
+    return table | dict(plan.recording.unknown)
+
+
+def _plain(value: object) -> object:
+    return str(value) if isinstance(value, str) else value
+
+
+def _unknown_table(session: Session, name: str) -> dict[str, object]:
+    table = session.unknown.get(name, {})
+    return dict(table) if isinstance(table, Mapping) else {}

@@ -1,0 +1,184 @@
+"""How does one sensor's file become a block of samples, and the other way round?"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import BoolArray, FloatArray, ImuBlock
+from devices.files.refusal import FileRefusedError
+from devices.files.tables import CORRECT_IT, Table, read_csv, read_parquet
+
+TIME = "time_s"
+ACC = ("acc_x_m_s2", "acc_y_m_s2", "acc_z_m_s2")
+GYR = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
+QUAT = ("quat_w", "quat_x", "quat_y", "quat_z")
+MAG = ("mag_x", "mag_y", "mag_z")
+REQUIRED = (TIME, *ACC, *GYR)
+NUMERIC = frozenset((*REQUIRED, *QUAT, *MAG))
+
+
+def read_site(
+    path: Path, where: str, place: str, sensor: str, is_rate_derived: bool
+) -> tuple[ImuBlock, tuple[Finding, ...]]:
+    """One site's samples.
+
+    Samples that carry the same stamp as the one before are dropped, with a finding: the first was there in time.
+
+    Parameters
+    ----------
+    where
+        The file's name in refusals.
+    place
+        Recording and site, as findings name them.
+
+    Raises
+    ------
+    FileRefusedError
+        Whatever `tables` refuses, a required column missing, a clock that steps back, a sample without a time.
+    """
+    try:
+        table = read_parquet(path, where, NUMERIC) if path.suffix == ".parquet" else read_csv(path, where, NUMERIC)
+    except OSError as error:
+        raise FileRefusedError(where, f"the file cannot be read ({error.strerror})", "Check its permissions") from error
+    missing = [name for name in REQUIRED if name not in table.numbers]
+    if missing:
+        raise FileRefusedError(f"{where}, line 1", f"required columns are missing: {', '.join(missing)}", CORRECT_IT)
+    time_s = table.numbers[TIME]
+    is_new = _check_clock(time_s, table, where)
+    findings = list(_table_findings(table, place, int(np.sum(~is_new)), is_rate_derived))
+
+    has_quat, has_mag = (all(n in table.numbers for n in names) for names in (QUAT, MAG))
+    halves = [n for names, is_whole in ((QUAT, has_quat), (MAG, has_mag)) if not is_whole for n in names]
+    strays = {n: table.numbers[n] for n in halves if n in table.numbers}
+    unknown: dict[str, NDArray[np.generic]] = {**table.texts, **strays}
+    findings += [Finding("unknown_column", Severity.INFO, place, {"name": name}) for name in unknown]
+    block = ImuBlock(
+        sensor=sensor,
+        time_s=time_s[is_new],
+        gyr_rad_s=table.matrix(GYR)[is_new],
+        acc_m_s2=table.matrix(ACC)[is_new],
+        q_earth_from_sensor=table.matrix(QUAT)[is_new] if has_quat else None,
+        mag=table.matrix(MAG)[is_new] if has_mag else None,
+        is_rate_derived=is_rate_derived,
+        unknown={name: column[is_new] for name, column in unknown.items()},
+    )
+    return block, tuple(findings)
+
+
+def write_site(block: ImuBlock, path: Path) -> None:
+    """Write a CSV file that `read_site` reads back to the same samples, bit for bit."""
+    import pyarrow as pa  # here, not above: the window starts without it
+    import pyarrow.csv as pcsv
+
+    columns = {
+        TIME: block.time_s,
+        **dict(zip(ACC, block.acc_m_s2.T, strict=True)),
+        **dict(zip(GYR, block.gyr_rad_s.T, strict=True)),
+    }
+    if block.q_earth_from_sensor is not None:
+        columns |= dict(zip(QUAT, block.q_earth_from_sensor.T, strict=True))
+    if block.mag is not None:
+        columns |= dict(zip(MAG, block.mag.T, strict=True))
+    arrays = [pa.array(np.ascontiguousarray(column, dtype=float), from_pandas=True) for column in columns.values()]
+    for name, column in block.unknown.items():
+        is_number = np.issubdtype(column.dtype, np.floating)
+        texts = ["" if is_number and np.isnan(v) else str(v).replace("\n", " ") for v in column]
+        arrays.append(pa.array(texts, pa.string()))
+        columns[name] = column
+    header = ",".join('"' + n.replace('"', '""') + '"' if set(n) & set(',"') else n for n in columns)
+    with path.open("wb") as file:
+        file.write(f"{header}\n".encode())
+        if len(block):
+            table = pa.Table.from_arrays(arrays, names=[str(i) for i in range(len(arrays))])
+            pcsv.write_csv(table, file, write_options=pcsv.WriteOptions(include_header=False))
+
+
+class SitesOnDemand(Mapping[Site, ImuBlock]):
+    """The blocks of files too large to be held: each is read when asked for, the last two of a session are kept.
+
+    Every file was read and checked once before, so asking raises `FileRefusedError` only when one has changed since.
+    """
+
+    def __init__(self, files: Mapping[Site, "SiteFile"], shelf: "Shelf") -> None:
+        self._files = files
+        self._shelf = shelf
+
+    def __getitem__(self, site: Site) -> ImuBlock:
+        return self._shelf.fetch(self._files[site])[0]
+
+    def __contains__(self, site: object) -> bool:
+        return site in self._files
+
+    def __iter__(self) -> Iterator[Site]:
+        return iter(self._files)
+
+    def __len__(self) -> int:
+        return len(self._files)
+
+
+class SiteFile:
+    """A file and what it takes to read it."""
+
+    def __init__(self, path: Path, where: str, place: str, sensor: str, is_rate_derived: bool) -> None:
+        self.path = path
+        self._arguments = (path, where, place, sensor, is_rate_derived)
+
+    def read(self) -> tuple[ImuBlock, tuple[Finding, ...]]:
+        return read_site(*self._arguments)
+
+
+class Shelf:
+    """Keeps the blocks that were read last: two, because a joint needs two."""
+
+    PLACES = 2
+
+    def __init__(self) -> None:
+        self._read: dict[SiteFile, tuple[ImuBlock, tuple[Finding, ...]]] = {}
+
+    def fetch(self, file: SiteFile) -> tuple[ImuBlock, tuple[Finding, ...]]:
+        read = self._read.pop(file, None)
+        if read is None:
+            while len(self._read) >= self.PLACES:
+                del self._read[next(iter(self._read))]
+            read = file.read()
+        self._read[file] = read
+        return read
+
+
+def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
+    """(n,) which samples are later than the one before.
+
+    Raises
+    ------
+    FileRefusedError
+        The first stamp that is empty or lies before its predecessor.
+    """
+    is_new = np.ones(len(time_s), dtype=bool)
+    empty = np.flatnonzero(~np.isfinite(time_s))
+    if len(empty):
+        what = "a sample has no time" if np.isnan(time_s[empty[0]]) else "a sample's time is infinite"
+        raise FileRefusedError(f"{where}, {table.place(int(empty[0]))}", what, CORRECT_IT)
+    step_s = np.diff(time_s)
+    back = np.flatnonzero(step_s < 0)
+    if len(back):
+        row = int(back[0]) + 1
+        what = f"the clock steps back from {time_s[row - 1]:.9g} s to {time_s[row]:.9g} s"
+        raise FileRefusedError(f"{where}, {table.place(row)}", what, "Split the recording there or export it again")
+    is_new[1:] = step_s > 0
+    return is_new
+
+
+def _table_findings(table: Table, place: str, doubled: int, is_rate_derived: bool) -> Iterator[Finding]:
+    if doubled:
+        yield Finding("doubled_stamps", Severity.WARNING, place, {"count": doubled})
+    infinite = sum(int(np.isinf(column).sum()) for column in table.numbers.values())
+    if is_rate_derived:
+        yield Finding("rate_from_orientation", Severity.INFO, place)
+    if infinite:
+        yield Finding("infinite_values", Severity.WARNING, place, {"count": infinite})
+    if table.is_open:
+        yield Finding("last_line_open", Severity.INFO, place)

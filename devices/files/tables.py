@@ -1,0 +1,242 @@
+"""Which columns does a file hold, and which of its lines is at fault?
+
+CSV and Parquet, read by Arrow. When Arrow cannot read a text, a slow pass over its lines finds the one to name.
+"""
+
+import csv
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.samples import FloatArray
+from devices.files.refusal import FileRefusedError, quoted
+
+NUMBER = re.compile(r"\s*[+-]?((\d+\.?\d*|\.\d+)(e[+-]?\d+)?|nan|inf(inity)?)?\s*", re.IGNORECASE | re.ASCII)
+LONGEST_HEADER = 100_000  # bytes; a line without end is no header
+EMPTY_CELLS = [" " * n for n in range(9)]  # Arrow compares whole cells, and a blank or two is still nothing
+UNNAMED = "column"  # a column without a name is called by its place: "column 9"
+COPY_AGAIN = "Copy the file again from where it was recorded"
+CORRECT_IT = "Correct the file or export it again"
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """One file's columns, all of one length: `numbers` those that were asked for as numbers, `texts` all others.
+
+    `place` says where a row of the table stands in the file ("line 12"). `is_open` is true for a text whose last line
+    has no end: its last cell may have been cut.
+    """
+
+    numbers: Mapping[str, FloatArray]
+    texts: Mapping[str, NDArray[np.generic]]
+    rows: int
+    place: Callable[[int], str]
+    is_open: bool = False
+
+    def matrix(self, names: Collection[str]) -> FloatArray:
+        """(rows, len(names)); infinite values are no measurement and become NaN."""
+        matrix = np.column_stack([self.numbers[name] for name in names])
+        matrix[np.isinf(matrix)] = np.nan
+        return matrix
+
+
+def read_csv(
+    path: Path, where: str, numeric: Collection[str], *, comment: str | None = None, delimiters: str = ","
+) -> Table:
+    """Read a text with one header line.
+
+    Parameters
+    ----------
+    where
+        The file's name in messages.
+    numeric
+        Columns to be read as numbers, NaN where empty. All others are kept as the text they are.
+    comment
+        Lines starting with it before the header are passed over.
+    delimiters
+        Of these, the one that divides the header most is taken.
+
+    Raises
+    ------
+    FileRefusedError
+        Not a text, no header, a column twice, a line with too few or too many columns, a text that is not a number.
+    """
+    with path.open("rb") as file:
+        names, delimiter, header_line = _read_header(file, where, comment, delimiters)
+        start = file.tell()
+        arrow = _read_body(file, names, numeric, delimiter)
+        is_open = _is_open(file, start)
+        if isinstance(arrow, Exception) or _swallows_lines(arrow, names, numeric):
+            _refuse_line(path, where, start, header_line, names, numeric, delimiter)
+            if _has_content(path, start):
+                raise FileRefusedError(where, f"the table cannot be read ({arrow})", COPY_AGAIN)
+            arrow = None
+
+    unnamed = {f"{UNNAMED} {i}" for i in range(1, len(names) + 1)}
+    columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(names)}
+
+    def place(row: int) -> str:
+        lines = (line for line, _ in _lines(path, start, header_line))
+        return f"line {next(line for i, line in enumerate(lines) if i == row)}"
+
+    numbers = {n: np.array(c.to_numpy()) if c is not None else np.empty(0) for n, c in columns.items() if n in numeric}
+    texts = {n: _as_text(c.to_pylist() if c is not None else []) for n, c in columns.items() if n not in numeric}
+    for name in [n for n in texts if n in unnamed and not np.any(texts[n] != "")]:
+        del texts[name]  # delimiters at the end of every line make columns of nothing
+    return Table(numbers, texts, 0 if arrow is None else arrow.num_rows, place, is_open)
+
+
+def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
+    """Read a Parquet file as `read_csv` reads a text. Columns that are not asked for as numbers keep numeric types.
+
+    Raises
+    ------
+    FileRefusedError
+        Not Parquet, a column twice, a column that should hold numbers and does not.
+    """
+    import pyarrow as pa  # here, not above: the window starts without it
+    import pyarrow.parquet as pq
+
+    try:
+        with path.open("rb") as file:
+            arrow = pq.ParquetFile(file).read()
+        names = [name.strip() for name in arrow.column_names]
+        _refuse_twice(names, where, "header")
+        numbers, texts = {}, {}
+        for name, column in zip(names, arrow.columns, strict=True):
+            is_number = pa.types.is_integer(column.type) or pa.types.is_floating(column.type)
+            if name in numeric:
+                if not (is_number or pa.types.is_decimal(column.type) or pa.types.is_null(column.type)):
+                    raise FileRefusedError(where, f"column {name} holds {column.type}, not numbers", CORRECT_IT)
+                numbers[name] = np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=float)
+            elif is_number and column.null_count == 0:
+                texts[name] = column.to_numpy()
+            else:
+                texts[name] = _as_text(["" if v is None else str(v) for v in column.to_pylist()])
+    except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
+        raise FileRefusedError(where, f"this is not a readable Parquet file ({error})", COPY_AGAIN) from error
+    return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
+
+
+def header_of(path: Path, where: str, *, comment: str, delimiters: str) -> tuple[list[str], list[str]]:
+    """The comment lines before the header, without their mark, and the names of the columns.
+
+    Raises
+    ------
+    FileRefusedError
+        Not a text, no header, a column twice.
+    """
+    with path.open("rb") as file:
+        names, _, header_line = _read_header(file, where, comment, delimiters)
+        file.seek(0)
+        before = [file.readline().decode("utf-8-sig").strip() for _ in range(header_line - 1)]
+    return [line.removeprefix(comment).strip() for line in before], names
+
+
+def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: str) -> tuple[list[str], str, int]:
+    """Names, delimiter and number of the header's line; leaves `file` at the line after it."""
+    number = 0
+    while raw := file.readline(LONGEST_HEADER):
+        number += 1
+        try:
+            text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip(" \r\n")
+        except UnicodeDecodeError as error:
+            raise FileRefusedError(f"{where}, line {number}", "this is not UTF-8 text", CORRECT_IT) from error
+        if "\0" in text or len(raw) == LONGEST_HEADER:
+            raise FileRefusedError(f"{where}, line {number}", "this is not a table but binary data", CORRECT_IT)
+        if not text or (comment is not None and text.startswith(comment)):
+            continue
+        delimiter = max(delimiters, key=text.count)
+        cells = next(csv.reader([text], delimiter=delimiter))
+        names = [name.strip() or f"{UNNAMED} {i}" for i, name in enumerate(cells, 1)]
+        _refuse_twice(names, where, f"line {number}")
+        return names, delimiter, number
+    raise FileRefusedError(where, "the file has no header line", COPY_AGAIN)
+
+
+def _refuse_twice(names: list[str], where: str, place: str) -> None:
+    for name in names:
+        if names.count(name) > 1:
+            raise FileRefusedError(f"{where}, {place}", f"column {quoted(name)} is there twice", CORRECT_IT)
+
+
+def _read_body(file: BinaryIO, names: list[str], numeric: Collection[str], delimiter: str) -> Any:
+    """The rows after the header as an Arrow table, or the error that Arrow raised."""
+    import pyarrow as pa
+    import pyarrow.csv as pcsv
+
+    types = {name: pa.float64() if name in numeric else pa.string() for name in names}
+    try:
+        return pcsv.read_csv(
+            file,
+            read_options=pcsv.ReadOptions(column_names=names),
+            parse_options=pcsv.ParseOptions(delimiter=delimiter),
+            convert_options=pcsv.ConvertOptions(column_types=types, null_values=EMPTY_CELLS, strings_can_be_null=False),
+        )
+    except pa.ArrowException as error:
+        return error
+
+
+def _swallows_lines(arrow: Any, names: list[str], numeric: Collection[str]) -> bool:
+    """A quotation mark that is never closed takes the lines after it into one cell."""
+    import pyarrow.compute as pc
+
+    texts = [column for name, column in zip(names, arrow.columns, strict=True) if name not in numeric]
+    return any(pc.any(pc.match_substring(column, "\n")).as_py() for column in texts)
+
+
+def _is_open(file: BinaryIO, start: int) -> bool:
+    end = file.seek(0, 2)
+    if end == start:
+        return False
+    file.seek(-1, 2)
+    return file.read(1) not in (b"\n", b"\r")
+
+
+def _lines(path: Path, start: int, header_line: int) -> Iterator[tuple[int, bytes]]:
+    """Number and bytes of every line after the header that is not empty."""
+    with path.open("rb") as file:
+        file.seek(start)
+        for number, raw in enumerate(file, header_line + 1):
+            if line := raw.rstrip(b"\r\n"):
+                yield number, line
+
+
+def _has_content(path: Path, start: int) -> bool:
+    return next(_lines(path, start, 0), None) is not None
+
+
+def _refuse_line(
+    path: Path, where: str, start: int, header_line: int, names: list[str], numeric: Collection[str], delimiter: str
+) -> None:
+    """Raise for the first line that cannot be read; return when there is none."""
+    for number, line in _lines(path, start, header_line):
+        here = f"{where}, line {number}"
+        try:
+            text = line.decode()
+        except UnicodeDecodeError as error:
+            raise FileRefusedError(here, "this is not UTF-8 text", COPY_AGAIN) from error
+        if text.count('"') % 2:
+            raise FileRefusedError(here, "a quotation mark is not closed", CORRECT_IT)
+        try:
+            cells = next(csv.reader([text], delimiter=delimiter))
+        except csv.Error as error:
+            raise FileRefusedError(here, f"the line cannot be read ({error})", COPY_AGAIN) from error
+        if len(cells) < len(names):
+            what = f"the line ends after {len(cells)} of {len(names)} columns, the file may have been cut"
+            raise FileRefusedError(here, what, COPY_AGAIN)
+        if len(cells) > len(names):
+            what = f"the line has {len(cells)} columns, the header {len(names)}"
+            raise FileRefusedError(here, what, CORRECT_IT)
+        for name, cell in zip(names, cells, strict=True):
+            if name in numeric and not NUMBER.fullmatch(cell):
+                raise FileRefusedError(here, f"{quoted(cell)} in column {name} is not a number", CORRECT_IT)
+
+
+def _as_text(values: list[str]) -> NDArray[np.generic]:
+    return np.array(values, dtype=np.dtypes.StringDType())
