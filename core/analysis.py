@@ -1,119 +1,296 @@
-"""From a session to joint angles: which recording calibrates which walk, and every step in its order."""
+"""From a session to joint angles: look at the samples, identify every joint, measure every recording, turn and zero.
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from enum import StrEnum
+Read `analyse` as a table of contents; each step is a module of its own.
+"""
 
-from core.body import Joint
-from core.findings import Finding
-from core.samples import FloatArray, RecordingKind, Session
+from collections.abc import Callable
 
+import numpy as np
 
-class Method(StrEnum):
-    ROBUST = "robust"
-    PUBLISHED = "published"
-
-
-class AxisSource(StrEnum):
-    FREE_MOTION = "free_motion"
-    WALKING = "walking"
-    POOLED = "pooled"
-    HINGE = "hinge"
-    REFINED = "refined"
-
-
-class ZeroKind(StrEnum):
-    STANDING = "standing"
-    GONIOMETER = "goniometer"
-    NONE = "none"
-
-
-@dataclass(frozen=True, slots=True)
-class JointCalibration:
-    """How two sensors sit on one joint, and how sure that is. None: could not be found.
-
-    Axes are unit vectors, centres point from the joint to the sensor (eq 7), each in its own sensor's axes.
-    `clinical_sign` turns the twist about the axes (distal against proximal) into flexion or dorsiflexion; 0: uncertain,
-    the twist is then reported as it is. `zero_rad` is subtracted from the twist before the sign, `offset_rad` (the
-    goniometer's value) added after it.
-    """
-
-    joint: Joint
-    method: Method
-    axis_proximal: FloatArray
-    axis_distal: FloatArray
-    axis_source: AxisSource
-    axis_sd_rad: float | None
-    centre_proximal_m: FloatArray | None
-    centre_distal_m: FloatArray | None
-    centre_sd_m: float | None
-    sign_margin: float | None
-    clinical_sign: int
-    clinical_sign_margin: float | None
-    lag_s: float
-    lag_sd_s: float | None
-    hinge_residual_rad_s: float | None
-    is_hinge: bool
-    gyro_bias_proximal_rad_s: FloatArray | None
-    gyro_bias_distal_rad_s: FloatArray | None
-    zero: ZeroKind
-    zero_rad: float
-    offset_rad: float
-    standing_from: str | None
-    free_motion_from: str | None
-    walks_from: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class Calibration:
-    """The joints' calibrations that hold for `walks` (names of recordings)."""
-
-    walks: tuple[str, ...]
-    joints: Mapping[Joint, JointCalibration]
-
-
-@dataclass(frozen=True, slots=True)
-class JointAngle:
-    """One joint's flexion over one recording; NaN in gaps. All arrays (n,), radians, clinical sign.
-
-    `angle` is the result (the twist of the relative orientation; with the published method eq 15), `published` eq (15),
-    `orientation` eq (10) from the device's quaternions or from VQF with magnetometer, None where there is neither.
-    """
-
-    angle_rad: FloatArray
-    sd_rad: FloatArray
-    published_rad: FloatArray
-    orientation_rad: FloatArray | None
-
-
-@dataclass(frozen=True, slots=True)
-class RecordingAnalysis:
-    """Angles of one recording, all on the clock `time_s` (n,)."""
-
-    name: str
-    folder: str
-    kind: RecordingKind
-    time_s: FloatArray
-    joints: Mapping[Joint, JointAngle]
-
-
-@dataclass(frozen=True, slots=True)
-class Analysis:
-    """Everything one session tells. `calibrations` one per span of validity, in order of time."""
-
-    method: Method
-    is_simulated: bool
-    calibrations: tuple[Calibration, ...]
-    recordings: tuple[RecordingAnalysis, ...]
-    findings: tuple[Finding, ...] = field(default=())
-
+from core.body import Joint, Segment, Site, knee_of
+from core.calibration import certainty
+from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
+from core.calibration.hinge import robust_sd
+from core.calibration.zero import standing_twist, wrapped_to_zero
+from core.identified import Identified, identify
+from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
+from core.measure import Twist, measure
+from core.published.angles import DEFAULT_TAU_S
+from core.quality import look_at
+from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
+from core.samples import FloatArray, Recording, RecordingKind, Session
+from core.sensors import SensorTracks
+from core.validity import Basis, basis_of, spans_of_validity
 
 Progress = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done (a recording's or joint's name). May raise to stop the analysis."""
+"""Called with the share done (0 to 1) and what is being done. May raise to stop the analysis."""
+
+# The first site present gives a recording its stamps (FORMATS, section 3).
+CLOCK_ORDER = (
+    Site.LEFT_THIGH,
+    Site.LEFT_SHANK,
+    Site.RIGHT_THIGH,
+    Site.RIGHT_SHANK,
+    Site.LEFT_FOOT,
+    Site.RIGHT_FOOT,
+)
+
+Bases = dict[tuple[str, Joint], Basis]
+"""What calibrates each joint in each recording, by the recording's name."""
 
 
 def analyse(
-    session: Session, method: Method = Method.ROBUST, tau_s: float = 2.0, progress: Progress | None = None
+    session: Session,
+    method: Method = Method.ROBUST,
+    tau_s: float = DEFAULT_TAU_S,
+    progress: Progress | None = None,
 ) -> Analysis:
-    """Identify every joint of `session` and compute its angles in every kept recording but standing."""
-    raise NotImplementedError
+    """Identify every joint of `session` and compute its angles in every kept recording but standing.
+
+    Parameters
+    ----------
+    method
+        How the joints are identified and which angle is the result.
+    tau_s
+        Time constant of the paper's fusion (eq 15).
+    progress
+        Told how far the analysis is; whatever it raises ends the analysis.
+    """
+    quality = look_at(session)
+    findings = [*session.findings, *about_session(session), *quality.findings]
+    calibrations: list[Calibration] = []
+    recordings: list[RecordingAnalysis] = []
+    spans = spans_of_validity(session)
+    for number, span in enumerate(spans):
+        steps = _Steps(progress, number / len(spans), 1 / len(spans))
+        tracks = SensorTracks(session, span, quality.unusable)
+        bases = _bases(tracks)
+        steps.expect(len(set(bases.values())) + len(bases))
+        identified = _identify(tracks, bases, method, tau_s, steps)
+        measured = _measure(tracks, bases, identified, steps)
+        calibrated = _calibrate(tracks, bases, identified, measured, method)
+        for basis, calibration in calibrated.items():
+            findings += about_joint(calibration, identified[basis], session.turned_sign.get(basis.joint))
+        calibrations += _by_walk(span, bases, calibrated)
+        for recording in _moving(span):
+            found = _angles(tracks, recording, bases, calibrated, measured)
+            recordings.append(found)
+            findings += about_angles(found)
+    findings += about_missing_joints(session, recordings)
+    unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
+    return Analysis(method, session.is_simulated, tuple(calibrations), tuple(recordings), tuple(unique.values()))
+
+
+class _Steps:
+    """Counts what is done, for whoever watches."""
+
+    def __init__(self, progress: Progress | None, first: float, share: float) -> None:
+        self._progress, self._first, self._share = progress, first, share
+        self._expected, self._done = 1, 0
+
+    def expect(self, steps: int) -> None:
+        self._expected = max(1, steps)
+
+    def tick(self, what: str) -> None:
+        if self._progress is not None:
+            self._progress(self._first + self._share * min(1.0, self._done / self._expected), what)
+        self._done += 1
+
+
+def _moving(span: tuple[Recording, ...]) -> list[Recording]:
+    return [recording for recording in span if recording.kind is not RecordingKind.STANDING]
+
+
+def _bases(tracks: SensorTracks) -> Bases:
+    return {
+        (recording.name, joint): basis_of(tracks.span, recording, joint)
+        for recording in _moving(tracks.span)
+        for joint in Joint
+        if tracks.is_usable(recording, joint.proximal, joint.distal)
+    }
+
+
+def _identify(
+    tracks: SensorTracks, bases: Bases, method: Method, tau_s: float, steps: _Steps
+) -> dict[Basis, Identified]:
+    identified: dict[Basis, Identified] = {}
+    for basis in dict.fromkeys(bases.values()):
+        steps.tick(str(basis.joint))
+        found = identify(tracks, basis, method, tau_s)
+        if found is not None:
+            identified[basis] = found
+    return identified
+
+
+def _measure(
+    tracks: SensorTracks, bases: Bases, identified: dict[Basis, Identified], steps: _Steps
+) -> dict[tuple[str, Joint], Twist]:
+    measured: dict[tuple[str, Joint], Twist] = {}
+    for recording in _moving(tracks.span):
+        time_s = _clock_of(tracks, recording)
+        for joint in Joint:
+            basis = bases.get((recording.name, joint))
+            if basis is None or basis not in identified:
+                continue
+            steps.tick(recording.name)
+            # an ankle is measured on its shank's clock, which the knee brings to the thigh's
+            knee_basis = bases.get((recording.name, knee_of(joint.side)))
+            knee = identified.get(knee_basis) if knee_basis else None
+            offset_s = knee.geometry.lag_s if knee and joint.proximal.segment is Segment.SHANK else 0.0
+            geometry = identified[basis].geometry
+            measured[recording.name, joint] = measure(tracks, recording, joint, geometry, time_s, offset_s)
+    return measured
+
+
+def _clock_of(tracks: SensorTracks, recording: Recording) -> FloatArray:
+    """Stamps of the first usable site."""
+    for site in CLOCK_ORDER:
+        if tracks.is_usable(recording, site):
+            return recording.imu[site].time_s
+    return np.empty(0)
+
+
+def _calibrate(
+    tracks: SensorTracks,
+    bases: Bases,
+    identified: dict[Basis, Identified],
+    measured: dict[tuple[str, Joint], Twist],
+    method: Method,
+) -> dict[Basis, JointCalibration]:
+    """Give every identified joint its zero and its clinical sign; knees first, since ankles follow them."""
+    calibrated: dict[Basis, JointCalibration] = {}
+    for basis in sorted(identified, key=lambda b: not b.joint.is_knee):
+        names = [name for (name, joint), other in bases.items() if other == basis and joint is basis.joint]
+        twists = _telling(tracks, names, basis.joint, measured)
+        knee_basis = bases.get((names[0], knee_of(basis.joint.side)))
+        knee = calibrated.get(knee_basis) if knee_basis else None
+        calibrated[basis] = _calibration(tracks, identified[basis], twists, knee, method)
+    return {basis: calibrated[basis] for basis in identified}
+
+
+def _telling(
+    tracks: SensorTracks, names: list[str], joint: Joint, measured: dict[tuple[str, Joint], Twist]
+) -> list[Twist]:
+    """The walks, which show the way a joint bends; without any, the free motion."""
+    kinds = {recording.name: recording.kind for recording in tracks.span}
+    walks = [name for name in names if kinds[name] is RecordingKind.WALKING]
+    return [measured[name, joint] for name in walks or names if (name, joint) in measured]
+
+
+def _calibration(
+    tracks: SensorTracks, found: Identified, twists: list[Twist], knee: JointCalibration | None, method: Method
+) -> JointCalibration:
+    session, basis = tracks.session, found.basis
+    joint = basis.joint
+    standing = _standing_twist(tracks, found)
+    moving = np.concatenate([t.moving_twist for t in twists]) if twists else np.empty(0)
+    zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
+    sign = _clinical_sign(found, twists, zero_rad, knee)
+    turn = session.turned_sign.get(joint, 1)
+    zero = (
+        ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
+    )
+    in_force = [recording for recording in tracks.span if recording.name in found.recordings]
+    biases = [tracks.gyro_bias(in_force[0], site) for site in (joint.proximal, joint.distal)]
+    robust = found.robust
+    return JointCalibration(
+        joint=joint,
+        method=method,
+        axis_proximal=found.geometry.axis_1,
+        axis_distal=found.geometry.axis_2,
+        axis_source=found.source,
+        axis_sd_rad=robust.axis_sd_rad if robust else None,
+        centre_proximal_m=found.geometry.centre_1_m,
+        centre_distal_m=found.geometry.centre_2_m,
+        centre_sd_m=found.centre_sd_m,
+        sign_margin=found.sign_margin,
+        clinical_sign=sign.sign * turn,
+        is_sign_certain=sign.is_certain or joint in session.turned_sign,
+        clinical_sign_margin=sign.margin,
+        lag_s=found.geometry.lag_s,
+        lag_sd_s=found.lag.sd_s if found.lag else None,
+        hinge_residual_rad_s=found.hinge_residual_rad_s,
+        is_hinge=found.is_hinge,
+        gyro_bias_proximal_rad_s=biases[0].rad_s if biases[0].source else None,
+        gyro_bias_distal_rad_s=biases[1].rad_s if biases[1].source else None,
+        zero=zero,
+        zero_rad=zero_rad,
+        offset_rad=session.zero_rad[joint] if zero is ZeroKind.GONIOMETER else 0.0,
+        standing_from=basis.standing if standing is not None else None,
+        free_motion_from=basis.free_motion if basis.free_motion in found.recordings else None,
+        walks_from=tuple(name for name in found.recordings if name in basis.walks),
+    )
+
+
+def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
+    joint = found.basis.joint
+    for recording in tracks.span:
+        if recording.name == found.basis.standing:
+            rests = [tracks.rest(recording, site) for site in (joint.proximal, joint.distal)]
+            if rests[0] is None or rests[1] is None:
+                return None
+            geometry = found.geometry
+            return standing_twist(rests[0].acc_m_s2, rests[1].acc_m_s2, geometry.axis_1, geometry.axis_2)
+    return None
+
+
+def _clinical_sign(
+    found: Identified, twists: list[Twist], zero_rad: float, knee: JointCalibration | None
+) -> ClinicalSign:
+    if not twists:
+        return ClinicalSign(1, 0.0, False)
+    if found.basis.joint.is_knee:
+        bend = np.concatenate([wrapped_to_zero(t.moving_twist - zero_rad) for t in twists])
+        return knee_sign(bend, -np.concatenate([t.moving_rate_2 for t in twists]))
+    shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
+    if knee is None:
+        return ankle_sign(None, 0.0, shank_rate)
+    found_knee = ClinicalSign(knee.clinical_sign, knee.clinical_sign_margin or 0.0, knee.is_sign_certain)
+    return ankle_sign(found_knee, float(knee.axis_distal @ found.geometry.axis_1), shank_rate)
+
+
+def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:
+    """Walks that share the calibration of every joint go together; without walks the free motion stands alone."""
+    groups: dict[tuple[Basis, ...], list[str]] = {}
+    walks = [recording for recording in span if recording.kind is RecordingKind.WALKING]
+    for recording in walks or _moving(span):
+        key = tuple(bases[recording.name, joint] for joint in Joint if (recording.name, joint) in bases)
+        groups.setdefault(key, []).extend([recording.name] if walks else [])
+    return [
+        Calibration(tuple(names), {basis.joint: calibrated[basis] for basis in key if basis in calibrated})
+        for key, names in groups.items()
+    ]
+
+
+def _angles(
+    tracks: SensorTracks,
+    recording: Recording,
+    bases: Bases,
+    calibrated: dict[Basis, JointCalibration],
+    measured: dict[tuple[str, Joint], Twist],
+) -> RecordingAnalysis:
+    """Turn the twists of one recording to the clinical sign and zero, and say how sure they are."""
+    joints: dict[Joint, JointAngle] = {}
+    for joint in Joint:
+        basis, found = bases.get((recording.name, joint)), measured.get((recording.name, joint))
+        if basis is None or found is None:
+            continue
+        joints[joint] = _angle(calibrated[basis], found)
+    return RecordingAnalysis(recording.name, recording.folder, recording.kind, _clock_of(tracks, recording), joints)
+
+
+def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:
+    def clinical(twist_rad: FloatArray) -> FloatArray:
+        turned = calibration.clinical_sign * (twist_rad - calibration.zero_rad) + calibration.offset_rad
+        return wrapped_to_zero(turned)
+
+    published = clinical(found.published_rad)
+    angle = published if calibration.method is Method.PUBLISHED else clinical(found.twist_rad)
+    sd = certainty.angle_sd_rad(
+        robust_sd(found.moving_off_axis) if len(found.moving_off_axis) else 0.0,
+        range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
+        calibration.joint.is_knee,
+        calibration.is_hinge,
+    )
+    orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
+    return JointAngle(angle, np.where(np.isfinite(angle), sd, np.nan), published, orientation)

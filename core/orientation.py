@@ -5,10 +5,12 @@ it is given. A rate of the instant of its stamp stands for half an interval befo
 its predecessor; a rate that the device has averaged over the past interval is used as it is.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from vqf import offlineVQF
 
-from core.rotations import matrix_from_quaternion
+from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
 from core.tracks import Track
 
@@ -23,22 +25,25 @@ def interval_rates(gyr_rad_s: FloatArray, rate_kind: RateKind) -> FloatArray:
     return mean
 
 
-def earth_from_sensor(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> FloatArray:
-    """Orientation (n, 4), scalar first, earth z up, of each sample; its heading starts anywhere and may drift."""
-    gyr = np.ascontiguousarray(interval_rates(track.gyr_rad_s - gyro_bias_rad_s, rate_kind))
-    quaternion: FloatArray = offlineVQF(gyr, np.ascontiguousarray(track.acc_m_s2), None, track.step_s)["quat6D"]
-    return quaternion
+def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> OrientedTrack:
+    """Take the gyroscope's bias (3,) off and find the orientation; its heading starts anywhere and may drift."""
+    unbiased = replace(track, gyr_rad_s=track.gyr_rad_s - gyro_bias_rad_s)
+    return OrientedTrack(unbiased, _filtered(unbiased, rate_kind, None)["quat6D"])
 
 
-def earth_from_sensor_magnetic(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> FloatArray | None:
-    """Orientation (n, 4) with a heading from the magnetic field; None without magnetometer."""
-    if track.mag is None:
-        return None
-    gyr = np.ascontiguousarray(interval_rates(track.gyr_rad_s - gyro_bias_rad_s, rate_kind))
-    acc, mag = np.ascontiguousarray(track.acc_m_s2), np.ascontiguousarray(track.mag)
-    quaternion: FloatArray = offlineVQF(gyr, acc, mag, track.step_s)["quat9D"]
-    return quaternion
+def oriented_to_north(track: Track, rate_kind: RateKind) -> OrientedTrack | None:
+    """The device's own orientation, else one with a heading from the magnetic field, else None.
+
+    `track` has its gyroscope bias removed already.
+    """
+    if track.q_device is not None and np.isfinite(track.q_device).all():
+        return OrientedTrack(track, track.q_device)
+    if track.mag is not None and np.isfinite(track.mag).all():
+        return OrientedTrack(track, _filtered(track, rate_kind, np.ascontiguousarray(track.mag))["quat9D"])
+    return None
 
 
-def rotation_matrices(quaternion: FloatArray) -> FloatArray:
-    return matrix_from_quaternion(quaternion)
+def _filtered(track: Track, rate_kind: RateKind, mag: FloatArray | None) -> dict[str, FloatArray]:
+    gyr = np.ascontiguousarray(interval_rates(track.gyr_rad_s, rate_kind))
+    filtered: dict[str, FloatArray] = offlineVQF(gyr, np.ascontiguousarray(track.acc_m_s2), mag, track.step_s)
+    return filtered

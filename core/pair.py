@@ -6,7 +6,7 @@ import numpy as np
 
 from core.rotations import matrix_from_quaternion
 from core.samples import BoolArray, FloatArray
-from core.tracks import Track, at_positions
+from core.tracks import Track, at_positions, continuous
 
 MOVING_RAD_S = 0.3  # both sensors' rates together, averaged over
 MOVING_WINDOW_S = 0.5
@@ -15,7 +15,7 @@ FAST_RAD_S = 6.0  # above, impacts and whole-body turns dominate what the sensor
 
 @dataclass(frozen=True, slots=True)
 class OrientedTrack:
-    """A track with its gyroscope bias removed and its orientation (n, 4), earth from sensor, any heading."""
+    """A track with its gyroscope bias removed and an orientation (n, 4), earth from sensor."""
 
     track: Track
     q_earth_from_sensor: FloatArray
@@ -89,7 +89,7 @@ def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pai
     whole = np.round(position)
     if np.max(np.abs(position - whole)) < 1e-3:  # one clock: no interpolation
         position = whole
-    q2 = at_positions(_continuous(distal.q_earth_from_sensor), position)
+    q2 = at_positions(continuous(distal.q_earth_from_sensor), position)
     g1, g2 = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
     is_measured = one.is_measured[part] & two.is_measured[np.clip(whole, 0, len(two) - 1).astype(int)]
     dg1, dg2 = angular_acceleration(g1, one.step_s), angular_acceleration(g2, one.step_s)
@@ -117,11 +117,3 @@ def _known(is_measured: BoolArray) -> BoolArray:
         is_known[shift:] &= is_measured[:-shift]
         is_known[:-shift] &= is_measured[shift:]
     return is_known
-
-
-def _continuous(q: FloatArray) -> FloatArray:
-    """The same rotations without jumps between q and -q."""
-    flips = np.sign(np.sum(q[1:] * q[:-1], axis=1))
-    if np.all(flips > 0):
-        return q
-    return q * np.concatenate([[1.0], np.cumprod(np.where(flips < 0, -1.0, 1.0))])[:, None]

@@ -13,8 +13,8 @@ from core.samples import FloatArray
 def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: FloatArray) -> FloatArray:
     """Rotation (n,) of the distal segment against the proximal one about the joint axis, radians, without jumps.
 
-    theta = arg(u - i v) with u = z(R12 x2), v = z(R12 y2) in the joint plane of sensor 1. Its sign and zero are those of
-    -alpha in Seel et al. 2014, eqs 10 to 14.
+    theta = arg(u - i v) with u = z(R12 x2), v = z(R12 y2) in the joint plane of sensor 1. Its sign and zero are those
+    of -alpha in Seel et al. 2014, eqs 10 to 14.
 
     Parameters
     ----------

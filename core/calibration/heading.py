@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
 from core.calibration.datasets import Datasets, gather
 from core.calibration.hinge import robust_sd
 from core.calibration.joint_axis import (
@@ -11,9 +10,10 @@ from core.calibration.joint_axis import (
     Candidates,
     heading_from_axes,
     polish,
+    residuals,
 )
 from core.pair import Pair
-from core.samples import FloatArray, IntArray
+from core.samples import BoolArray, FloatArray, IntArray
 
 SAMPLES_PER_S = 20.0
 STEPS = 4
@@ -25,7 +25,7 @@ def heading_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> FloatArr
     """Heading (n,) of the distal earth in the proximal one at every sample of a pair."""
     data = _spread(pair, pair.is_known)
     if len(data) < 10:
-        data = _spread(pair, pair.is_measured | ~pair.is_measured)
+        data = _spread(pair, np.ones(len(pair), dtype=bool))
     knots = heading_from_axes(data, axis_1[None], axis_2[None])
     start = Candidates(axis_1[None], axis_2[None], knots, np.array([np.inf]))
     fit = polish(data, start, STEPS, is_axis_fixed=True)
@@ -35,7 +35,7 @@ def heading_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> FloatArr
     return everywhere.heading(fit.knots_rad[0])
 
 
-def _spread(pair: Pair, is_used: FloatArray) -> Datasets:
+def _spread(pair: Pair, is_used: BoolArray) -> Datasets:
     index: IntArray = np.flatnonzero(is_used)
     stride = max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))
     return gather((pair,), [index[::stride]])
@@ -43,8 +43,6 @@ def _spread(pair: Pair, is_used: FloatArray) -> Datasets:
 
 def residual_scales(data: Datasets, fit: Candidates) -> tuple[float, float]:
     """Robust spreads of the off-axis rate (rad/s) and of the parting of the axes (rad) under the first candidate."""
-    from core.calibration.joint_axis import residuals
-
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), RATE_SCALE_RAD_S, NEUTRAL_SCALE_RAD)
     rate = robust_sd(r.value[0, :, :4]) * np.sqrt(2) * RATE_SCALE_RAD_S
     neutral = robust_sd(r.value[0, :, 4:]) * NEUTRAL_SCALE_RAD

@@ -1,8 +1,8 @@
 """Is the joint a true hinge? Then the published constraint, from a good start, finds its axis best.
 
 On a hinge the rates of both sensors have the same length across the axis (Seel et al. 2014, doi 10.3390/s140406891,
-eqs 3 and 6), whatever the headings. On a human joint that length is biased by everything else that moves, so it is never
-used there.
+eqs 3 and 6), whatever the headings. On a human joint that length is biased by everything else that moves, so it is
+never used there.
 """
 
 import numpy as np

@@ -1,6 +1,6 @@
 """How do two sensors sit on their joint? The robust identification, step by step."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,8 +44,8 @@ class Identification:
     axis_1: FloatArray
     axis_2: FloatArray
     axis_sd_rad: float
-    centre: JointCentre | None
-    centre_sd_m: float | None
+    centre: JointCentre
+    centre_sd_m: float
     sign_margin: float
     lag: Lag
     hinge_residual_rad_s: float
@@ -53,8 +53,8 @@ class Identification:
     elevation_rad: float | None
 
 
-PairsAtLag = Callable[[float], Mapping[str, tuple[Pair, ...]]]
-"""Pairs of every recording that identifies the joint, by the recording's name, with a lag applied."""
+PairsAtLag = Callable[[float], tuple[Pair, ...]]
+"""The pairs that identify the joint, with a lag applied to the distal sensor."""
 
 
 def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
@@ -79,27 +79,22 @@ def identify_joint(
     down_1 : (3,) or None
         Specific force of the proximal sensor in standing.
     """
-    data = moving_data(_all(pairs_at(0.0)))
+    data = moving_data(pairs_at(0.0))
     if data is None:
         return None
     fits, margin = decide(data, down_1)
     lag = find_lag(data.thinned(DECISION_SAMPLES), fits.knots_rad[0])
     if lag.lag_s:
-        data = moving_data(_all(pairs_at(lag.lag_s))) or data
+        data = moving_data(pairs_at(lag.lag_s)) or data
         fits, margin = decide(data, down_1)
-        rest = find_lag(data.thinned(DECISION_SAMPLES), fits.knots_rad[0])
-        del rest
     return _refined(data, fits, margin, lag, is_knee, is_from_walking, down_1)
-
-
-def _all(by_recording: Mapping[str, tuple[Pair, ...]]) -> tuple[Pair, ...]:
-    return tuple(pair for pairs in by_recording.values() for pair in pairs)
 
 
 def decide(data: Datasets, down_1: FloatArray | None) -> tuple[Candidates, float]:
     """The best hypothesis about axes and heading, and how much better it is than its best rival.
 
-    Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates alone.
+    Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates
+    alone.
     """
     few = data.thinned(CANDIDATE_SAMPLES)
     found = joined([candidates(data, s) for s in _richest_stretches(data)])

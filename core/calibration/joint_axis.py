@@ -1,10 +1,10 @@
 """Along which direction of each sensor does the joint bend, and how do the two headings compare?
 
-The relative rate of the two segments points along the joint axis in both sensors, and the axis itself is the same line
-seen from both: j1 = R12 j2. The unknowns are the two axes and the relative heading; the heading enters the relative rate
-so simply that all headings can be tried at once. Seel et al. 2014 identify the axes from the rates' lengths alone
-(eq 6), which needs no heading; on human joints, where the rest of the motion is as large as the sensors' noise is small,
-the direction tells more.
+The relative rate of the two segments points along the joint axis in both sensors, and the axis itself is the same
+line seen from both: j1 = R12 j2. The unknowns are the two axes and the relative heading; the heading enters the
+relative rate so simply that all headings can be tried at once. Seel et al. 2014 identify the axes from the rates'
+lengths alone (eq 6), which needs no heading; on human joints, where the rest of the motion is as large as the
+sensors' noise is small, the direction tells more.
 """
 
 from dataclasses import dataclass
@@ -46,10 +46,11 @@ def joined(many: list[Candidates]) -> Candidates:
 
 
 def candidates(data: Datasets, stretch: int) -> Candidates:
-    """Axes and headings under which little of the relative rate in one stretch is off axis, and their mirror pairings.
+    """Axes and headings under which little of the relative rate is off axis, and their mirror pairings.
 
-    The relative rate is w(d) = cos d A + sin d B + C, so six 3x3 moments give its scatter at every heading d. At each of
-    the best minima the axes are the principal directions; the opposite pairing of the two axes is a candidate as well.
+    The relative rate is w(d) = cos d A + sin d B + C, so six 3x3 moments give its scatter at every heading d. At each
+    of the best minima the axes are the principal directions; the opposite pairing of the two axes is a candidate as
+    well.
     """
     axes_1, axes_2 = _scan(data, stretch)
     pairs_1, pairs_2 = np.concatenate([axes_1, axes_1]), np.concatenate([axes_2, -axes_2])
@@ -131,8 +132,9 @@ def knot_weights(data: Datasets) -> FloatArray:
 class Residuals:
     """Three groups of residuals per candidate and sample and their slopes.
 
-    `value` (c, n, 7): off-axis relative rate seen from sensor 1 (2) and from sensor 2 (2), parting of the axes (3), each
-    over its scale. `by_axes` (c, n, 7, 4): slopes by the two tangent coordinates of each axis; `by_heading` (c, n, 7).
+    `value` (c, n, 7): off-axis relative rate seen from sensor 1 (2) and from sensor 2 (2), parting of the axes (3),
+    each over its scale. `by_axes` (c, n, 7, 4): slopes by the two tangent coordinates of each axis; `by_heading` (c,
+    n, 7).
     """
 
     value: FloatArray

@@ -91,7 +91,7 @@ def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
 
 
 def centre_sd_m(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray, is_hinge: bool, is_knee: bool) -> float:
-    """Standard deviation along the weakest observable direction; along a knee's or a hinge's axis it is not observable."""
+    """Standard deviation along the weakest observable direction; a knee or a hinge shows nothing along its axis."""
     worst = 0.0
     for axis, part in ((axis_1, slice(0, 3)), (axis_2, slice(3, 6))):
         covariance = centre.covariance[part, part]

@@ -1,0 +1,88 @@
+"""Which way is flexion? Found from how people stand and walk, never asked.
+
+A knee bends one way only from standing, and in walking the shank swings forward faster than back. At the ankle,
+dorsiflexion turns the other way about the same line as knee flexion.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.samples import FloatArray
+
+MIN_RANGE_RAD = np.deg2rad(10.0)  # a stiff knee: its few degrees do not tell which way it bends
+MIN_SWING_RAD_S = 0.7  # a shank slower than this is not walking
+MIN_MARGIN = 0.25
+MIN_AXES_ALIGNMENT = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class ClinicalSign:
+    """`sign` turns the twist into flexion or dorsiflexion; where not certain it is the likelier one."""
+
+    sign: int
+    margin: float
+    is_certain: bool
+
+
+def skewness(values: FloatArray, share: float) -> float:
+    """(p_hi + p_lo)/(p_hi - p_lo) of the quantiles `share` and 1 - share: 1 all positive, 0 symmetric."""
+    low, high = np.quantile(values, [share, 1 - share])
+    return float((high + low) / (high - low)) if high > low else 0.0
+
+
+def range_of(theta_rad: FloatArray) -> float:
+    low, high = np.quantile(theta_rad, [0.02, 0.98])
+    return float(high - low)
+
+
+def forward_swing(rate_rad_s: FloatArray) -> float:
+    """How much faster the shank turns one way than the other, -1 to 1; 0 for a shank that hardly swings."""
+    low, high = np.quantile(rate_rad_s, [0.005, 0.995])
+    if high - low < 2 * MIN_SWING_RAD_S:
+        return 0.0
+    return skewness(rate_rad_s, 0.005)
+
+
+def knee_sign(
+    theta_rad: FloatArray, shank_rate_rad_s: FloatArray, is_walking: bool, has_standing: bool
+) -> ClinicalSign:
+    """Sign of knee flexion.
+
+    Parameters
+    ----------
+    theta_rad : (n,)
+        Twist while moving, minus its value in standing (without standing: minus its median).
+    shank_rate_rad_s : (m,)
+        -g2.j2 while moving.
+    is_walking
+        Otherwise the shank's swing tells nothing.
+    has_standing
+        Without it, and without walking, nothing does.
+    """
+    bend = skewness(theta_rad, 0.02) if range_of(theta_rad) > MIN_RANGE_RAD else 0.0
+    swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
+    total = bend + 2 * swing
+    disagree = bend * swing < 0 and min(abs(bend), 2 * abs(swing)) > 0.5 * max(abs(bend), 2 * abs(swing))
+    is_certain = abs(total) > MIN_MARGIN and bend != 0.0 and not disagree and (is_walking or has_standing)
+    return ClinicalSign(1 if total >= 0 else -1, abs(total), is_certain)
+
+
+def ankle_sign(
+    knee: ClinicalSign | None, alignment: float, shank_rate_rad_s: FloatArray, is_walking: bool
+) -> ClinicalSign:
+    """Sign of ankle dorsiflexion.
+
+    Parameters
+    ----------
+    alignment
+        j2,knee . j1,ankle, both in the shank's sensor; 0 without knee.
+    shank_rate_rad_s : (m,)
+        -g1.j1,ankle while moving.
+    """
+    swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
+    if knee is None or abs(alignment) < MIN_AXES_ALIGNMENT:
+        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), abs(swing) > MIN_MARGIN and knee is None)
+    from_knee = knee.sign * (1 if alignment > 0 else -1)
+    disagree = from_knee * swing < -MIN_MARGIN
+    return ClinicalSign(-from_knee, min(knee.margin, abs(alignment)), knee.is_certain and not disagree)

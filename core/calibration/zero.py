@@ -1,0 +1,25 @@
+"""What does the joint read in standing? From gravity alone, seen in both joint planes."""
+
+import numpy as np
+
+from core.rotations import joint_frame
+from core.samples import FloatArray
+
+
+def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    """Twist in standing, radians: arg(z(a1) conj z(a2)) of the mean specific forces (3,) of both sensors.
+
+    Needs no heading and no centre, so the recording of standing may be one of its own.
+    """
+    z1, z2 = (
+        complex(down @ x, down @ y)
+        for down, (x, y) in zip((down_1, down_2), map(joint_frame, (axis_1, axis_2)), strict=True)
+    )
+    return float(np.angle(z1 * np.conj(z2)))
+
+
+def wrapped_to_zero(angle_rad: FloatArray) -> FloatArray:
+    """The angle (n,) moved by whole turns so that its median lies within half a turn of zero."""
+    if not np.isfinite(angle_rad).any():
+        return angle_rad
+    return angle_rad - 2 * np.pi * np.round(np.nanmedian(angle_rad) / (2 * np.pi))

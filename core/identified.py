@@ -1,0 +1,132 @@
+"""The identification of one joint from the recordings that are in force, robust or as published."""
+
+from dataclasses import dataclass
+
+from core.body import Joint
+from core.calibration.identify import Identification, identify_joint, moving_data
+from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
+from core.calibration.lag import Lag
+from core.measure import Geometry, pairs_of
+from core.pair import Pair
+from core.published.identify import identify_as_published
+from core.published.joint_centre import shifted_to_sensors
+from core.results import AxisSource, Method
+from core.samples import FloatArray, Recording
+from core.sensors import SensorTracks
+from core.validity import Basis
+
+
+@dataclass(frozen=True, slots=True)
+class Identified:
+    """One joint as identified, before its clinical sign and zero. `centre_*` None: the data do not show it."""
+
+    basis: Basis
+    geometry: Geometry
+    source: AxisSource
+    recordings: tuple[str, ...]
+    centre_sd_m: float | None
+    sign_margin: float
+    hinge_residual_rad_s: float
+    is_hinge: bool
+    robust: Identification | None
+
+    @property
+    def lag(self) -> Lag | None:
+        return self.robust.lag if self.robust else None
+
+
+def identify(tracks: SensorTracks, basis: Basis, method: Method, tau_s: float) -> Identified | None:
+    """Identify one joint; None where its recordings hold too little movement."""
+    if method is Method.PUBLISHED:
+        return _as_published(tracks, basis, tau_s)
+    return _robustly(tracks, basis, tau_s)
+
+
+def _by_name(tracks: SensorTracks, names: tuple[str, ...]) -> list[Recording]:
+    return [recording for recording in tracks.span if recording.name in names]
+
+
+def identifying_recordings(basis: Basis) -> tuple[str, ...]:
+    """A knee is identified by free motion, where there is any; an ankle by free motion and walks together."""
+    free = (basis.free_motion,) if basis.free_motion else ()
+    if basis.joint.is_knee:
+        return free or basis.walks
+    return (*free, *basis.walks)
+
+
+def _pairs(tracks: SensorTracks, joint: Joint, names: tuple[str, ...], lag_s: float) -> tuple[Pair, ...]:
+    """Stretches of the first block of each recording: ten minutes identify as well as ten hours."""
+    return tuple(
+        pair
+        for recording in _by_name(tracks, names)
+        for pair in pairs_of(tracks, recording, joint, tracks.blocks(recording)[0], lag_s)
+    )
+
+
+def _source(basis: Basis, is_hinge: bool) -> AxisSource:
+    if is_hinge:
+        return AxisSource.HINGE
+    if not basis.free_motion:
+        return AxisSource.WALKING
+    return AxisSource.FREE_MOTION if basis.joint.is_knee or not basis.walks else AxisSource.POOLED
+
+
+def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | None:
+    joint, names = basis.joint, identifying_recordings(basis)
+    found = identify_joint(
+        lambda lag_s: _pairs(tracks, joint, names, lag_s),
+        is_knee=joint.is_knee,
+        is_from_walking=basis.free_motion is None,
+        down_1=_down(tracks, basis),
+    )
+    if found is None:
+        return None
+    centre_1 = centre_2 = None
+    # a walking person's centre is not in the data; a hinge's is
+    if found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion):
+        centre_1, centre_2 = found.centre.proximal_m, found.centre.distal_m
+        if joint.is_knee:
+            centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
+    return Identified(
+        basis=basis,
+        geometry=Geometry(found.axis_1, found.axis_2, centre_1, centre_2, found.lag.lag_s, tau_s),
+        source=_source(basis, found.is_hinge),
+        recordings=names,
+        centre_sd_m=found.centre_sd_m if centre_1 is not None else None,
+        sign_margin=found.sign_margin,
+        hinge_residual_rad_s=found.hinge_residual_rad_s,
+        is_hinge=found.is_hinge,
+        robust=found,
+    )
+
+
+def _down(tracks: SensorTracks, basis: Basis) -> FloatArray | None:
+    for recording in _by_name(tracks, (basis.standing,) if basis.standing else ()):
+        rest = tracks.rest(recording, basis.joint.proximal)
+        return rest.acc_m_s2 if rest else None
+    return None
+
+
+def _as_published(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | None:
+    joint = basis.joint
+    free = (basis.free_motion,) if basis.free_motion else ()
+    axis_names = (free or basis.walks) if joint.is_knee else (basis.walks or free)
+    axis_data = moving_data(_pairs(tracks, joint, axis_names, 0.0))
+    centre_data = moving_data(_pairs(tracks, joint, free or basis.walks, 0.0))
+    if axis_data is None:
+        return None
+    found = identify_as_published(axis_data, centre_data or axis_data)
+    o1, o2 = found.centre_1_m, found.centre_2_m
+    if joint.is_knee:
+        o1, o2 = shifted_to_sensors(o1, o2, found.axis_1, found.axis_2)
+    return Identified(
+        basis=basis,
+        geometry=Geometry(found.axis_1, found.axis_2, o1, o2, 0.0, tau_s),
+        source=AxisSource.WALKING if axis_names == basis.walks else AxisSource.FREE_MOTION,
+        recordings=tuple(dict.fromkeys((*axis_names, *free))),
+        centre_sd_m=None,
+        sign_margin=found.pairing_ratio,
+        hinge_residual_rad_s=found.residual_rad_s,
+        is_hinge=False,
+        robust=None,
+    )

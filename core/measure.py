@@ -1,0 +1,143 @@
+"""What do the two sensors of a joint say over a whole recording, once their axes are known?
+
+Everything here is still the bare twist (distal against proximal segment about the joint axis), without clinical sign
+and zero; `analysis` turns it. Long recordings are worked through in blocks.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.angles.twist import off_axis_rate, twist
+from core.body import Joint
+from core.calibration.heading import heading_over
+from core.orientation import oriented_to_north
+from core.pair import OrientedTrack, Pair, pair_up
+from core.published.angles import angle_from_orientations, published_angle
+from core.samples import FloatArray, RateKind, Recording
+from core.sensors import SensorTracks
+from core.tracks import Block, at_positions
+
+WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
+
+
+@dataclass(frozen=True, slots=True)
+class Geometry:
+    """What measuring needs: axes (3,), centres (3,) or None, the distal clock's lag, the filter's time constant."""
+
+    axis_1: FloatArray
+    axis_2: FloatArray
+    centre_1_m: FloatArray | None
+    centre_2_m: FloatArray | None
+    lag_s: float
+    tau_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Twist:
+    """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
+
+    `moving_twist` (m,), `moving_off_axis` (m, 2) rad/s and `moving_rate_1`, `moving_rate_2` (m,) rad/s (each sensor's
+    own rate about its own axis) are thinned samples while the joint's segments move.
+    """
+
+    twist_rad: FloatArray
+    published_rad: FloatArray
+    orientation_rad: FloatArray | None
+    moving_twist: FloatArray
+    moving_off_axis: FloatArray
+    moving_rate_1: FloatArray
+    moving_rate_2: FloatArray
+
+
+def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
+    """All stretches of one block in which both sensors of a joint were heard."""
+    proximal = tracks.oriented(recording, joint.proximal, block)
+    distal = tracks.oriented(recording, joint.distal, block)
+    return _paired(proximal, distal, lag_s)
+
+
+def _paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
+    pairs = [pair_up(one, two, lag_s) for one in proximal for two in distal]
+    return [pair for pair in pairs if pair is not None]
+
+
+def measure(
+    tracks: SensorTracks,
+    recording: Recording,
+    joint: Joint,
+    geometry: Geometry,
+    time_s: FloatArray,
+    clock_offset_s: float,
+) -> Twist:
+    """Measure one joint at the stamps `time_s` (n,).
+
+    Parameters
+    ----------
+    clock_offset_s
+        What brings the proximal sensor's clock to the clock of `time_s`.
+    """
+    angles = {name: np.full(len(time_s), np.nan) for name in ("twist", "published", "orientation")}
+    witnesses: list[tuple[FloatArray, ...]] = []
+    j1, j2 = geometry.axis_1, geometry.axis_2
+    for block in tracks.blocks(recording):
+        for pair in pairs_of(tracks, recording, joint, block, geometry.lag_s):
+            heading = heading_over(pair, j1, j2)
+            found = {"twist": twist(pair, j1, j2, heading)}
+            if geometry.centre_1_m is not None and geometry.centre_2_m is not None:
+                centres = geometry.centre_1_m, geometry.centre_2_m
+                found["published"] = -published_angle(pair, j1, j2, *centres, geometry.tau_s)
+            for name, values in found.items():
+                _place(angles[name], values, pair, time_s, clock_offset_s, block)
+            chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
+            off_axis = off_axis_rate(pair, j1, heading)
+            witnesses.append((found["twist"][chosen], off_axis[chosen], pair.g1[chosen] @ j1, pair.g2[chosen] @ j2))
+        for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
+            values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
+            _place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
+    joined = [np.concatenate(parts) for parts in zip(*witnesses, strict=True)] if witnesses else []
+    for values in angles.values():
+        unwrap_over_gaps(values)
+    return Twist(
+        twist_rad=angles["twist"],
+        published_rad=angles["published"],
+        orientation_rad=angles["orientation"] if np.isfinite(angles["orientation"]).any() else None,
+        moving_twist=joined[0] if joined else np.empty(0),
+        moving_off_axis=joined[1] if joined else np.empty((0, 2)),
+        moving_rate_1=joined[2] if joined else np.empty(0),
+        moving_rate_2=joined[3] if joined else np.empty(0),
+    )
+
+
+def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
+    sides = []
+    for site in (joint.proximal, joint.distal):
+        kind = tracks.rate_kinds.get(site, RateKind.INSTANTANEOUS)
+        found = [oriented_to_north(one.track, kind) for one in tracks.oriented(recording, site, block)]
+        sides.append([one for one in found if one is not None])
+    return _paired(sides[0], sides[1], lag_s)
+
+
+def _place(
+    into: FloatArray, values: FloatArray, pair: Pair, time_s: FloatArray, clock_offset_s: float, block: Block
+) -> None:
+    """Write a pair's values at the stamps they belong to, where both sensors were heard."""
+    start_s = float(pair.time_s[0]) + clock_offset_s
+    first = int(np.searchsorted(time_s, max(start_s - 0.25 * pair.step_s, block.core_from_s)))
+    end_s = float(pair.time_s[-1]) + clock_offset_s
+    last = int(np.searchsorted(time_s, min(end_s + 0.25 * pair.step_s, block.core_to_s)))
+    if last <= first:
+        return
+    position = np.clip((time_s[first:last] - start_s) / pair.step_s, 0, len(values) - 1)
+    whole = np.round(position)
+    position = np.where(np.abs(position - whole) < 1e-3, whole, position)
+    is_heard = pair.is_measured[np.floor(position).astype(int)] & pair.is_measured[np.ceil(position).astype(int)]
+    placed = at_positions(values[:, None], position)[:, 0]
+    into[first:last] = np.where(is_heard, placed, into[first:last])
+
+
+def unwrap_over_gaps(angle_rad: FloatArray) -> None:
+    """Take jumps of whole turns out of an angle (n,) with gaps, in place."""
+    heard = np.flatnonzero(np.isfinite(angle_rad))
+    if len(heard):
+        angle_rad[heard] = np.unwrap(angle_rad[heard])

@@ -1,0 +1,72 @@
+"""The paper's two joint angles: from orientations (eq 10), and from rates and accelerations alone (eqs 11 to 15).
+
+Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, section 3.2. All angles share sign and zero: alpha is the signed
+angle about the proximal joint axis from the distal to the proximal x axis, the opposite of the twist.
+"""
+
+import numpy as np
+
+from core.calibration.coincidence import lever_matrix
+from core.pair import Pair
+from core.published.signs import in_plane
+from core.rotations import joint_frame
+from core.samples import FloatArray
+
+MIN_IN_PLANE_M_S2 = 2.0  # below, the direction of the shifted acceleration means nothing
+DEFAULT_TAU_S = 2.0
+START_S = 2.0  # the first accelerations, whose median starts the fusion
+
+
+def angle_from_orientations(
+    earth_from_1: FloatArray, earth_from_2: FloatArray, j1: FloatArray, j2: FloatArray
+) -> FloatArray:
+    """Eq 10: signed angle (n,) about R1 j1 from R2 x2 to R1 x1, for rotations (n, 3, 3) into one common earth."""
+    x1, x2 = earth_from_1 @ joint_frame(j1)[0], earth_from_2 @ joint_frame(j2)[0]
+    about = earth_from_1 @ j1
+    sine = np.sum(np.cross(x2, x1) * about, axis=1)
+    return np.asarray(np.arctan2(sine, np.sum(x1 * x2, axis=1)))
+
+
+def angle_from_rates(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatArray, step_s: float) -> FloatArray:
+    """Eq 11 by the trapezoid rule: drifting angle (n,) from the first sample on."""
+    rate = g1 @ j1 - g2 @ j2
+    return np.concatenate([[0.0], np.cumsum(0.5 * step_s * (rate[1:] + rate[:-1]))])
+
+
+def angle_from_accelerations(pair: Pair, j1: FloatArray, j2: FloatArray, o1: FloatArray, o2: FloatArray) -> FloatArray:
+    """Eqs 12 to 14: angle (n,) between the shifted accelerations in the joint plane, NaN where it means nothing."""
+    z1 = in_plane(pair.a1 - np.einsum("nij,j->ni", lever_matrix(pair.g1, pair.dg1), o1), j1)
+    z2 = in_plane(pair.a2 - np.einsum("nij,j->ni", lever_matrix(pair.g2, pair.dg2), o2), j2)
+    angle = -np.angle(z1 * np.conj(z2))
+    with np.errstate(invalid="ignore"):
+        angle[~(np.minimum(np.abs(z1), np.abs(z2)) > MIN_IN_PLANE_M_S2)] = np.nan
+    return angle
+
+
+def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: float, tau_s: float) -> FloatArray:
+    """Eq 15 with lambda = 1 - exp(-dt/tau): angle (n,), the rates' on short, the accelerations' on long times.
+
+    A constant bias b of the relative rate leaves a steady offset b dt (1 - lambda)/lambda, close to b tau. The filter
+    runs on the unwrapped difference of the two angles, so that a turn through 180 degrees cannot pull it over; where
+    the accelerations tell nothing it holds.
+    """
+    from scipy.signal import lfilter  # imported late, it is slow
+
+    told = np.flatnonzero(np.isfinite(from_accelerations))
+    if len(told) == 0:
+        return np.full_like(from_rates, np.nan)
+    difference = np.unwrap(from_accelerations[told] - from_rates[told])
+    held = np.searchsorted(told, np.arange(len(from_rates)), side="right") - 1
+    difference_held = difference[np.maximum(held, 0)]
+    weight = 1 - np.exp(-step_s / tau_s)
+    start = float(np.median(difference_held[: max(1, round(START_S / step_s))]))
+    smooth, _ = lfilter([weight], [1.0, weight - 1.0], difference_held, zi=[(1 - weight) * start])
+    return np.asarray(from_rates + smooth)
+
+
+def published_angle(
+    pair: Pair, j1: FloatArray, j2: FloatArray, o1: FloatArray, o2: FloatArray, tau_s: float = DEFAULT_TAU_S
+) -> FloatArray:
+    """Eq 15 (n,) of a pair of sensors, radians."""
+    from_rates = angle_from_rates(pair.g1, pair.g2, j1, j2, pair.step_s)
+    return fused_angle(from_rates, angle_from_accelerations(pair, j1, j2, o1, o2), pair.step_s, tau_s)

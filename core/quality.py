@@ -1,0 +1,166 @@
+"""Are the samples what they should be? Every recording is looked at before anything is computed from it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.body import Joint, Site
+from core.calibration.rest import rest_of
+from core.findings import Finding, Severity
+from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_S, MIN_STRETCH_SAMPLES, nominal_step_s
+
+MIN_LOSS_PERCENT = 0.5  # told from here on
+GRAVE_LOSS_PERCENT = 20.0
+GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
+PLAUSIBLE_M_S2 = (5.0, 20.0)
+MAX_RATE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
+CLIPPED_RUN = 3  # equal extreme values in a row
+MIN_CLIPPED_PERCENT = 0.05
+CLOCK_OFFSET_S = 5.0
+CLOCK_AGREEMENT_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Quality:
+    """Findings, and which sites of which recordings cannot be used at all."""
+
+    findings: tuple[Finding, ...]
+    unusable: frozenset[tuple[str, Site]]
+
+
+def look_at(session: Session) -> Quality:
+    """Look at every kept recording."""
+    findings: list[Finding] = []
+    unusable: set[tuple[str, Site]] = set()
+    for recording in session.recordings:
+        if not recording.is_kept:
+            findings.append(Finding("recording_discarded", Severity.INFO, recording.name))
+            continue
+        for site, found in _by_site(recording):
+            findings.append(found)
+            if found.severity is Severity.GRAVE:
+                unusable.add((recording.name, site))
+        for sites, found in [*_same_data(recording), *_clock_offsets(recording)]:
+            findings.append(found)
+            unusable.update((recording.name, site) for site in sites)
+    findings.extend(_missing_sites(session))
+    return Quality(tuple(findings), frozenset(unusable))
+
+
+def _by_site(recording: Recording) -> list[tuple[Site, Finding]]:
+    found = []
+    for site, block in recording.imu.items():
+        where = f"{recording.name}, {site}"
+        for key, severity, numbers in _about_block(block, recording.kind):
+            found.append((site, Finding(key, severity, where, numbers)))
+    return found
+
+
+About = tuple[str, Severity, dict[str, float | int | str]]
+
+
+def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
+    is_there = np.isfinite(block.gyr_rad_s).all(axis=1) & np.isfinite(block.acc_m_s2).all(axis=1)
+    heard = int(np.count_nonzero(is_there))
+    time_s = block.time_s[is_there]
+    if heard < MIN_STRETCH_SAMPLES or time_s[-1] - time_s[0] < MIN_STRETCH_S:
+        return [("too_few_samples", Severity.GRAVE, {"samples": heard})]
+    about: list[About] = list(_about_gaps(block, time_s))
+    force = np.linalg.norm(block.acc_m_s2[is_there], axis=1)
+    rate = np.linalg.norm(block.gyr_rad_s[is_there], axis=1)
+    median_force, high_rate = float(np.median(force)), float(np.quantile(rate, 0.99))
+    if not np.any(force) or (not np.any(rate) and kind is not RecordingKind.STANDING):
+        about.append(("all_zero", Severity.GRAVE, {}))
+    elif GRAVITY_RANGE_G[0] < median_force < GRAVITY_RANGE_G[1]:
+        about.append(("acc_in_g", Severity.GRAVE, {"median_m_s2": round(median_force, 2)}))
+    elif not PLAUSIBLE_M_S2[0] < median_force < PLAUSIBLE_M_S2[1]:
+        about.append(("acc_implausible", Severity.GRAVE, {"median_m_s2": round(median_force, 2)}))
+    if high_rate > MAX_RATE_RAD_S:
+        about.append(("rate_in_deg_s", Severity.GRAVE, {"p99_rad_s": round(high_rate, 1)}))
+    clipped = max(_clipped_percent(block.acc_m_s2[is_there]), _clipped_percent(block.gyr_rad_s[is_there]))
+    if clipped > MIN_CLIPPED_PERCENT:
+        about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
+    if kind is RecordingKind.STANDING and rest_of(block) is None:
+        about.append(("moved_while_standing", Severity.WARNING, {}))
+    return about
+
+
+def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
+    step_s = nominal_step_s(heard_s)
+    steps = np.diff(heard_s)
+    missing = float(np.sum(np.maximum(np.round(steps / step_s) - 1, 0)))
+    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
+    percent = 100 * missing / (missing + len(heard_s))
+    longest_s = float(np.max(steps))
+    count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
+    if percent < MIN_LOSS_PERCENT and count == 0:
+        return []
+    severity = Severity.WARNING if percent < GRAVE_LOSS_PERCENT else Severity.GRAVE
+    numbers: dict[str, float | int | str] = {
+        "count": count,
+        "missing_percent": round(percent, 1),
+        "longest_s": round(longest_s, 3),
+    }
+    # a grave loss is told, but what was heard is still used
+    return [("gaps" if severity is Severity.WARNING else "many_gaps", Severity.WARNING, numbers)]
+
+
+def _clipped_percent(values: FloatArray) -> float:
+    worst = 0.0
+    for k in range(values.shape[1]):
+        v = values[:, k]
+        at_end = (v == v.max()) | (v == v.min())
+        if np.ptp(v) == 0.0:
+            continue
+        runs = at_end.copy()
+        for shift in range(1, CLIPPED_RUN):
+            runs[shift:] &= at_end[:-shift]
+        runs[: CLIPPED_RUN - 1] = False
+        worst = max(worst, 100 * np.count_nonzero(runs) / len(v))
+    return worst
+
+
+def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+    found: list[tuple[tuple[Site, ...], Finding]] = []
+    prints: dict[bytes, Site] = {}
+    for site, block in recording.imu.items():
+        if len(block) < MIN_STRETCH_SAMPLES or not np.any(np.nan_to_num(block.gyr_rad_s)):
+            continue
+        head = slice(0, 2000)  # two sensors never agree to the last digit for so long
+        key = block.gyr_rad_s[head].tobytes() + block.acc_m_s2[head].tobytes()
+        if key in prints:
+            pair = (prints[key], site)
+            where = f"{recording.name}, {pair[0]}, {pair[1]}"
+            found.append((pair, Finding("same_data", Severity.GRAVE, where)))
+        prints.setdefault(key, site)
+    return found
+
+
+def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+    """A site whose start and end both lie equally far from the others' has a clock of its own."""
+    spans = {s: (float(b.time_s[0]), float(b.time_s[-1])) for s, b in recording.imu.items() if len(b)}
+    if len(spans) < 2:
+        return []
+    start, end = (float(np.median([span[k] for span in spans.values()])) for k in (0, 1))
+    if len(spans) == 2:  # two clocks that disagree: the proximal one is taken as right
+        start, end = next(iter(spans.values()))
+    found: list[tuple[tuple[Site, ...], Finding]] = []
+    for site, (first, last) in spans.items():
+        offset_s = 0.5 * (first - start + last - end)
+        if abs(offset_s) > CLOCK_OFFSET_S and abs((last - end) - (first - start)) < CLOCK_AGREEMENT_S:
+            numbers = {"offset_s": round(offset_s, 1)}
+            where = f"{recording.name}, {site}"
+            found.append(((site,), Finding("clock_offset", Severity.GRAVE, where, numbers)))
+    return found
+
+
+def _missing_sites(session: Session) -> list[Finding]:
+    """A neighbour without which a worn sensor gives no joint."""
+    worn = {site for recording in session.recordings if recording.is_kept for site in recording.imu}
+    findings = []
+    for joint in Joint:
+        missing = {joint.proximal, joint.distal} - worn
+        if len(missing) == 1 and {joint.proximal.segment, joint.distal.segment} - {s.segment for s in missing}:
+            findings.append(Finding("missing_site", Severity.INFO, str(missing.pop()), {"joint": str(joint)}))
+    return findings

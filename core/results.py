@@ -1,0 +1,109 @@
+"""What an analysis finds: calibrations, angles, findings."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from core.body import Joint
+from core.findings import Finding
+from core.samples import FloatArray, RecordingKind
+
+
+class Method(StrEnum):
+    ROBUST = "robust"
+    PUBLISHED = "published"
+
+
+class AxisSource(StrEnum):
+    FREE_MOTION = "free_motion"
+    WALKING = "walking"
+    POOLED = "pooled"
+    HINGE = "hinge"
+    REFINED = "refined"
+
+
+class ZeroKind(StrEnum):
+    STANDING = "standing"
+    GONIOMETER = "goniometer"
+    NONE = "none"
+
+
+@dataclass(frozen=True, slots=True)
+class JointCalibration:
+    """How two sensors sit on one joint, and how sure that is. None: could not be found.
+
+    Axes are unit vectors, centres point from the joint to the sensor (eq 7), each in its own sensor's axes.
+    `clinical_sign` (1 or -1) turns the twist about the axes (distal against proximal) into flexion or dorsiflexion;
+    where `is_sign_certain` is False it is no more than the likelier one. `zero_rad` is subtracted from the twist
+    before the sign, `offset_rad` (the goniometer's value) added after it.
+    """
+
+    joint: Joint
+    method: Method
+    axis_proximal: FloatArray
+    axis_distal: FloatArray
+    axis_source: AxisSource
+    axis_sd_rad: float | None
+    centre_proximal_m: FloatArray | None
+    centre_distal_m: FloatArray | None
+    centre_sd_m: float | None
+    sign_margin: float | None
+    clinical_sign: int
+    is_sign_certain: bool
+    clinical_sign_margin: float | None
+    lag_s: float
+    lag_sd_s: float | None
+    hinge_residual_rad_s: float | None
+    is_hinge: bool
+    gyro_bias_proximal_rad_s: FloatArray | None
+    gyro_bias_distal_rad_s: FloatArray | None
+    zero: ZeroKind
+    zero_rad: float
+    offset_rad: float
+    standing_from: str | None
+    free_motion_from: str | None
+    walks_from: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """The joints' calibrations that hold for `walks` (names of recordings)."""
+
+    walks: tuple[str, ...]
+    joints: Mapping[Joint, JointCalibration]
+
+
+@dataclass(frozen=True, slots=True)
+class JointAngle:
+    """One joint's flexion over one recording; NaN in gaps. All arrays (n,), radians, clinical sign.
+
+    `angle` is the result (the twist of the relative orientation; with the published method eq 15), `published` eq (15),
+    `orientation` eq (10) from the device's quaternions or from VQF with magnetometer, None where there is neither.
+    """
+
+    angle_rad: FloatArray
+    sd_rad: FloatArray
+    published_rad: FloatArray
+    orientation_rad: FloatArray | None
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingAnalysis:
+    """Angles of one recording, all on the clock `time_s` (n,)."""
+
+    name: str
+    folder: str
+    kind: RecordingKind
+    time_s: FloatArray
+    joints: Mapping[Joint, JointAngle]
+
+
+@dataclass(frozen=True, slots=True)
+class Analysis:
+    """Everything one session tells. `calibrations` one per span of validity, in order of time."""
+
+    method: Method
+    is_simulated: bool
+    calibrations: tuple[Calibration, ...]
+    recordings: tuple[RecordingAnalysis, ...]
+    findings: tuple[Finding, ...] = field(default=())
