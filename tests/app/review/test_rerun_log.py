@@ -1,0 +1,126 @@
+"""Does the Rerun log hold every sample and angle, the same bytes each time, and nobody's name?"""
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rerun.chunk import Chunk, RrdReader
+
+from app.review import rerun_log
+from app.review.rerun_log import write_log
+from core.body import Joint, Site
+from core.results import Analysis, JointAngle, Method, RecordingAnalysis
+from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
+
+# a log without its table of contents is read from one end to the other, and Rerun says so
+pytestmark = pytest.mark.filterwarnings("ignore:RRD file has no footer")
+
+
+def block(n: int, seed: int) -> ImuBlock:
+    rng = np.random.default_rng(seed)
+    gyr_rad_s = rng.normal(size=(n, 3))
+    gyr_rad_s[n // 2] = np.nan
+    return ImuBlock(f"serial {seed}", 5 + np.arange(n) / 100, gyr_rad_s, rng.normal(size=(n, 3)))
+
+
+def visit(n: int = 50) -> tuple[Session, Analysis]:
+    thigh, shank = Site.LEFT_THIGH, Site.LEFT_SHANK
+    recordings = (
+        Recording("Standing of Mr Miller", RecordingKind.STANDING, "miller", {thigh: block(n, 1), shank: block(n, 2)}),
+        Recording("walk Miller 1", RecordingKind.WALKING, "w1", {thigh: block(n, 3), shank: block(n, 4)}),
+        Recording("walk Miller 2", RecordingKind.WALKING, "w2", {thigh: block(n, 5)}, is_kept=False),
+        Recording("walk Miller 3", RecordingKind.WALKING, "w3", {thigh: block(n, 6), shank: block(n, 7)}),
+    )
+    rng = np.random.default_rng(0)
+    analysed = tuple(
+        RecordingAnalysis(
+            r.name,
+            r.folder,
+            r.kind,
+            r.imu[thigh].time_s,
+            {Joint.LEFT_KNEE: JointAngle(rng.normal(size=n), np.full(n, 0.1), rng.normal(size=n), None)},
+        )
+        for r in recordings
+        if r.kind is RecordingKind.WALKING and r.is_kept
+    )
+    session = Session(recordings, Patient(code="Miller"), operator="Miller", notes="Miller")
+    return session, Analysis(Method.ROBUST, False, (), analysed)
+
+
+def curve(path: Path, entity: str, timeline: str) -> tuple[FloatArray, FloatArray]:
+    """Read one entity on one timeline: seconds and values (n, k)."""
+    chunks: list[Chunk] = [c for c in RrdReader(path).stream() if c.entity_path == entity and not c.is_static]
+    batches = [c.to_record_batch() for c in chunks if timeline in c.timeline_names]
+    time_s = [batch.column(timeline).cast("int64").to_numpy() / 1e9 for batch in batches]
+    values = [np.array(batch.column("Scalars:scalars").to_pylist(), dtype=float) for batch in batches]
+    return np.concatenate(time_s), np.concatenate(values)
+
+
+def test_every_sample_and_angle_comes_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(rerun_log, "ROWS_PER_CHUNK", 20)
+    session, analysis = visit()
+    write_log(session, analysis, tmp_path / "session.rrd")
+    walk, angles = session.recordings[1], analysis.recordings[0]
+
+    time_s, gyr_rad_s = curve(tmp_path / "session.rrd", "/raw/left_shank/angular_rate", "walking_1")
+    np.testing.assert_allclose(time_s, walk.imu[Site.LEFT_SHANK].time_s, rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(gyr_rad_s, walk.imu[Site.LEFT_SHANK].gyr_rad_s)
+
+    angle = angles.joints[Joint.LEFT_KNEE]
+    time_s, result_deg = curve(tmp_path / "session.rrd", "/angles/left_knee/result", "walking_1")
+    np.testing.assert_allclose(time_s, angles.time_s, rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(result_deg[:, 0], np.rad2deg(angle.angle_rad))
+    _, band_deg = curve(tmp_path / "session.rrd", "/angles/left_knee/certainty", "walking_1")
+    np.testing.assert_allclose(band_deg[:, 1] - band_deg[:, 0], 4 * np.rad2deg(angle.sd_rad))
+
+
+def test_a_recording_is_a_timeline_and_a_discarded_one_is_not_there(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")
+    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    assert {name for chunk in chunks for name in chunk.timeline_names} == {"standing_1", "walking_1", "walking_2"}
+    result = [chunk.timeline_names for chunk in chunks if chunk.entity_path == "/angles/left_knee/result"]
+    assert sorted(names[0] for names in result if names) == ["walking_1", "walking_2"]
+
+
+def test_the_layout_is_in_the_file(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")
+    reader = RrdReader(tmp_path / "session.rrd")
+    (layout,) = reader.blueprints()
+    assert layout.application_id == reader.recordings()[0].application_id == rerun_log.APPLICATION
+    text = "".join(str(chunk.to_record_batch().to_pydict()) for chunk in reader.stream(store=layout))
+    for part in ("Angles", "Angular rate", "Specific force", "/angles/left_knee", "walking_1"):
+        assert f"'{part}'" in text
+
+
+def test_two_writings_are_the_same_bytes(tmp_path: Path) -> None:
+    for name in ("first", "second"):
+        write_log(*visit(), tmp_path / name)
+        time.sleep(0.002)  # the clock must have moved on for the bytes to differ
+    assert (tmp_path / "first").read_bytes() == (tmp_path / "second").read_bytes()
+
+
+def test_no_name_and_no_path_is_inside(tmp_path: Path) -> None:
+    session, analysis = visit()
+    write_log(session, analysis, tmp_path / "session.rrd")
+    reader = RrdReader(tmp_path / "session.rrd")
+    stores = [*reader.recordings(), *reader.blueprints()]
+    text = "".join(c.format(width=10_000) for store in stores for c in reader.stream(store=store))
+    for hidden in ("iller", "serial", tmp_path.name, "tmp"):
+        assert hidden not in text
+        assert hidden.encode() not in (tmp_path / "session.rrd").read_bytes()
+
+
+def test_a_session_without_joints_or_recordings_is_a_log_all_the_same(tmp_path: Path) -> None:
+    session, _ = visit()
+    nothing = Analysis(Method.ROBUST, False, (), ())
+    write_log(session, nothing, tmp_path / "raw.rrd")
+    assert len(curve(tmp_path / "raw.rrd", "/raw/left_thigh/specific_force", "walking_1")[0]) == 50
+    write_log(replace(session, recordings=()), nothing, tmp_path / "empty.rrd")
+    assert len(RrdReader(tmp_path / "empty.rrd").recordings()) == 1
+
+
+def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match="missing"):
+        write_log(*visit(), tmp_path / "missing" / "session.rrd")
