@@ -161,31 +161,36 @@ def _calibrate(
     calibrated: dict[Basis, JointCalibration] = {}
     for basis in sorted(identified, key=lambda b: not b.joint.is_knee):
         names = [name for (name, joint), other in bases.items() if other == basis and joint is basis.joint]
-        twists = _telling(tracks, names, basis.joint, measured)
+        twists, is_walking = _telling(tracks, names, basis.joint, measured)
         knee_basis = bases.get((names[0], knee_of(basis.joint.side)))
         knee = calibrated.get(knee_basis) if knee_basis else None
-        calibrated[basis] = _calibration(tracks, identified[basis], twists, knee, method)
+        calibrated[basis] = _calibration(tracks, identified[basis], twists, is_walking, knee, method)
     return {basis: calibrated[basis] for basis in identified}
 
 
 def _telling(
     tracks: SensorTracks, names: list[str], joint: Joint, measured: dict[tuple[str, Joint], Twist]
-) -> list[Twist]:
-    """The walks, which show the way a joint bends; without any, the free motion."""
+) -> tuple[list[Twist], bool]:
+    """The walks, which show the way a joint bends; without any, the free motion. And whether these are walks."""
     kinds = {recording.name: recording.kind for recording in tracks.span}
     walks = [name for name in names if kinds[name] is RecordingKind.WALKING]
-    return [measured[name, joint] for name in walks or names if (name, joint) in measured]
+    return [measured[name, joint] for name in walks or names if (name, joint) in measured], bool(walks)
 
 
 def _calibration(
-    tracks: SensorTracks, found: Identified, twists: list[Twist], knee: JointCalibration | None, method: Method
+    tracks: SensorTracks,
+    found: Identified,
+    twists: list[Twist],
+    is_walking: bool,
+    knee: JointCalibration | None,
+    method: Method,
 ) -> JointCalibration:
     session, basis = tracks.session, found.basis
     joint = basis.joint
     standing = _standing_twist(tracks, found)
     moving = np.concatenate([t.moving_twist for t in twists]) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
-    sign = _clinical_sign(found, twists, zero_rad, knee)
+    sign = _clinical_sign(found, twists, is_walking, standing, knee)
     turn = session.turned_sign.get(joint, 1)
     zero = (
         ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
@@ -235,18 +240,20 @@ def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
 
 
 def _clinical_sign(
-    found: Identified, twists: list[Twist], zero_rad: float, knee: JointCalibration | None
+    found: Identified, twists: list[Twist], is_walking: bool, standing: float | None, knee: JointCalibration | None
 ) -> ClinicalSign:
     if not twists:
         return ClinicalSign(1, 0.0, False)
     if found.basis.joint.is_knee:
+        zero_rad = float(np.median(np.concatenate([t.moving_twist for t in twists]))) if standing is None else standing
         bend = np.concatenate([wrapped_to_zero(t.moving_twist - zero_rad) for t in twists])
-        return knee_sign(bend, -np.concatenate([t.moving_rate_2 for t in twists]))
+        shank_rate = -np.concatenate([t.moving_rate_2 for t in twists])
+        return knee_sign(bend, shank_rate, is_walking, standing is not None)
     shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
     if knee is None:
-        return ankle_sign(None, 0.0, shank_rate)
+        return ankle_sign(None, 0.0, shank_rate, is_walking)
     found_knee = ClinicalSign(knee.clinical_sign, knee.clinical_sign_margin or 0.0, knee.is_sign_certain)
-    return ankle_sign(found_knee, float(knee.axis_distal @ found.geometry.axis_1), shank_rate)
+    return ankle_sign(found_knee, float(knee.axis_distal @ found.geometry.axis_1), shank_rate, is_walking)
 
 
 def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:
