@@ -17,6 +17,7 @@ from core.joint_findings import about_angles, about_joint, about_missing_joints,
 from core.measure import Twist, measure
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at
+from core.rate_kind import find_rate_kind
 from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
 from core.samples import FloatArray, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
@@ -63,7 +64,9 @@ def analyse(
     spans = spans_of_validity(session)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
-        tracks = SensorTracks(session, span, quality.unusable)
+        rate_kind, told = find_rate_kind(session, span, quality.unusable)
+        findings += told
+        tracks = SensorTracks(session, span, quality.unusable, rate_kind)
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)

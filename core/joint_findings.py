@@ -9,6 +9,7 @@ from core.calibration.identify import MAX_ELEVATION_RAD
 from core.findings import Finding, Severity
 from core.identified import Identified
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
+from core.rotations import wrap
 from core.samples import RecordingKind, Session
 
 
@@ -87,9 +88,9 @@ def about_angles(recording: RecordingAnalysis) -> list[Finding]:
     """Where the result and the published angle part."""
     findings = []
     for joint, angle in recording.joints.items():
-        difference = angle.angle_rad - angle.published_rad
+        difference = wrap(angle.angle_rad - angle.published_rad)
         if np.isfinite(difference).any():
-            rms = float(np.sqrt(np.nanvar(difference)))
+            rms = float(np.sqrt(np.nanmean(wrap(difference - np.nanmedian(difference)) ** 2)))
             if rms > MAX_DIFFERENCE_RAD:
                 numbers = {"difference_deg": round(float(np.rad2deg(rms)), 1)}
                 findings.append(Finding("published_differs", Severity.INFO, f"{recording.name}, {joint}", numbers))

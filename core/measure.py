@@ -14,7 +14,7 @@ from core.calibration.heading import heading_over
 from core.orientation import oriented_to_north
 from core.pair import OrientedTrack, Pair, pair_up
 from core.published.angles import angle_from_orientations, published_angle
-from core.samples import FloatArray, RateKind, Recording
+from core.samples import FloatArray, Recording
 from core.sensors import SensorTracks
 from core.tracks import Block, at_positions
 
@@ -112,8 +112,7 @@ def measure(
 def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
     sides = []
     for site in (joint.proximal, joint.distal):
-        kind = tracks.rate_kinds.get(site, RateKind.INSTANTANEOUS)
-        found = [oriented_to_north(one.track, kind) for one in tracks.oriented(recording, site, block)]
+        found = [oriented_to_north(one.track) for one in tracks.oriented(recording, site, block)]
         sides.append([one for one in found if one is not None])
     return _paired(sides[0], sides[1], lag_s)
 

@@ -15,35 +15,39 @@ from core.samples import FloatArray, RateKind
 from core.tracks import Track
 
 
-def interval_rates(gyr_rad_s: FloatArray, rate_kind: RateKind) -> FloatArray:
-    """Mean rates (n, 3) over the interval before each sample."""
-    if rate_kind is RateKind.AVERAGED:
-        return gyr_rad_s
-    mean = gyr_rad_s.copy()
-    mean[1:] += gyr_rad_s[:-1]
-    mean[1:] *= 0.5
-    return mean
-
-
 def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> OrientedTrack:
-    """Take the gyroscope's bias (3,) off and find the orientation; its heading starts anywhere and may drift."""
-    unbiased = replace(track, gyr_rad_s=track.gyr_rad_s - gyro_bias_rad_s)
-    return OrientedTrack(unbiased, _filtered(unbiased, rate_kind, None)["quat6D"])
+    """Take the gyroscope's bias (3,) off and find the orientation; its heading starts anywhere and may drift.
+
+    The rates of the result stand for the instants of their stamps, whatever the device sent.
+    """
+    rates = track.gyr_rad_s - gyro_bias_rad_s
+    if rate_kind is RateKind.AVERAGED:
+        intervals: FloatArray = rates
+        instants: FloatArray = rates.copy()
+        instants[:-1] = 0.5 * (rates[:-1] + rates[1:])
+    else:
+        intervals, instants = _before(rates), rates
+    turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
+    return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
 
 
-def oriented_to_north(track: Track, rate_kind: RateKind) -> OrientedTrack | None:
+def oriented_to_north(track: Track) -> OrientedTrack | None:
     """The device's own orientation, else one with a heading from the magnetic field, else None.
 
-    `track` has its gyroscope bias removed already.
+    `track` is one that `oriented` returned.
     """
     if track.q_device is not None and np.isfinite(track.q_device).all():
         return OrientedTrack(track, track.q_device)
     if track.mag is not None and np.isfinite(track.mag).all():
-        return OrientedTrack(track, _filtered(track, rate_kind, np.ascontiguousarray(track.mag))["quat9D"])
+        rates, acc, mag = _before(track.gyr_rad_s), track.acc_m_s2, track.mag
+        turned = offlineVQF(*(np.ascontiguousarray(v) for v in (rates, acc, mag)), track.step_s)
+        return OrientedTrack(track, turned["quat9D"])
     return None
 
 
-def _filtered(track: Track, rate_kind: RateKind, mag: FloatArray | None) -> dict[str, FloatArray]:
-    gyr = np.ascontiguousarray(interval_rates(track.gyr_rad_s, rate_kind))
-    filtered: dict[str, FloatArray] = offlineVQF(gyr, np.ascontiguousarray(track.acc_m_s2), mag, track.step_s)
-    return filtered
+def _before(rates: FloatArray) -> FloatArray:
+    """Mean of each rate and its predecessor: the rate over the interval before each sample."""
+    mean = rates.copy()
+    mean[1:] += rates[:-1]
+    mean[1:] *= 0.5
+    return mean

@@ -1,6 +1,5 @@
 """Each sensor's samples without gyroscope bias, and its orientation: found once, shared by its two joints."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -24,12 +23,15 @@ class GyroBias:
 
 @dataclass(slots=True)
 class SensorTracks:
-    """Oriented tracks of one span of validity, remembered while they are small."""
+    """Oriented tracks of one span of validity, remembered while they are small.
+
+    `rate_kind` holds for sensors that do not tell theirs.
+    """
 
     session: Session
     span: tuple[Recording, ...]
     unusable: frozenset[tuple[str, Site]]
-    rate_kinds: Mapping[Site, RateKind] = field(default_factory=dict)
+    rate_kind: RateKind
     _tracks: dict[tuple[str, Site, int], list[OrientedTrack]] = field(default_factory=dict)
     _spans: dict[str, tuple[float, float]] = field(default_factory=dict)
     _rests: dict[tuple[str, Site], Rest | None] = field(default_factory=dict)
@@ -72,7 +74,8 @@ class SensorTracks:
             for old in [k for k in self._tracks if k[2] > 0 and k[2] != block.number]:
                 del self._tracks[old]
             bias = self.gyro_bias(recording, site).rad_s
-            kind = self.rate_kinds.get(site, RateKind.INSTANTANEOUS)
+            info = self.session.sensors.get(site)
+            kind = (info.rate_kind if info else None) or self.rate_kind
             tracks = even_tracks(recording.imu[site], block.from_s, block.to_s)
             self._tracks[key] = [oriented(track, kind, bias) for track in tracks]
         return self._tracks[key]

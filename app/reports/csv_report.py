@@ -7,8 +7,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from core.analysis import JointAngle, RecordingAnalysis
 from core.body import Joint
+from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray
 
 ROWS_PER_BLOCK = 100_000  # some 20 MB of table: ten hours pass through without ever being in memory as text

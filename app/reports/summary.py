@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from app.wording import sentence
-from core.analysis import Analysis, JointCalibration
 from core.body import Joint
 from core.findings import Finding
+from core.results import Analysis, JointCalibration
 from core.samples import FloatArray, RecordingKind
 
 FORMAT = "gaitwright-analysis/1"
@@ -68,6 +68,7 @@ def _joint(found: JointCalibration) -> dict[str, Any]:
         "centre_sd_mm": _number(found.centre_sd_m, 1000),
         "sign_margin": _number(found.sign_margin),
         "clinical_sign": int(found.clinical_sign),
+        "is_sign_certain": bool(found.is_sign_certain),
         "clinical_sign_margin": _number(found.clinical_sign_margin),
         "lag_s": _number(found.lag_s),
         "lag_sd_s": _number(found.lag_sd_s),

@@ -82,15 +82,24 @@ def identify_joint(
     data = moving_data(pairs_at(0.0))
     if data is None:
         return None
-    fits, margin = decide(data, down_1)
-    lag = find_lag(data.thinned(DECISION_SAMPLES), fits.knots_rad[0])
+    decision = decide(data)
+    lag = find_lag(data.thinned(DECISION_SAMPLES), decision.best.knots_rad[0])
     if lag.lag_s:
         data = moving_data(pairs_at(lag.lag_s)) or data
-        fits, margin = decide(data, down_1)
-    return _refined(data, fits, margin, lag, is_knee, is_from_walking, down_1)
+        decision = decide(data)
+    return _refined(data, decision, lag, is_knee, is_from_walking, down_1)
 
 
-def decide(data: Datasets, down_1: FloatArray | None) -> tuple[Candidates, float]:
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """The best hypothesis (one candidate), the logarithm of its cost, and its best rival's cost over its own."""
+
+    best: Candidates
+    log_cost: float
+    margin: float
+
+
+def decide(data: Datasets) -> Decision:
     """The best hypothesis about axes and heading, and how much better it is than its best rival.
 
     Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates
@@ -105,7 +114,7 @@ def decide(data: Datasets, down_1: FloatArray | None) -> tuple[Candidates, float
     best = int(np.argmin(cost))
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
     margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
-    return found.pick(best), margin
+    return Decision(found.pick(best), float(cost[best]), margin)
 
 
 def _richest_stretches(data: Datasets) -> list[int]:
@@ -124,14 +133,13 @@ def _is_rival(found: Candidates, best: int, k: int) -> bool:
 
 def _refined(
     data: Datasets,
-    start: Candidates,
-    margin: float,
+    decision: Decision,
     lag: Lag,
     is_knee: bool,
     is_from_walking: bool,
     down_1: FloatArray | None,
 ) -> Identification:
-    many = data.thinned(POLISH_SAMPLES)
+    many, start = data.thinned(POLISH_SAMPLES), decision.best
     fit = polish(many, start, POLISH_STEPS, *residual_scales(many, start))
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
     residual = hinge_residual(many, j1, j2)
@@ -167,7 +175,7 @@ def _refined(
         axis_sd_rad=axis_sd,
         centre=centre,
         centre_sd_m=centre_sd_m(centre, j1, j2, is_hinge, is_knee),
-        sign_margin=margin,
+        sign_margin=decision.margin,
         lag=lag,
         hinge_residual_rad_s=residual,
         is_hinge=is_hinge,

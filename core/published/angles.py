@@ -9,11 +9,12 @@ import numpy as np
 from core.calibration.coincidence import lever_matrix
 from core.pair import Pair
 from core.published.signs import in_plane
-from core.rotations import joint_frame
+from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
 
 MIN_IN_PLANE_M_S2 = 2.0  # below, the direction of the shifted acceleration means nothing
 DEFAULT_TAU_S = 2.0
+TREND_S = 0.5  # over which the direction of the difference is followed
 START_S = 2.0  # the first accelerations, whose median starts the fusion
 
 
@@ -55,13 +56,28 @@ def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: 
     told = np.flatnonzero(np.isfinite(from_accelerations))
     if len(told) == 0:
         return np.full_like(from_rates, np.nan)
-    difference = np.unwrap(from_accelerations[told] - from_rates[told])
+    difference = unwrapped_about_trend(from_accelerations[told] - from_rates[told], step_s)
     held = np.searchsorted(told, np.arange(len(from_rates)), side="right") - 1
     difference_held = difference[np.maximum(held, 0)]
     weight = 1 - np.exp(-step_s / tau_s)
     start = float(np.median(difference_held[: max(1, round(START_S / step_s))]))
     smooth, _ = lfilter([weight], [1.0, weight - 1.0], difference_held, zi=[(1 - weight) * start])
     return np.asarray(from_rates + smooth)
+
+
+def unwrapped_about_trend(angle_rad: FloatArray, step_s: float) -> FloatArray:
+    """Whole turns taken out of a noisy angle (n,) by following its smoothed direction, not its neighbours.
+
+    From one sample to the next an impact may turn an acceleration by more than half a turn, which plain unwrapping
+    would keep for good.
+    """
+    from scipy.signal import lfilter
+
+    weight = 1 - np.exp(-step_s / TREND_S)
+    direction = np.exp(1j * angle_rad)
+    trend, _ = lfilter([weight], [1.0, weight - 1.0], direction, zi=[(1 - weight) * direction[0]])
+    trend_rad = np.unwrap(np.angle(trend))
+    return np.asarray(trend_rad + wrap(angle_rad - trend_rad))
 
 
 def published_angle(

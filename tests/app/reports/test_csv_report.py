@@ -9,8 +9,8 @@ import pytest
 
 from app.reports import csv_report
 from app.reports.csv_report import write_angles
-from core.analysis import JointAngle, RecordingAnalysis
 from core.body import Joint
+from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
 
 GOLDEN = Path(__file__).parents[2] / "golden"

@@ -8,7 +8,9 @@ import numpy as np
 import pytest
 
 from app.reports.summary import FORMAT, read_summary, summarise, write_summary
-from core.analysis import (
+from core.body import Joint
+from core.findings import Finding, Severity
+from core.results import (
     Analysis,
     AxisSource,
     Calibration,
@@ -18,8 +20,6 @@ from core.analysis import (
     RecordingAnalysis,
     ZeroKind,
 )
-from core.body import Joint
-from core.findings import Finding, Severity
 from core.samples import RecordingKind
 
 GOLDEN = Path(__file__).parents[2] / "golden"
@@ -38,6 +38,7 @@ def knee() -> JointCalibration:
         centre_sd_m=0.0125,
         sign_margin=3.5,
         clinical_sign=-1,
+        is_sign_certain=True,
         clinical_sign_margin=0.5,
         lag_s=-0.03125,
         lag_sd_s=0.0005,
@@ -64,7 +65,7 @@ def analysis() -> Analysis:
         centre_distal_m=np.array([0.1, np.nan, 0.1]),
         centre_sd_m=np.nan,
         sign_margin=np.inf,
-        clinical_sign=0,
+        is_sign_certain=False,
         zero=ZeroKind.NONE,
         standing_from=None,
         free_motion_from=None,
