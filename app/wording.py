@@ -17,12 +17,11 @@ _catalogue = gettext.translation("gaitwright", _LOCALE, languages=["en"], fallba
 
 SENTENCES = {
     # what the reader noticed
-    "unknown_key": "the key “{name}” of session.toml means nothing here. It is kept as it is.",
+    "unknown_key": "the key “{name}” means nothing here. It is kept as it is.",
     "unknown_column": "the column “{name}” means nothing here. It is kept as it is.",
     "file_left_out": (
         "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
     ),
-    "doubled_rows": "{count} rows repeat the time before them. The first of each was kept.",
     "doubled_stamps": "{count} rows repeat the time before them. The first of each was kept.",
     "infinite_values": "{count} values are infinite. They are no measurement and count as missing.",
     "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
@@ -42,26 +41,36 @@ SENTENCES = {
         "samples are missing in {count} places, {missing_percent:.1f} % in all, the longest {longest_s:.2f} s. "
         "The angles have gaps there."
     ),
+    "many_gaps": (
+        "samples are missing in {count} places, {missing_percent:.1f} % in all, the longest {longest_s:.2f} s. "
+        "Too few are left to rely on; record again, nearer to the receiver."
+    ),
     "acc_in_g": (
-        "the acceleration at rest is {median_m_s2:.2f} m/s² where 9.81 m/s² is expected, as if it were in g. "
-        "Convert the file and import it again."
+        "the median acceleration is {median_m_s2:.2f} m/s² where some 9.81 m/s² are expected, as if in g; its "
+        "joints are left out. Convert the file and import it again."
+    ),
+    "acc_implausible": (
+        "the median acceleration is {median_m_s2:.2f} m/s² where some 9.81 m/s² are expected. Check this sensor; "
+        "its joints are left out."
     ),
     "rate_in_deg_s": (
-        "angular rates reach {p99_rad_s:.0f} rad/s, as if they were in degrees per second. Convert the file and "
-        "import it again."
+        "angular rates reach {p99_rad_s:.0f} rad/s, as if in degrees per second. Convert the file and import it again."
     ),
-    "same_data": "both hold the same data. One of the two files is a copy; find the right one and import again.",
+    "same_data": (
+        "both hold the same data, so their joints are left out. Find out which file is the copy and import the "
+        "right one."
+    ),
     "clock_offset": (
-        "the clocks are {offset_s:.1f} s apart, more than can be mended. Use one receiver for all sensors, then "
-        "record again."
+        "the clock is {offset_s:.1f} s away from the others', more than can be mended. Use one receiver for all "
+        "sensors, then record again."
     ),
     "clipped": (
         "{percent:.1f} % of the samples are at the end of the sensor's range. Peaks are cut off; choose a wider range."
     ),
-    "missing_site": "no sensor data. The joints beside it have no angles.",
+    "missing_site": "no sensor was worn here. There are no {joint} angles.",
     "gyro_bias_unknown": (
-        "the sensor was never still, so its rate at rest is unknown. Angles may drift; let the patient stand for "
-        "three seconds before the next walk."
+        "the sensors were never still, so their rates at rest are unknown. Angles may drift; let the patient "
+        "stand for three seconds before the next walk."
     ),
     "moved_while_standing": "the patient moved while standing. The zero is less certain; repeat standing still.",
     "rate_kind_found": (
@@ -70,11 +79,9 @@ SENTENCES = {
     ),
     # what was found of the joints
     "no_joint": (
-        "no two neighbouring sensors, so no joint angle. Wear sensors on thigh and shank, or on shank and foot."
+        "no joint angle could be computed. Two neighbouring sensors, such as thigh and shank, must be worn and move."
     ),
-    "too_little_motion": (
-        "only {moving_s:.1f} s of motion, too little to find the joint axis. Record ten seconds of free motion."
-    ),
+    "too_little_motion": "too little motion to find the joint axis. Record ten seconds of free motion.",
     "sign_in_doubt": (
         "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or"
         " record free motion."
@@ -94,7 +101,7 @@ SENTENCES = {
         "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat"
         " free motion and bend this joint more."
     ),
-    "lag_corrected": "the farther sensor's clock was {lag_ms:.0f} ms off. It has been corrected.",
+    "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
     "not_the_same_joint": (
         "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one"
         " receiver for all sensors."
@@ -111,20 +118,22 @@ SENTENCES = {
         "the published method could not pair the directions of the two axes with certainty. Its curve may be mirrored."
     ),
     "published_differs": (
-        "the published method differs by {difference_deg:.1f}° on average. Compare the two curves before relying on it."
+        "the published method differs by {difference_deg:.1f}° in shape. Compare the two curves before relying on it."
     ),
     # what the session is made of
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
     "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
     "calibration_after_walk": (
-        "was calibrated with a recording made after this walk, as there is none before. It holds only if no "
-        "sensor moved in between."
+        "was calibrated with a recording made after the walk, as there is none before. It holds only if no sensor"
+        " moved in between."
     ),
     "simulated": "these data are simulated. They come from no patient.",
     "axis_uncertain": "the joint axis is certain to {axis_sd_deg:.1f}° only. Record free motion, or move longer.",
     "short_recording": "a short recording. Its angles are less certain.",
     "labels_look_swapped": "thigh and shank, or shank and foot, seem swapped. Swap them, or keep them as worn.",
 }
+
+WHOLE_SESSION = "session"  # what a finding about no part in particular says as its place
 
 
 def tr(message: str) -> str:
@@ -137,13 +146,13 @@ def sentence(finding: Finding) -> str:
 
     A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
     """
-    known = {name: value for name, value in finding.numbers.items() if isinstance(value, str) or math.isfinite(value)}
+    known = {name: _said(value) for name, value in finding.numbers.items() if _is_known(value)}
     try:
         said = tr(SENTENCES[finding.key]).format_map(known)
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
         figures = ", ".join(f"{name} {value}" for name, value in known.items())
         said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
-    text = f"{place(finding.where)}: {said}" if finding.where else said
+    text = f"{place(finding.where)}: {said}" if finding.where not in ("", WHOLE_SESSION) else said
     return text[0].upper() + text[1:]
 
 
@@ -170,6 +179,15 @@ def place(where: str) -> str:
     parts = [name_of(part) for name in names if (part := _part(name)) is not None]
     others = [name for name in names if _part(name) is None]
     return ", ".join(filter(None, [_joined(parts), *others]))
+
+
+def _is_known(value: float | int | str) -> bool:
+    return isinstance(value, str) or math.isfinite(value)
+
+
+def _said(value: float | int | str) -> float | int | str:
+    part = _part(value) if isinstance(value, str) else None
+    return value if part is None else name_of(part)
 
 
 def _part(name: str) -> Site | Joint | None:

@@ -17,7 +17,7 @@ from core.findings import Finding, Severity
 
 ROOT = Path(__file__).parents[2]
 FORBIDDEN = re.compile(r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|wrong sensor|you)\b|!", re.IGNORECASE)
-NAMES = {"name": "battery_percent", "kind": "averaged"}
+NAMES = {"name": "battery_percent", "kind": "averaged", "joint": "left ankle"}
 
 
 def sample(key: str, where: str = "walk 1, left_knee") -> Finding:
@@ -56,18 +56,30 @@ def test_a_figure_in_a_sentence_is_followed_by_its_unit(key: str) -> None:
 
 
 def keys_used() -> Iterator[tuple[str, str]]:
-    """Find the first argument, or `key`, of every `Finding(...)` in what the application runs."""
+    """Find every text that stands before a severity, as findings and what becomes one are written."""
     for package in ("core", "devices", "app"):
         for file in (ROOT / package).rglob("*.py"):
             for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-                if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == "Finding":
-                    given = node.args[0] if node.args else next(k.value for k in node.keywords if k.arg == "key")
-                    if isinstance(given, ast.Constant):
-                        yield str(given.value), f"{file.name}:{node.lineno}"
+                parts = node.args if isinstance(node, ast.Call) else node.elts if isinstance(node, ast.Tuple) else []
+                if len(parts) > 1 and "severity" in ast.unparse(parts[1]).lower():
+                    for part in ast.walk(parts[0]):
+                        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+                            yield part.value, file.name
 
 
 def test_every_finding_in_the_code_has_a_sentence() -> None:
-    assert [(key, line) for key, line in keys_used() if key not in SENTENCES] == []
+    used = list(keys_used())
+    assert len(used) > 30
+    assert [(key, file) for key, file in used if key not in SENTENCES] == []
+
+
+def test_what_concerns_the_whole_session_names_no_place() -> None:
+    assert sentence(Finding("simulated", Severity.INFO, "session")).startswith("These data are simulated.")
+
+
+def test_a_joint_among_the_numbers_is_put_into_words() -> None:
+    told = sentence(Finding("missing_site", Severity.INFO, "left_foot", {"joint": "left_ankle"}))
+    assert told == "L foot: no sensor was worn here. There are no left ankle angles."
 
 
 def test_a_finding_without_a_sentence_is_still_told_with_its_figures() -> None:
