@@ -75,8 +75,9 @@ def python() -> Path:
 
 
 def fingerprint() -> str:
-    """Tell what the environment is made from. The folder counts, because the commands inside name it."""
-    made_from = hashlib.sha256(f"{sys.version}\n{ROOT}\n".encode())
+    """Tell what the environment is made from. Folder and packages count, because what is inside points at them."""
+    packages = sorted(file.parent.name for file in ROOT.glob("*/__init__.py"))
+    made_from = hashlib.sha256(f"{sys.version}\n{ROOT}\n{packages}\n".encode())
     for name in ("pyproject.toml", "packaging/requirements.lock"):
         made_from.update((ROOT / name).read_bytes())
     return made_from.hexdigest()

@@ -1,0 +1,226 @@
+"""Does the code keep the rules of the house that no linter knows?"""
+
+import ast
+import io
+import re
+import tokenize
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+PACKAGES = ("app", "core", "devices")
+FOLDERS = (*PACKAGES, "resources", "packaging", "tests", ".ci", ".github")
+LOCK = (ROOT / "packaging" / "requirements.lock").read_text(encoding="utf-8")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+
+
+def python_files(*folders: str) -> list[Path]:
+    return sorted(file for folder in folders for file in (ROOT / folder).rglob("*.py"))
+
+
+def text_files() -> Iterator[tuple[Path, str]]:
+    """Read every file of the project that is text."""
+    files = [file for folder in FOLDERS for file in (ROOT / folder).rglob("*") if file.is_file()]
+    files += [file for file in ROOT.iterdir() if file.is_file()]
+    for file in files:
+        if "__pycache__" not in file.parts:
+            try:
+                yield file, file.read_text(encoding="utf-8")
+            except UnicodeDecodeError:
+                continue
+
+
+def parse(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+def place(file: Path, line: int) -> str:
+    return f"{file.relative_to(ROOT).as_posix()}:{line}"
+
+
+def imports(file: Path) -> Iterator[tuple[str, int]]:
+    for node in ast.walk(parse(file)):
+        if isinstance(node, ast.Import):
+            yield from ((alias.name, node.lineno) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module or "", node.lineno
+
+
+@pytest.mark.parametrize(("library", "only"), [("serial", "devices/ports.py"), ("rerun", "app/review/rerun_log.py")])
+def test_a_library_of_one_purpose_is_imported_by_one_file(library: str, only: str) -> None:
+    found = [
+        place(file, line)
+        for file in python_files(*PACKAGES)
+        for name, line in imports(file)
+        if name.split(".")[0] == library and file != ROOT / only
+    ]
+    assert found == []
+
+
+def test_the_opening_of_a_package_says_what_belongs_there_and_does_nothing() -> None:
+    openings = [ROOT / package / "__init__.py" for package in PACKAGES]
+    openings += [file for file in python_files(*PACKAGES) if file.name == "__init__.py"]
+    for opening in openings:
+        (only,) = parse(opening).body
+        assert isinstance(only, ast.Expr), opening
+        assert isinstance(only.value, ast.Constant), opening
+
+
+def test_every_module_opens_with_what_it_is_about() -> None:
+    assert [file for file in python_files(*PACKAGES, "packaging", "tests") if not ast.get_docstring(parse(file))] == []
+
+
+def test_scripts_and_tests_are_no_packages_and_hide_none() -> None:
+    # ours would stand before the library `packaging`, and before our own `core` in `tests/core`
+    assert [file for file in python_files("packaging", "tests") if file.name == "__init__.py"] == []
+
+
+COLOUR = re.compile(r"#(?:[0-9a-f]{3,4}|[0-9a-f]{6}|[0-9a-f]{8})\b|\brgba?\(", re.IGNORECASE)
+COLOUR_MAKERS = {"QColor", "mkColor", "mkPen", "mkBrush", "QPen", "QBrush"}
+
+
+def is_colour(node: ast.AST) -> bool:
+    """Tell whether this names a colour: in a string, as a constant of Qt, or as what makes one is given first."""
+    match node:
+        case ast.Constant(value=str(text)):
+            return COLOUR.search(text) is not None
+        case ast.Attribute(attr=name):
+            return name == "GlobalColor"
+        case ast.Call(func=maker, args=[ast.Constant(value=first), *_]) if first is not None:
+            return ast.unparse(maker).split(".")[-1] in COLOUR_MAKERS
+    return False
+
+
+def colours(tree: ast.Module) -> list[int]:
+    return [node.lineno for node in ast.walk(tree) if isinstance(node, ast.expr) and is_colour(node)]
+
+
+def test_a_colour_is_found_however_it_is_named() -> None:
+    named = [
+        '"#D55E00"',
+        '"color: #fff;"',
+        "QColor(0, 114, 178)",
+        "pg.mkPen('r')",
+        "Qt.GlobalColor.red",
+        '"rgb(1, 2, 3)"',
+    ]
+    assert all(colours(ast.parse(line)) == [1] for line in named)
+    assert colours(ast.parse('pen = QPen(theme.left, 1); none = pg.mkPen(None); anchor = "#12"')) == []
+
+
+def test_only_the_theme_names_a_colour() -> None:
+    files = [file for file in python_files(*PACKAGES) if file != ROOT / "app" / "theme.py"]
+    assert [place(file, line) for file in files for line in colours(parse(file))] == []
+
+
+EXCEPTION = re.compile(r"#\s*(?:type: ignore|noqa)")
+NAMED_EXCEPTION = re.compile(r"#\s*(?:type: ignore\[[\w-]+(?:, ?[\w-]+)*\]|noqa: ?[A-Z]+\d+(?:, ?[A-Z]+\d+)*)")
+
+
+def unexplained(source: str) -> Iterator[int]:
+    """Find the lines with an exception from a rule that name no rule or give no reason."""
+    for token in tokenize.generate_tokens(io.StringIO(source).readline):
+        if token.type == tokenize.COMMENT and EXCEPTION.search(token.string):
+            reason, named = NAMED_EXCEPTION.subn("", token.string)
+            if named != len(EXCEPTION.findall(token.string)) or len(re.findall(r"\w+", reason)) < 3:
+                yield token.start[0]
+
+
+def test_an_exception_without_rule_or_reason_is_found() -> None:
+    bare = [
+        "x = 1  # noqa",
+        "x = 1  # noqa: E501",
+        "x = 1  # type: ignore[arg-type]",
+        "x = 1  # type: ignore  # stubs are wrong",
+    ]
+    assert all(list(unexplained(line)) == [1] for line in bare)
+    assert list(unexplained("x = 1  # type: ignore[arg-type]  # the stubs lack QThread.start\n")) == []
+    assert list(unexplained("x = 1  # noqa: N802 - the name is Qt's\n")) == []
+
+
+def test_an_exception_from_a_rule_names_the_rule_and_its_reason() -> None:
+    files = python_files(*PACKAGES, "packaging", "tests")
+    assert [place(file, line) for file in files for line in unexplained(file.read_text(encoding="utf-8"))] == []
+
+
+def functions(tree: ast.Module) -> Iterator[ast.FunctionDef]:
+    return (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
+
+
+def first_arguments(tree: ast.AST, name: str, keyword: str) -> Iterator[ast.expr]:
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == name:
+            yield from [*node.args[:1], *(given.value for given in node.keywords if given.arg == keyword)]
+
+
+def finding_keys(tree: ast.Module) -> Iterator[tuple[str, int]]:
+    """Find the keys of findings, given to `Finding` or to a function that hands its first argument on as the key."""
+    makers = ["Finding"]
+    for function in functions(tree):
+        parameters = [argument.arg for argument in function.args.args if argument.arg != "self"]
+        for given in first_arguments(function, "Finding", "key"):
+            if isinstance(given, ast.Name) and parameters[:1] == [given.id]:
+                makers.append(function.name)
+    for maker in makers:
+        for given in first_arguments(tree, maker, "key"):
+            for node in ast.walk(given):
+                if isinstance(node, ast.Constant) and isinstance(node.value, str):
+                    yield node.value, node.lineno
+
+
+def test_the_key_of_a_finding_is_found_where_it_is_written() -> None:
+    source = """
+def note(key: str, where: str) -> Finding:
+    return Finding(key, Severity.INFO, where)
+note("gaps", "walk 1"); Finding(key="clipped"); Finding("all_zero" if nothing else "too_few", Severity.INFO, "")
+"""
+    assert {key for key, _ in finding_keys(ast.parse(source))} == {"gaps", "clipped", "all_zero", "too_few"}
+
+
+def test_every_finding_has_its_sentence() -> None:
+    wording = parse(ROOT / "app" / "wording.py")
+    sentences = {
+        key.value
+        for node in ast.walk(wording)
+        if isinstance(node, ast.Dict)
+        for key in node.keys
+        if isinstance(key, ast.Constant)
+    }
+    missing = [
+        f"{key} at {place(file, line)}"
+        for file in python_files("core", "devices")
+        for key, line in finding_keys(parse(file))
+        if key not in sentences
+    ]
+    assert missing == []
+
+
+def test_no_file_says_where_packages_are_fetched_from() -> None:
+    # in two parts, so that this file does not name them either
+    hosts = [f"{name}.{end}" for name, end in (("pypi", "org"), ("pythonhosted", "org"), ("anaconda", "org"))]
+    assert [str(file) for file, text in text_files() if any(host in text for host in hosts)] == []
+
+
+def test_no_file_names_a_folder_of_one_machine() -> None:
+    somebody = re.compile(r"(?<![\w.])/(?:home|Users)/\w")
+    assert [str(file) for file, text in text_files() if somebody.search(text)] == []
+
+
+def test_the_lock_holds_hashes_and_no_addresses() -> None:
+    assert re.search(r"://|@ |--index|--extra-index|--find-links|--trusted-host", LOCK) is None
+    entries = re.split(r"\n(?=[a-z])", LOCK[LOCK.index("\n", LOCK.rindex("# ")) :].strip())
+    assert len(entries) > 10
+    assert [
+        entry
+        for entry in entries
+        if not re.match(r"[\w.-]+==[\w.]+[^\n]*(?: \\\n    --hash=sha256:[0-9a-f]{64})+$", entry)
+    ] == []
+
+
+def test_the_lock_holds_everything_the_project_asks_for() -> None:
+    asked = PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["dev"]
+    names = {re.split(r"[^\w.-]", requirement)[0].lower() for requirement in asked}
+    assert names - set(re.findall(r"^([\w.-]+)==", LOCK, re.MULTILINE)) == set()
