@@ -18,12 +18,17 @@ from core.validity import Basis
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """One joint as identified, before its clinical sign and zero. `centre_*` None: the data do not show it."""
+    """One joint as identified, before its clinical sign and zero.
+
+    The centres in `geometry` are the best there are and serve eq 15, which hardly feels them; where not
+    `is_centre_known` they are not reported.
+    """
 
     basis: Basis
     geometry: Geometry
     source: AxisSource
     recordings: tuple[str, ...]
+    is_centre_known: bool
     centre_sd_m: float | None
     sign_margin: float
     hinge_residual_rad_s: float
@@ -81,18 +86,18 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     )
     if found is None:
         return None
-    centre_1 = centre_2 = None
+    centre_1, centre_2 = found.centre.proximal_m, found.centre.distal_m
+    if joint.is_knee:
+        centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
     # a walking person's centre is not in the data; a hinge's is
-    if found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion):
-        centre_1, centre_2 = found.centre.proximal_m, found.centre.distal_m
-        if joint.is_knee:
-            centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
+    is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
     return Identified(
         basis=basis,
         geometry=Geometry(found.axis_1, found.axis_2, centre_1, centre_2, found.lag.lag_s, tau_s),
         source=_source(basis, found.is_hinge),
         recordings=names,
-        centre_sd_m=found.centre_sd_m if centre_1 is not None else None,
+        is_centre_known=is_centre_known,
+        centre_sd_m=found.centre_sd_m if is_centre_known else None,
         sign_margin=found.sign_margin,
         hinge_residual_rad_s=found.hinge_residual_rad_s,
         is_hinge=found.is_hinge,
@@ -124,6 +129,7 @@ def _as_published(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identifie
         geometry=Geometry(found.axis_1, found.axis_2, o1, o2, 0.0, tau_s),
         source=AxisSource.WALKING if axis_names == basis.walks else AxisSource.FREE_MOTION,
         recordings=tuple(dict.fromkeys((*axis_names, *free))),
+        is_centre_known=True,
         centre_sd_m=None,
         sign_margin=found.pairing_ratio,
         hinge_residual_rad_s=found.residual_rad_s,

@@ -23,12 +23,12 @@ WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 
 @dataclass(frozen=True, slots=True)
 class Geometry:
-    """What measuring needs: axes (3,), centres (3,) or None, the distal clock's lag, the filter's time constant."""
+    """What measuring needs: axes (3,), centres (3,), the distal clock's lag, the filter's time constant."""
 
     axis_1: FloatArray
     axis_2: FloatArray
-    centre_1_m: FloatArray | None
-    centre_2_m: FloatArray | None
+    centre_1_m: FloatArray
+    centre_2_m: FloatArray
     lag_s: float
     tau_s: float
 
@@ -83,10 +83,8 @@ def measure(
     for block in tracks.blocks(recording):
         for pair in pairs_of(tracks, recording, joint, block, geometry.lag_s):
             heading = heading_over(pair, j1, j2)
-            found = {"twist": twist(pair, j1, j2, heading)}
-            if geometry.centre_1_m is not None and geometry.centre_2_m is not None:
-                centres = geometry.centre_1_m, geometry.centre_2_m
-                found["published"] = -published_angle(pair, j1, j2, *centres, geometry.tau_s)
+            fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
+            found = {"twist": twist(pair, j1, j2, heading), "published": -fused}
             for name, values in found.items():
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
