@@ -47,6 +47,10 @@ class Pair:
         return len(self.time_s)
 
     @property
+    def duration_s(self) -> float:
+        return float(self.time_s[-1] - self.time_s[0])
+
+    @property
     def is_moving(self) -> BoolArray:
         speed = np.sqrt(np.sum(self.g1**2, axis=1) + np.sum(self.g2**2, axis=1))
         return moving_mean(speed, max(1, round(MOVING_WINDOW_S / self.step_s))) > MOVING_RAD_S

@@ -77,20 +77,24 @@ def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
     return np.flatnonzero(is_used)
 
 
+def knot_positions(pair: Pair) -> tuple[int, FloatArray]:
+    """Number of intervals between the pair's heading knots, and where each sample (n,) lies, counted in intervals."""
+    intervals = max(1, round(pair.duration_s / KNOT_SPACING_S))
+    return intervals, (pair.time_s - pair.time_s[0]) / pair.duration_s * intervals
+
+
 def gather(pairs: tuple[Pair, ...], indices: list[IntArray]) -> Datasets:
     """Join the samples at `indices` of each pair."""
     left, share, spacing, stretch = [], [], [], []
     first_knot = 0
     for s, (pair, index) in enumerate(zip(pairs, indices, strict=True)):
-        duration_s = float(pair.time_s[-1] - pair.time_s[0])
-        intervals = max(1, round(duration_s / KNOT_SPACING_S))
-        position = (pair.time_s[index] - pair.time_s[0]) / duration_s * intervals
-        whole = np.minimum(position.astype(int), intervals - 1)
+        intervals, position = knot_positions(pair)
+        whole = np.minimum(position[index].astype(int), intervals - 1)
         left.append(first_knot + whole)
-        share.append(position - whole)
+        share.append(position[index] - whole)
         if s:
             spacing.append([np.nan])
-        spacing.append([duration_s / intervals] * intervals)
+        spacing.append([pair.duration_s / intervals] * intervals)
         stretch.append(np.full(len(index), s))
         first_knot += intervals + 1
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.calibration.datasets import Datasets, gather
+from core.calibration.datasets import Datasets, gather, knot_positions
 from core.calibration.hinge import robust_sd
 from core.calibration.joint_axis import (
     NEUTRAL_SCALE_RAD,
@@ -31,8 +31,8 @@ def heading_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> FloatArr
     fit = polish(data, start, STEPS, is_axis_fixed=True)
     rate_scale, neutral_scale = residual_scales(data, fit)
     fit = polish(data, fit, STEPS, rate_scale, neutral_scale, is_axis_fixed=True)
-    everywhere = gather((pair,), [np.arange(len(pair))])
-    return everywhere.heading(fit.knots_rad[0])
+    intervals, position = knot_positions(pair)
+    return np.interp(position, np.arange(intervals + 1), fit.knots_rad[0])
 
 
 def _spread(pair: Pair, is_used: BoolArray) -> Datasets:

@@ -16,7 +16,7 @@ from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, Session
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME, Plan, default_sensor, parse, render, unknown_keys
-from devices.files.site_files import Shelf, SiteFile, SitesOnDemand, write_site
+from devices.files.site_files import Shelf, SiteFile, SitesOnDemand, sensor_changes, write_site
 
 HELD_BYTES = 500_000_000  # some nine hours of one sensor at 100 Hz as text; in memory half of that
 SUFFIXES = (".csv", ".parquet")
@@ -91,7 +91,8 @@ def _read(folder: Path) -> Session:
         recordings.append(replace(plan.recording, imu=imu))
         findings += [*_folder_findings(folder, plan), *noticed]
     session = replace(session, recordings=tuple(recordings))
-    return replace(session, findings=(*unknown_keys(session), *findings))
+    changes = sensor_changes([(name, {site: f.sensor for site, f in sites.items()}) for name, sites in files.items()])
+    return replace(session, findings=(*unknown_keys(session), *findings, *changes))
 
 
 def _read_toml(folder: Path) -> str:
@@ -161,7 +162,7 @@ def _folder_findings(folder: Path, plan: Plan) -> Iterator[Finding]:
     expected = {site + suffix for site in Site for suffix in SUFFIXES}
     present = {path.name for path in (folder / plan.recording.folder).iterdir() if path.is_file()}
     if not expected & present:
-        yield Finding("recording_without_data", Severity.WARNING, name)
+        yield Finding("no_sites", Severity.WARNING, name)
     for other in sorted(present - expected):
         if not other.startswith(".") and other != FILE_NAME:
             yield Finding("file_left_out", Severity.INFO, name, {"name": other})

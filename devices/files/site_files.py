@@ -1,6 +1,6 @@
 """How does one sensor's file become a block of samples, and the other way round?"""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -125,6 +125,7 @@ class SiteFile:
 
     def __init__(self, path: Path, where: str, place: str, sensor: str, is_rate_derived: bool) -> None:
         self.path = path
+        self.sensor = sensor
         self._arguments = (path, where, place, sensor, is_rate_derived)
 
     def read(self) -> tuple[ImuBlock, tuple[Finding, ...]]:
@@ -147,6 +148,25 @@ class Shelf:
             read = file.read()
         self._read[file] = read
         return read
+
+
+def sensor_changes(worn: Sequence[tuple[str, Mapping[Site, str]]]) -> tuple[Finding, ...]:
+    """Where a recording's sensor is another than in the last recording that had one at this site.
+
+    Parameters
+    ----------
+    worn
+        Per recording its name and the sensors' names, in order of time.
+    """
+    last: dict[Site, str] = {}
+    findings = []
+    for recording, sensors in worn:
+        for site, sensor in sensors.items():
+            if last.get(site, sensor) != sensor:
+                numbers = {"before": last[site], "after": sensor}
+                findings.append(Finding("sensor_changed", Severity.WARNING, f"{recording}, {site}", numbers))
+            last[site] = sensor
+    return tuple(findings)
 
 
 def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:

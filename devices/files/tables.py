@@ -46,7 +46,13 @@ class Table:
 
 
 def read_csv(
-    path: Path, where: str, numeric: Collection[str], *, comment: str | None = None, delimiters: str = ","
+    path: Path,
+    where: str,
+    numeric: Collection[str],
+    *,
+    comment: str | None = None,
+    delimiters: str = ",",
+    keep_others: bool = True,
 ) -> Table:
     """Read a text with one header line.
 
@@ -55,11 +61,13 @@ def read_csv(
     where
         The file's name in messages.
     numeric
-        Columns to be read as numbers, NaN where empty. All others are kept as the text they are.
+        Columns to be read as numbers, NaN where empty.
     comment
         Lines starting with it before the header are passed over.
     delimiters
         Of these, the one that divides the header most is taken.
+    keep_others
+        All other columns are kept as the text they are, or left out.
 
     Raises
     ------
@@ -69,16 +77,17 @@ def read_csv(
     with path.open("rb") as file:
         names, delimiter, header_line = _read_header(file, where, comment, delimiters)
         start = file.tell()
-        arrow = _read_body(file, names, numeric, delimiter)
+        wanted = [name for name in names if keep_others or name in numeric]
+        arrow = _read_body(file, names, wanted, numeric, delimiter)
         is_open = _is_open(file, start)
-        if isinstance(arrow, Exception) or _swallows_lines(arrow, names, numeric):
+        if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
             _refuse_line(path, where, start, header_line, names, numeric, delimiter)
             if _has_content(path, start):
                 raise FileRefusedError(where, f"the table cannot be read ({arrow})", COPY_AGAIN)
             arrow = None
 
     unnamed = {f"{UNNAMED} {i}" for i in range(1, len(names) + 1)}
-    columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(names)}
+    columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(wanted)}
 
     def place(row: int) -> str:
         lines = (line for line, _ in _lines(path, start, header_line))
@@ -165,7 +174,7 @@ def _refuse_twice(names: list[str], where: str, place: str) -> None:
             raise FileRefusedError(f"{where}, {place}", f"column {quoted(name)} is there twice", CORRECT_IT)
 
 
-def _read_body(file: BinaryIO, names: list[str], numeric: Collection[str], delimiter: str) -> Any:
+def _read_body(file: BinaryIO, names: list[str], wanted: list[str], numeric: Collection[str], delimiter: str) -> Any:
     """The rows after the header as an Arrow table, or the error that Arrow raised."""
     import pyarrow as pa
     import pyarrow.csv as pcsv
@@ -176,17 +185,19 @@ def _read_body(file: BinaryIO, names: list[str], numeric: Collection[str], delim
             file,
             read_options=pcsv.ReadOptions(column_names=names),
             parse_options=pcsv.ParseOptions(delimiter=delimiter),
-            convert_options=pcsv.ConvertOptions(column_types=types, null_values=EMPTY_CELLS, strings_can_be_null=False),
+            convert_options=pcsv.ConvertOptions(
+                column_types=types, include_columns=wanted, null_values=EMPTY_CELLS, strings_can_be_null=False
+            ),
         )
     except pa.ArrowException as error:
         return error
 
 
-def _swallows_lines(arrow: Any, names: list[str], numeric: Collection[str]) -> bool:
+def _swallows_lines(arrow: Any, numeric: Collection[str]) -> bool:
     """A quotation mark that is never closed takes the lines after it into one cell."""
     import pyarrow.compute as pc
 
-    texts = [column for name, column in zip(names, arrow.columns, strict=True) if name not in numeric]
+    texts = [column for name, column in zip(arrow.column_names, arrow.columns, strict=True) if name not in numeric]
     return any(pc.any(pc.match_substring(column, "\n")).as_py() for column in texts)
 
 
