@@ -1,0 +1,344 @@
+"""What did Xsens MT Manager export? One text per sensor, all of one trial on one packet counter.
+
+The matrix is written by columns and earth from sensor: Mat[i][j] is row i, column j, and turns the specific force of a
+sensor at rest to earth z. Euler angles are degrees, turned about z (yaw), then y, then x. The rates of MTw sensors are
+means over the interval before their stamp, which the orientation in the same file tells.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
+from devices.files.imports import Imported, place_files
+from devices.files.refusal import FileRefusedError
+from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
+
+COUNTER = "PacketCounter"
+FINE_TIME = "SampleTimeFine"
+ACC = ("Acc_X", "Acc_Y", "Acc_Z")
+GYR = ("Gyr_X", "Gyr_Y", "Gyr_Z")
+MAG = ("Mag_X", "Mag_Y", "Mag_Z")
+QUAT = ("Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3")
+EULER = ("Yaw", "Pitch", "Roll")
+MATRIX = tuple(f"Mat[{row}][{column}]" for row in (1, 2, 3) for column in (1, 2, 3))
+NUMERIC = frozenset((COUNTER, FINE_TIME, *ACC, *GYR, *MAG, *QUAT, *EULER, *MATRIX))
+DELIMITERS = "\t;, "
+
+COUNTER_TURNS_AT = 65536  # 16 bit
+FINE_TICKS_PER_S = 10_000.0
+FINE_TURNS_AT = 2.0**32
+LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
+EXPORT_AGAIN = "Export it again from MT Manager"
+Numbers = NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True)
+class MtFile:
+    """One sensor's file: n samples in sensor axes, NaN where a value is missing.
+
+    `counter` ascends: turns of the device's 16 bits are taken out. `rate_hz` None: the file does not tell.
+    """
+
+    path: Path
+    info: SensorInfo
+    counter: Numbers
+    acc_m_s2: FloatArray
+    gyr_rad_s: FloatArray | None
+    q_earth_from_sensor: FloatArray | None
+    mag: FloatArray | None
+    doubled: int
+    rate_hz: float | None
+
+
+def read_mtmanager(path: Path) -> MtFile:
+    """Read one file.
+
+    Raises
+    ------
+    FileRefusedError
+        Not an MT Manager text, no acceleration, neither rates nor orientation, a counter that steps back, other units.
+    """
+    where = path.name
+    comments, names = header_of(path, where, comment="//", delimiters=DELIMITERS)
+    if COUNTER not in names:
+        raise FileRefusedError(where, f"there is no column {COUNTER}", f"{EXPORT_AGAIN}, with it")
+    if not set(ACC) <= set(names):
+        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", f"{EXPORT_AGAIN}, with it")
+    table = read_csv(path, where, NUMERIC, comment="//", delimiters=DELIMITERS, keep_others=False)
+    counter, is_new = _unwrap(table, where)
+    q = _orientation(table, where)
+    gyr = table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None
+    if gyr is None and q is None:
+        what = "there are neither angular rates (Gyr_X) nor an orientation to derive them from"
+        raise FileRefusedError(where, what, f"{EXPORT_AGAIN}, with one of them")
+    settings = dict(line.split(":", 1) for line in comments if ":" in line)
+    rate_hz = _header_rate(settings) or _fine_rate(table, counter)
+    file = MtFile(
+        path=path,
+        info=SensorInfo(
+            serial=(sensor_ids(path) or [path.stem])[0],
+            model=settings.get("ProductCode", "").strip(),
+            firmware=settings.get("Firmware Version", "").strip(),
+        ),
+        counter=counter[is_new],
+        acc_m_s2=table.matrix(ACC)[is_new],
+        gyr_rad_s=gyr,
+        q_earth_from_sensor=None if q is None else q[is_new],
+        mag=table.matrix(MAG)[is_new] if set(MAG) <= set(names) else None,
+        doubled=int(np.sum(~is_new)),
+        rate_hz=rate_hz,
+    )
+    _check_units(file)
+    return file
+
+
+def import_mtmanager(
+    files: Sequence[Path], placement: Mapping[Site, str], recording: str, rate_hz: float | None = None
+) -> Imported:
+    """The files of one trial as the samples of one recording, aligned by their packet counters.
+
+    Time is the counter divided by the update rate, from the first packet that any of the files holds; packets that are
+    missing are gaps. Rates that a file lacks are derived from its orientation, see `derive_rates`.
+
+    Parameters
+    ----------
+    placement
+        Per site a path, a file's name or a sensor's id; `imports.parse_map`.
+    recording
+        The recording's name in findings.
+    rate_hz
+        Update rate where the files do not tell it.
+
+    Raises
+    ------
+    FileRefusedError
+        What `read_mtmanager` and `imports.place_files` refuse, an update rate that is unknown or not the same
+        everywhere, files that share no stretch of the counter.
+    """
+    placed, left_out = place_files(files, placement, sensor_ids)
+    read = {site: read_mtmanager(path) for site, path in placed.items()}
+    rate_hz = _common_rate(read.values(), rate_hz)
+    starts = _start_together(list(read.values()))
+    imu, sensors = {}, {}
+    findings = [Finding("file_left_out", Severity.INFO, recording, {"name": path.name}) for path in left_out]
+    for (site, file), start in zip(read.items(), starts, strict=True):
+        block = _block(file, start, rate_hz)
+        imu[site] = block
+        sensors[site] = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, block, rate_hz))
+        findings += _findings(file, block, f"{recording}, {site}")
+    return Imported(imu, sensors, tuple(findings))
+
+
+def sensor_ids(path: Path) -> list[str]:
+    """The ids by which a file's sensor may be called: the one in its header, the one at the end of its name."""
+    try:
+        comments, _ = header_of(path, path.name, comment="//", delimiters=DELIMITERS)
+    except FileRefusedError:
+        comments = []  # it may be among the files without being an export
+    told = [line.split(":", 1)[1].strip() for line in comments if line.startswith("DeviceId:")]
+    named = re.search(r"_([0-9A-Fa-f]{8})$", path.stem)
+    return list(dict.fromkeys([*told, *([named[1]] if named else [])]))
+
+
+def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float) -> FloatArray:
+    """Angular rate at the instant of every sample, (n, 3) in sensor axes, from the orientation, (n, 4).
+
+    Around a sample the orientation is a curve of rotation vectors in that sample's own axes, and the rate is the slope
+    of this curve where it passes zero. The slope is the central difference over two neighbours to each side (fourth
+    order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
+    the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
+    neighbour on one side, and no rate.
+    """
+    before_2, before, after, after_2 = (_turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
+    over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
+    over_one = (after - before) * rate_hz / 2.0
+    return np.where(np.isfinite(over_two), over_two, over_one)
+
+
+def _turn_to(q: FloatArray, counter: Numbers, steps: int) -> FloatArray:
+    """(n, 3) rotation vector from each orientation to the one `steps` packets later; NaN where there is none."""
+    turn = np.full((len(q), 3), np.nan)
+    n = abs(steps)
+    here, there = (slice(None, -n), slice(n, None)) if steps > 0 else (slice(n, None), slice(None, -n))
+    is_there = np.isfinite(q[here] + q[there]).all(axis=1) & (counter[there] - counter[here] == steps)
+    if is_there.any():
+        start, end = (Rotation.from_quat(q[part][is_there], scalar_first=True) for part in (here, there))
+        turn[here][is_there] = (start.inv() * end).as_rotvec()
+    return turn
+
+
+def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
+    """(n,) the counter without its turns, and which packets are no repetition of the one before."""
+    raw = table.numbers[COUNTER]
+    is_count = (raw >= 0) & (raw < COUNTER_TURNS_AT) & (raw == np.floor(raw))
+    if not is_count.all():
+        row = int(np.argmin(is_count))
+        what = f"{COUNTER} is not a whole number from 0 to {COUNTER_TURNS_AT - 1}"
+        raise FileRefusedError(f"{where}, {table.place(row)}", what, CORRECT_IT)
+    count = raw.astype(np.int64)
+    step: Numbers = np.diff(count) % COUNTER_TURNS_AT
+    back = np.flatnonzero(step >= COUNTER_TURNS_AT // 2)
+    if len(back):
+        row = int(back[0]) + 1
+        what = f"{COUNTER} steps back from {raw[row - 1]:.0f} to {raw[row]:.0f}"
+        raise FileRefusedError(f"{where}, {table.place(row)}", what, EXPORT_AGAIN)
+    counter = np.concatenate([count[:1], count[:1] + np.cumsum(step)])
+    return counter, np.concatenate([np.ones(len(count[:1]), dtype=bool), step > 0])
+
+
+def _orientation(table: Table, where: str) -> FloatArray | None:
+    """(n, 4) earth from sensor, scalar first, from whichever of its three forms the file holds."""
+    names = set(table.numbers)
+    if names >= set(QUAT):
+        q = table.matrix(QUAT)
+        error = np.abs(np.linalg.norm(q, axis=1) - 1.0)
+    elif names >= set(MATRIX):
+        matrix = table.matrix(MATRIX).reshape(-1, 3, 3)
+        error = np.abs(matrix @ matrix.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
+        error = np.where(np.linalg.det(matrix) < 0, np.inf, error)
+        q = _quaternions(Rotation.from_matrix, matrix, error < 0.1)
+    elif names >= set(EULER):
+        angles = table.matrix(EULER)
+        error = np.zeros(len(angles))
+        q = _quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
+    else:
+        return None
+    wrong = np.flatnonzero(error > 0.01)  # six decimals leave 1e-5
+    if len(wrong):
+        raise FileRefusedError(f"{where}, {table.place(int(wrong[0]))}", "the orientation is no rotation", EXPORT_AGAIN)
+    return q
+
+
+def _quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_there: BoolArray) -> FloatArray:
+    q = np.full((len(values), 4), np.nan)
+    if is_there.any():
+        q[is_there] = make(values[is_there]).as_quat(scalar_first=True)
+    return q
+
+
+def _header_rate(settings: Mapping[str, str]) -> float | None:
+    told = re.fullmatch(r"\s*([\d.]+)\s*Hz\s*", settings.get("Update Rate", ""))
+    try:
+        rate_hz = float(told[1]) if told else 0.0
+    except ValueError:
+        return None
+    return rate_hz if rate_hz > 0 else None
+
+
+def _fine_rate(table: Table, counter: Numbers) -> float | None:
+    """The update rate by the device's own 10 kHz clock, where the file holds it."""
+    ticks = table.numbers.get(FINE_TIME, np.empty(0))
+    if len(ticks) < 2 or not np.isfinite(ticks).all():
+        return None
+    elapsed = float(np.sum(np.diff(ticks) % FINE_TURNS_AT))
+    return FINE_TICKS_PER_S * float(counter[-1] - counter[0]) / elapsed if elapsed > 0 else None
+
+
+def _common_rate(files: Iterable[MtFile], asked_hz: float | None) -> float:
+    told = {file.path.name: file.rate_hz for file in files if file.rate_hz is not None}
+    if asked_hz is not None:
+        told["--rate"] = asked_hz
+    if not told:
+        remedy = "Give it in Hz with --rate, as set in MT Manager when recording"
+        raise FileRefusedError("update rate", "none of these files tells it", remedy)
+    (first, rate_hz), *others = told.items()
+    for name, other_hz in others:
+        if abs(other_hz - rate_hz) > 0.002 * rate_hz:  # clocks of two sensors differ less, settings more
+            what = f"the update rate is {other_hz:g} Hz, in {first} {rate_hz:g} Hz"
+            raise FileRefusedError(name, what, "Import files of one trial, with the rate it was recorded at")
+    return rate_hz
+
+
+def _start_together(files: Sequence[MtFile]) -> list[Numbers]:
+    """Every file's counter from the first packet of all, each brought to the turn that lies nearest to the first's."""
+    filled = [file for file in files if len(file.counter)]
+    if not filled:
+        return [file.counter for file in files]
+    reference, half = filled[0].counter[0], COUNTER_TURNS_AT // 2
+    turned = [
+        file.counter - file.counter[:1] + reference + (file.counter[:1] - reference + half) % COUNTER_TURNS_AT - half
+        for file in files
+    ]
+    spans = {file.path.name: (c[0], c[-1]) for file, c in zip(files, turned, strict=True) if len(c)}
+    last_start = max(spans, key=lambda name: spans[name][0])
+    first_end = min(spans, key=lambda name: spans[name][1])
+    if spans[last_start][0] > spans[first_end][1]:
+        what = f"it starts after the last packet of {first_end}, so they are not of one trial"
+        raise FileRefusedError(last_start, what, "Import the files of one trial at a time")
+    start = min(first for first, _ in spans.values())
+    return [counter - start for counter in turned]
+
+
+def _block(file: MtFile, counter: Numbers, rate_hz: float) -> ImuBlock:
+    gyr = file.gyr_rad_s
+    if gyr is None:
+        assert file.q_earth_from_sensor is not None  # read_mtmanager refuses a file without both
+        gyr = derive_rates(file.q_earth_from_sensor, counter, rate_hz)
+    return ImuBlock(
+        sensor=file.info.serial,
+        time_s=counter / rate_hz,
+        gyr_rad_s=gyr,
+        acc_m_s2=file.acc_m_s2,
+        q_earth_from_sensor=file.q_earth_from_sensor,
+        mag=file.mag,
+        is_rate_derived=file.gyr_rad_s is None,
+    )
+
+
+def _rate_kind(file: MtFile, block: ImuBlock, rate_hz: float) -> RateKind | None:
+    """Which rate of the orientation the gyroscope's agrees with by far: the one at the stamp or the mean before it."""
+    if file.gyr_rad_s is None:
+        return RateKind.INSTANTANEOUS
+    if file.q_earth_from_sensor is None:
+        return None
+    at_stamp = derive_rates(file.q_earth_from_sensor, file.counter, rate_hz)
+    before = -_turn_to(file.q_earth_from_sensor, file.counter, -1) * rate_hz
+    errors = [np.linalg.norm(block.gyr_rad_s - rate, axis=1) for rate in (at_stamp, before)]
+    is_known = np.isfinite(errors[0]) & np.isfinite(errors[1])
+    if np.sum(is_known) < rate_hz:  # less than a second decides nothing
+        return None
+    at_stamp_error, before_error = (float(np.sqrt(np.mean(error[is_known] ** 2))) for error in errors)
+    if before_error < 0.6 * at_stamp_error:
+        return RateKind.AVERAGED
+    return RateKind.INSTANTANEOUS if at_stamp_error < 0.6 * before_error else None
+
+
+def _check_units(file: MtFile) -> None:
+    where = file.path.name
+    median = _median(np.linalg.norm(file.acc_m_s2, axis=1))
+    if 0.7 < median < 1.4:
+        what = f"the acceleration is {median:.2f} in the middle, as if it were in g and not in m/s2"
+        raise FileRefusedError(where, what, EXPORT_AGAIN)
+    if median < 0.7:
+        what = f"the acceleration is {median:.2f} m/s2 in the middle, as if gravity had been taken out of it"
+        raise FileRefusedError(where, what, f"{EXPORT_AGAIN}, with Acc and not with FreeAcc")
+    if file.gyr_rad_s is None:
+        return
+    speed = np.linalg.norm(file.gyr_rad_s, axis=1)
+    ratio = np.nan
+    if file.q_earth_from_sensor is not None:
+        turned = np.linalg.norm(derive_rates(file.q_earth_from_sensor, file.counter, 1.0), axis=1)
+        rate_hz = file.rate_hz or 100.0  # a ratio of 57 is seen with a rate that is off by two, too
+        ratio = _median(speed / np.where(turned * rate_hz > 0.2, turned * rate_hz, np.nan))
+    if ratio > 20.0 or (np.isnan(ratio) and np.any(speed > 2.0 * LARGEST_RATE_RAD_S)):
+        raise FileRefusedError(where, "the angular rates are in deg/s and not in rad/s", EXPORT_AGAIN)
+
+
+def _median(values: FloatArray) -> float:
+    values = values[np.isfinite(values)]
+    return float(np.median(values)) if len(values) else np.nan
+
+
+def _findings(file: MtFile, block: ImuBlock, place: str) -> Iterator[Finding]:
+    if block.is_rate_derived:
+        yield Finding("rate_from_orientation", Severity.INFO, place)
+    if file.doubled:
+        yield Finding("doubled_stamps", Severity.WARNING, place, {"count": file.doubled})
