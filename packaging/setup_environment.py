@@ -24,8 +24,11 @@ VENV = ROOT / ".venv"
 STAMP = VENV / "made-from"
 UNFINISHED = "unfinished"
 
+# All that decides which wheels fit; a system update may change the rest of the version under a running set-up.
+PYTHON_VERSION = f"{sys.version_info[0]}.{sys.version_info[1]}"
+
 # Debian and Ubuntu keep the part of Python that makes environments in a package of its own.
-VENV_PACKAGE = f"python{sys.version_info[0]}.{sys.version_info[1]}-venv"
+VENV_PACKAGE = f"python{PYTHON_VERSION}-venv"
 
 # What the wheels of PySide6 link to or load at run time and do not bring along: library, and Debian's name for it.
 QT_LIBRARIES = {
@@ -77,7 +80,7 @@ def python() -> Path:
 def fingerprint() -> str:
     """Tell what the environment is made from. Folder and packages count, because what is inside points at them."""
     packages = sorted(file.parent.name for file in ROOT.glob("*/__init__.py"))
-    made_from = hashlib.sha256(f"{sys.version}\n{ROOT}\n{packages}\n".encode())
+    made_from = hashlib.sha256(f"{PYTHON_VERSION}\n{ROOT}\n{packages}\n".encode())
     for name in ("pyproject.toml", "packaging/requirements.lock"):
         made_from.update((ROOT / name).read_bytes())
     return made_from.hexdigest()
@@ -169,13 +172,12 @@ def _stamp() -> str:
 
 def _is_sound() -> bool:
     """Tell whether `.venv` runs, has pip, and is of this Python."""
+    question = "import pip, sys; print(*sys.version_info[:2], sep='.')"
     try:
-        answer = subprocess.run(
-            [python(), "-c", "import sys, pip; print(sys.version)"], capture_output=True, text=True, check=True
-        )
+        answer = subprocess.run([python(), "-c", question], capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):
         return False
-    return answer.stdout.strip() == sys.version.strip()
+    return answer.stdout.strip() == PYTHON_VERSION
 
 
 def _loads(library: str) -> bool:
