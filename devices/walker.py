@@ -1,0 +1,225 @@
+"""A forward-kinematic patient with both legs, up to six sensors and every truth known.
+
+The poses of the segments are prescribed; rates and accelerations come from differentiating them numerically. No
+equation of the estimator is used here, so that the two can disagree.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.body import Side, Site
+from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from devices.walker_body import (
+    NO_ERRORS,
+    FreeMotion,
+    Leg,
+    Motion,
+    SensorErrors,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    make_leg,
+)
+from devices.walker_gait import plan_standing, plan_walk, walk_leg
+from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about
+from devices.walker_sensors import (
+    SEGMENT_ROW,
+    Clock,
+    Mounting,
+    SensorFaults,
+    draw_faults,
+    draw_mounting,
+    make_clock,
+    record,
+    sensor_poses,
+)
+from devices.walker_truth import FootTruth, JointTruth, RecordingTruth, SessionTruth, Take, tell_truth, truth_table
+
+__all__ = [
+    "NO_ERRORS",
+    "FootTruth",
+    "FreeMotion",
+    "JointTruth",
+    "Motion",
+    "RecordingTruth",
+    "SensorErrors",
+    "SessionTruth",
+    "SimulatedSession",
+    "Standing",
+    "Tissue",
+    "Walk",
+    "WalkerSettings",
+    "simulate",
+    "truth_table",
+]
+
+FINE_HZ = 1000.0  # least rate of the fine clock: differences of fourth order are then far below the sensors' noise
+MARGIN_S = 0.25  # the fine clock runs on by this at both ends, for lags, averaging and differences
+MAX_LATE_S = 0.2  # what the margin leaves for a clock
+
+
+@dataclass(frozen=True, slots=True)
+class SimulatedSession:
+    session: Session
+    truth: SessionTruth
+
+
+def simulate(settings: WalkerSettings) -> SimulatedSession:
+    """All recordings of one session; the same settings give the same samples.
+
+    Raises
+    ------
+    ValueError
+        Two recordings of one name; a clock that is off by more than 0.2 s.
+    """
+    names = [wanted.name for wanted in settings.recordings]
+    if len(set(names)) < len(names):
+        raise ValueError(f"recordings need names of their own, got {names}")
+    if any(abs(late_s) > MAX_LATE_S for late_s in settings.clock_late_s.values()):
+        raise ValueError(f"clock_late_s is {dict(settings.clock_late_s)}, expected at most {MAX_LATE_S} s")
+    legs = {side: make_leg(settings, side) for side in Side}
+    faults = {site: draw_faults(settings.errors, _rng(settings, 2, _index(site))) for site in settings.sites}
+    start_faults = faults
+    mountings = _mount(settings, 0)
+    recordings: list[Recording] = []
+    takes: list[Take] = []
+    for number, wanted in enumerate(settings.recordings):
+        if wanted.is_restrapped_before:
+            mountings = _mount(settings, number)
+        recording, take, faults = _take(settings, number, legs, mountings, faults)
+        recordings.append(recording)
+        takes.append(take)
+    truth = tell_truth(settings, legs, takes, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
+    return SimulatedSession(_session(settings, recordings), truth)
+
+
+def _session(settings: WalkerSettings, recordings: list[Recording]) -> Session:
+    prosthetic = settings.prosthetic_side.value if settings.prosthetic_side else "none"
+    stiff = settings.stiff_knee_side.value if settings.stiff_knee_side else prosthetic
+    sensors = {
+        site: SensorInfo(
+            serial=f"DEMO-{site.value}",
+            model="simulated",
+            rate_hz=settings.site_rates_hz.get(site, settings.rate_hz),
+            rate_kind=settings.rate_kind,
+        )
+        for site in settings.sites
+    }
+    patient = Patient(code="DEMO-1", affected_side=stiff, prosthetic_side=prosthetic)
+    return Session(recordings=tuple(recordings), patient=patient, sensors=sensors, is_simulated=True)
+
+
+def _rng(settings: WalkerSettings, *key: int) -> np.random.Generator:
+    """Every kind of chance has a stream of its own, so that changing one setting leaves the others as they were."""
+    return np.random.default_rng([settings.seed, *key])
+
+
+def _index(site: Site) -> int:
+    return list(Site).index(site)
+
+
+def _mount(settings: WalkerSettings, number: int) -> dict[Site, Mounting]:
+    spread_m = settings.mounting_sd_m
+    return {site: draw_mounting(site, spread_m, _rng(settings, 3, _index(site), number)) for site in settings.sites}
+
+
+def _take(
+    settings: WalkerSettings,
+    number: int,
+    legs: Mapping[Side, Leg],
+    mountings: Mapping[Site, Mounting],
+    faults: Mapping[Site, SensorFaults],
+) -> tuple[Recording, Take, dict[Site, SensorFaults]]:
+    """Recording `number`, how it was moved, and the sensors' faults at its end."""
+    wanted = settings.recordings[number]
+    motions, duration_s = _move(settings, number, wanted, legs)
+    imu: dict[Site, ImuBlock] = {}
+    clocks: dict[Site, Clock] = {}
+    biases: dict[Site, FloatArray] = {}
+    after: dict[Site, SensorFaults] = {}
+    for site in settings.sites:
+        leg = motions[site.side]
+        is_bare = legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
+        tissue = Tissue.RIGID if is_bare else settings.tissue
+        poses = sensor_poses(leg, site, mountings[site], tissue, _rng(settings, 4, _index(site), number))
+        clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
+        noise = _rng(settings, 8, _index(site), number)
+        imu[site], bias = record(settings, site, clocks[site], leg.time_s, poses, faults[site], noise)
+        biases[site] = bias.mean(axis=0)
+        after[site] = replace(faults[site], gyr_bias_rad_s=bias[-1])
+    kinds = {Standing: RecordingKind.STANDING, FreeMotion: RecordingKind.FREE_MOTION, Walk: RecordingKind.WALKING}
+    recording = Recording(
+        name=wanted.name,
+        kind=kinds[type(wanted)],
+        folder=wanted.name.replace(" ", "_"),
+        imu=imu,
+        is_restrapped_before=wanted.is_restrapped_before,
+    )
+    return recording, Take(wanted.name, isinstance(wanted, Standing), motions, clocks, mountings, biases), after
+
+
+def _move(
+    settings: WalkerSettings, number: int, wanted: Standing | FreeMotion | Walk, legs: Mapping[Side, Leg]
+) -> tuple[dict[Side, LegMotion], float]:
+    """Both legs' poses on the fine clock, in a compass direction of the recording's own, and its duration."""
+    rng = _rng(settings, 6, number)
+    per_leg = {side: _rng(settings, 7, number, i) for i, side in enumerate(Side)}
+    if isinstance(wanted, FreeMotion):
+        duration_s = wanted.duration_s * (2 if wanted.is_in_turn else 1)
+        time_s = _fine_clock(settings, duration_s)
+        starts = {Side.LEFT: 0.0, Side.RIGHT: wanted.duration_s if wanted.is_in_turn else 0.0}
+        motions = {side: move_freely(legs[side], wanted, time_s, starts[side], per_leg[side]) for side in Side}
+    else:
+        motions, duration_s = _stand_or_walk(settings, wanted, legs, rng, per_leg)
+    compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
+    return {side: _turned(motion, compass) for side, motion in motions.items()}, duration_s
+
+
+def _stand_or_walk(
+    settings: WalkerSettings,
+    wanted: Standing | Walk,
+    legs: Mapping[Side, Leg],
+    rng: np.random.Generator,
+    per_leg: Mapping[Side, np.random.Generator],
+) -> tuple[dict[Side, LegMotion], float]:
+    if isinstance(wanted, Walk):
+        # no stride takes longer than 2.2 s; the plan says how much of this is needed
+        ample = wanted.standing_before_s + wanted.standing_after_s + 2.2 * (wanted.strides + 2)
+        time_s = _fine_clock(settings, ample)
+        first = list(Side)[int(rng.integers(2))]
+        plan = plan_walk(wanted, time_s, first, settings.prosthetic_side, rng)
+        time_s = time_s[time_s <= plan.duration_s + MARGIN_S]
+        plan = replace(plan, hip_path_m=plan.hip_path_m[: len(time_s)])
+    else:
+        time_s = _fine_clock(settings, wanted.duration_s)
+        plan = plan_standing(time_s, wanted.duration_s)
+    walk = wanted if isinstance(wanted, Walk) else None
+    sway_m = _sway(time_s, rng)
+    return {side: walk_leg(legs[side], plan, walk, time_s, sway_m, per_leg[side]) for side in Side}, plan.duration_s
+
+
+def _fine_clock(settings: WalkerSettings, duration_s: float) -> FloatArray:
+    """From `MARGIN_S` before 0 to as long after the end, at a multiple of the sensors' rate, 0 among its instants."""
+    fine_hz = settings.rate_hz * np.ceil(FINE_HZ / settings.rate_hz)
+    margin = int(np.ceil(MARGIN_S * fine_hz))
+    return np.arange(-margin, int(np.ceil(duration_s * fine_hz)) + margin + 1) / fine_hz
+
+
+def _sway(time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Quiet standing: the body sways (n, 2), forward and left, by a few millimetres at 0.1 to 0.6 Hz."""
+    frequency, phase = rng.uniform(0.1, 0.6, (2, 4)), rng.uniform(0.0, 2.0 * np.pi, (2, 4))
+    waves = [np.sin(2.0 * np.pi * np.outer(time_s, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
+    return np.stack(waves, axis=-1) * 0.0015
+
+
+def _turned(motion: LegMotion, rotation: FloatArray) -> LegMotion:
+    """The same motion in another compass direction; `rotation` (3, 3) about the vertical."""
+    return replace(
+        motion,
+        rotations=rotation @ motion.rotations,
+        origins_m=motion.origins_m @ rotation.T,
+        footholds_m=motion.footholds_m @ rotation[:2, :2].T,
+    )

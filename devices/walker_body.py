@@ -1,0 +1,180 @@
+"""What is asked of the simulated patient, and what body does a seed give?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from core.body import Segment, Side, Site
+from core.samples import FloatArray, RateKind
+
+
+class Tissue(StrEnum):
+    """How a sensor moves against its bone, and a knee against a hinge.
+
+    RIGID: not at all. SOFT: thigh about 2 deg and 5 mm, and 6 deg of knee rotation per 60 deg of flexion. REAL: the
+    same with so much wobble that the off-axis relative rate is that of real walking, 0.55-1.05 rad/s.
+    """
+
+    RIGID = "rigid"
+    SOFT = "soft"
+    REAL = "real"
+
+
+class Motion(StrEnum):
+    """How a leg is moved to identify its joints.
+
+    SIDE_LYING: knee and ankle bend, the thigh hardly moves, the knee axis stands near vertical.
+    """
+
+    FULL = "full"
+    WEAK = "weak"
+    SAGITTAL = "sagittal"
+    KNEE_ONLY = "knee_only"
+    SIDE_LYING = "side_lying"
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    name: str = "standing"
+    duration_s: float = 3.0
+    is_restrapped_before: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class FreeMotion:
+    """Circling of thigh, shank and foot, by both legs at once or, with `is_in_turn`, by the left, then the right.
+
+    `duration_s` is one leg's. `axis_from_vertical_rad` is for side-lying only.
+    """
+
+    name: str = "free motion"
+    duration_s: float = 12.0
+    motion: Motion = Motion.FULL
+    is_in_turn: bool = False
+    axis_from_vertical_rad: float = np.deg2rad(10.0)
+    is_restrapped_before: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Walk:
+    """Standing, `strides` steps of each foot, standing. `turn_rad` (positive to the left) is made half-way."""
+
+    name: str = "walk 1"
+    speed_m_s: float = 1.19
+    strides: int = 9
+    standing_before_s: float = 0.5
+    standing_after_s: float = 0.5
+    turn_rad: float = 0.0
+    is_restrapped_before: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SensorErrors:
+    """Densities per root hertz (of the half sample rate), standard deviations of what is constant in one session."""
+
+    gyro_noise_rad_s: float = np.deg2rad(0.01)
+    gyro_bias_sd_rad_s: float = np.deg2rad(0.3)
+    gyro_bias_walk_rad_s: float = np.deg2rad(0.003)
+    gyro_scale_sd: float = 0.003
+    acc_noise_m_s2: float = 150e-6 * 9.81
+    acc_bias_sd_m_s2: float = 0.03
+    acc_scale_sd: float = 0.003
+
+
+NO_ERRORS = SensorErrors(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class WalkerSettings:
+    """Everything one simulated session depends on.
+
+    Attributes
+    ----------
+    clock_late_s
+        By how much a site's stamps are later than the truth. Missing sites are on time.
+    loss_fraction
+        Share of samples lost, in bursts.
+    stamp_jitter_s
+        Standard deviation of a stamp around the instant of its sample.
+    site_rates_hz
+        Sites that do not sample at `rate_hz`.
+    stiff_knee_side
+        A leg whose knee bends by a quarter only.
+    """
+
+    seed: int = 0
+    recordings: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), Walk())
+    sites: tuple[Site, ...] = tuple(Site)
+    tissue: Tissue = Tissue.RIGID
+    prosthetic_side: Side | None = None
+    stiff_knee_side: Side | None = None
+    rate_hz: float = 100.0
+    site_rates_hz: Mapping[Site, float] = field(default_factory=dict)
+    rate_kind: RateKind = RateKind.INSTANTANEOUS
+    clock_late_s: Mapping[Site, float] = field(default_factory=dict)
+    loss_fraction: float = 0.0
+    stamp_jitter_s: float = 0.0
+    errors: SensorErrors = SensorErrors()
+    mounting_sd_m: float = 0.025
+
+
+@dataclass(frozen=True, slots=True)
+class Leg:
+    """One leg of the patient. Segment axes: x forward, y left, z up in neutral stance, on both legs.
+
+    A segment's origin is its proximal joint: hip, knee, ankle. `knee_axis` and `ankle_axis` (unit, clinical sign) are
+    the same vector in both their segments' axes.
+    """
+
+    side: Side
+    thigh_m: float
+    shank_m: float
+    knee_axis: FloatArray
+    ankle_axis: FloatArray
+    standing_knee_rad: float
+    knee_gain: float
+    ankle_gain: float
+    toe_out_rad: float
+    knee_rotation_per_flexion: float
+    is_prosthetic: bool
+
+    @property
+    def outward(self) -> float:
+        """+1 where outward is +y, the left leg; -1 on the right."""
+        return 1.0 if self.side is Side.LEFT else -1.0
+
+
+HEEL_M = np.array([-0.05, 0.0, -0.08])  # lowest points of the foot, from the ankle
+TOE_M = np.array([0.15, 0.0, -0.08])
+
+SENSOR_PLACES_M = {  # from the proximal joint, y outward: side of the thigh, front of the shin, instep
+    Segment.THIGH: np.array([0.02, 0.07, -0.22]),
+    Segment.SHANK: np.array([0.04, 0.03, -0.20]),
+    Segment.FOOT: np.array([0.09, 0.0, -0.03]),
+}
+
+
+def make_leg(settings: WalkerSettings, side: Side) -> Leg:
+    rng = np.random.default_rng([settings.seed, 1, list(Side).index(side)])
+    is_prosthetic = settings.prosthetic_side is side
+    knee_axis = np.array([0.0, 1.0, 0.0]) + rng.normal(0.0, np.tan(np.deg2rad(3.0)), 3) * [1, 0, 1]
+    # the malleoli: the lateral one is lower and further back (Isman & Inman 1969: 80 deg to the tibia, 84 to the foot)
+    outward = 1.0 if side is Side.LEFT else -1.0
+    ankle_axis = np.array([outward * 0.08, -1.0, outward * 0.10]) + rng.normal(0.0, 0.04, 3) * [1, 0, 1]
+    has_rotation = settings.tissue is not Tissue.RIGID and not is_prosthetic
+    return Leg(
+        side=side,
+        thigh_m=0.43 * rng.normal(1.0, 0.01),
+        shank_m=0.43 * rng.normal(1.0, 0.01),
+        knee_axis=knee_axis / np.linalg.norm(knee_axis),
+        ankle_axis=ankle_axis / np.linalg.norm(ankle_axis),
+        standing_knee_rad=np.deg2rad(np.clip(rng.normal(4.0, 2.0), 0.5, 9.0)),
+        knee_gain=rng.normal(1.0, 0.03) * (0.25 if settings.stiff_knee_side is side else 1.0),
+        ankle_gain=rng.normal(1.0, 0.05),
+        toe_out_rad=outward * np.deg2rad(rng.normal(7.0, 2.0)),
+        # internal rotation turns the front of the shank inward: about -z on the left, +z on the right
+        knee_rotation_per_flexion=-outward * 0.1 if has_rotation else 0.0,
+        is_prosthetic=is_prosthetic,
+    )

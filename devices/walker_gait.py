@@ -1,0 +1,406 @@
+"""How does a leg stand and walk, so that its foot never slides and its knee bends as a human's does?
+
+The order of things for one leg: when and where the foot stands (`StepPlan`); the forward path of the hips, shared by
+both legs; the knee curve; the pitch of the foot while it rolls over heel, sole and toe. These give the ankle in stance.
+In swing the ankle's curve and the hip's path are bridged from toe-off to the next initial contact; the foot follows.
+Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can tell.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import BPoly, PchipInterpolator
+
+from core.body import Side
+from core.samples import FloatArray, IntArray
+from devices.walker_body import HEEL_M, TOE_M, Leg, Walk
+from devices.walker_motion import (
+    Y_AXIS,
+    Z_AXIS,
+    FootEvents,
+    JointAngles,
+    LegMotion,
+    ankle_rotation,
+    hang_from_hip,
+    knee_rotation,
+    rotation_about,
+    smooth,
+    smooth_step,
+)
+
+HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
+MARGIN_S = 0.03  # the rolling goes on this long beyond both ends of stance, so that swing can join on smoothly
+PITCH_WIDTH_S = 0.012  # an impact takes some 20 ms to turn a foot
+LEAST_CLEARANCE_M = 0.012  # Winter 1992, doi 10.1093/ptj/72.1.45: 1.3 cm under the toe
+TURN_RADIUS_M = 0.8
+
+# Knee flexion, deg, over stance and swing (each 0-1) of a stride at comfortable speed: the two-peaked curve of every
+# textbook (loading peak at 14 % of the stride, swing peak at 73 %), drawn by hand
+KNEE_STANCE = (
+    (0.0, 4.0),
+    (0.08, 8.5),
+    (0.23, 17.5),
+    (0.41, 11.0),
+    (0.57, 5.0),
+    (0.69, 3.5),
+    (0.82, 7.5),
+    (0.90, 15.0),
+    (1.0, 35.0),
+)
+KNEE_SWING = ((0.11, 49.0), (0.31, 61.0), (0.48, 55.0), (0.62, 40.0), (0.76, 19.0), (0.88, 4.5), (0.95, 1.5))
+INVERSION_DEG = ((0.0, 2.0), (0.2, -3.5), (0.7, -1.0), (1.0, 4.0), (1.5, 2.5))  # over stance 0-1 and swing 1-2
+ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Gait:
+    """What speed decides: stride length and time, the shares of the stride, the size of the curves."""
+
+    speed_m_s: float
+    stride_m: float
+    stride_s: float
+    stance: float
+    full_contact: float
+    heel_rise: float
+    midstance: float
+    contact_pitch_rad: float
+    toe_off_ankle_rad: float
+    knee_loading: float
+    knee_swing: float
+    shock: float
+
+
+def gait_at(speed_m_s: float) -> Gait:
+    """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640)."""
+    relative = speed_m_s / 1.19
+    stride_m = 1.28 * relative**0.55
+    stance = 0.605 - 0.048 * (speed_m_s - 1.19) + 0.05 * max(0.0, 0.8 - speed_m_s)
+    return Gait(
+        speed_m_s=speed_m_s,
+        stride_m=stride_m,
+        stride_s=stride_m / speed_m_s,
+        stance=stance,
+        full_contact=0.105,
+        heel_rise=0.375 + 0.06 * (1.0 - relative),
+        midstance=0.29 + 0.6 * (stance - 0.605),
+        contact_pitch_rad=np.deg2rad(19.0) * relative**0.5,
+        toe_off_ankle_rad=np.deg2rad(-12.5) * min(relative, 1.0) ** 0.6,
+        knee_loading=min(relative**0.7, 1.4),
+        knee_swing=0.85 + 0.15 * min(relative, 1.3),
+        shock=min(relative, 1.5),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class StepPlan:
+    """The stances of one foot: the first and the last are standing, so contact and toe-off are infinite at the ends.
+
+    All (i,). `ankle_m` is where along the path the ankle stands.
+    """
+
+    contact_s: FloatArray
+    full_contact_s: FloatArray
+    heel_rise_s: FloatArray
+    toe_off_s: FloatArray
+    ankle_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class WalkPlan:
+    """Both feet's steps, and when the hips speed up and slow down along the path."""
+
+    gait: Gait
+    duration_s: float
+    hip_path_m: FloatArray
+    steps: dict[Side, StepPlan]
+
+
+def plan_walk(
+    walk: Walk, time_s: FloatArray, first: Side, prosthetic_side: Side | None, rng: np.random.Generator
+) -> WalkPlan:
+    """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording."""
+    gait = gait_at(walk.speed_m_s)
+    stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
+    first_off = walk.standing_before_s + 0.3 * stride_s
+    steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides)
+    contact = first_off + swing_s + np.concatenate([[0.0], np.cumsum(steps_s[1:])])
+    at_speed = contact[0] + 0.12 * stride_s
+    slowing = contact[-2]
+    stopped = slowing + 2.0 * gait.midstance * stride_s
+    speed = walk.speed_m_s * (
+        smooth_step((time_s - at_speed) / (0.65 * stride_s) + 1.0)
+        - smooth_step((time_s - slowing) / (stopped - slowing))
+    )
+    hip_path = np.cumsum(speed) * (time_s[1] - time_s[0])
+    placed_s = contact + gait.midstance * stride_s
+    ankle = np.interp(placed_s, time_s, hip_path)
+    ankle[-2:] = hip_path[-1]
+    ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
+    other = Side.RIGHT if first is Side.LEFT else Side.LEFT
+    plans = {
+        side: _plan_foot(
+            gait,
+            side is prosthetic_side,
+            contact[k::2],
+            np.concatenate([[hip_path[0]], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
+        )
+        for k, side in enumerate((first, other))
+    }
+    return WalkPlan(gait, float(stopped + walk.standing_after_s + 0.2 * stride_s), hip_path, plans)
+
+
+def _plan_foot(gait: Gait, is_prosthetic: bool, contact_s: FloatArray, ankle_m: FloatArray) -> StepPlan:
+    full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
+    swing_s = (1.0 - gait.stance) * gait.stride_s
+    starts = np.concatenate([[-np.inf], contact_s])
+    ends = np.concatenate([contact_s - swing_s, [np.inf]])
+    return StepPlan(
+        contact_s=starts,
+        full_contact_s=starts + full_contact * gait.stride_s,
+        heel_rise_s=ends - (gait.stance - heel_rise) * gait.stride_s,
+        toe_off_s=ends,
+        ankle_m=ankle_m,
+    )
+
+
+def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
+    """Both feet side by side, no step."""
+    foot = _plan_foot(gait_at(1.19), False, np.empty(0), np.array([-HIP_AHEAD_OF_ANKLE_M]))
+    return WalkPlan(gait_at(1.19), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
+
+
+def walk_leg(
+    leg: Leg, plan: WalkPlan, walk: Walk | None, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator
+) -> LegMotion:
+    """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left."""
+    steps, gait = plan.steps[leg.side], plan.gait
+    step_s = time_s[1] - time_s[0]
+    stance = _stance_at(steps, time_s)
+    swings = [
+        (int(np.searchsorted(time_s, off)), int(np.searchsorted(time_s, on)))
+        for off, on in zip(steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)
+    ]
+    shock = _shock(steps, time_s) * gait.shock
+    knee = smooth(_knee_curve(leg, steps, gait, time_s, rng), step_s, 0.02) + np.deg2rad(0.3) * leg.knee_gain * shock
+    pitch = smooth(_stance_pitch(leg, plan, time_s), step_s, PITCH_WIDTH_S) + np.deg2rad(0.4) * shock
+    rolled_x, rolled_z = _roll(pitch)
+    rolled_x, rolled_z = rolled_x + 0.0010 * shock, rolled_z - 0.0005 * shock
+
+    ahead = plan.hip_path_m + sway_m[:, 0] - (steps.ankle_m[stance] + rolled_x)
+    for swing in swings:
+        _bridge(ahead, swing, step_s)
+    lean = _shank_lean(leg, ahead, knee)
+    ankle = pitch + lean
+    lifted = np.deg2rad(2.0 if leg.is_prosthetic else 4.5)
+    for swing in swings:
+        _bridge(ankle, swing, step_s, lifted)
+
+    sway = sway_m[:, 1] / (leg.thigh_m + leg.shank_m) * leg.outward
+    angles = JointAngles(
+        knee=knee,
+        ankle=ankle,
+        inversion=_curve(INVERSION_DEG, steps, time_s, step_s) - sway,
+        rotation=_curve(ROTATION_DEG, steps, time_s, step_s),
+    )
+    path_m, heading = _path(walk, plan.hip_path_m)
+    place, yaw = _footholds(leg, steps, path_m, heading)
+    foot = rotation_about(Z_AXIS, _yaw_at(yaw, steps, time_s)) @ rotation_about(Y_AXIS, lean - ankle)
+    thigh = foot @ np.swapaxes(knee_rotation(leg, angles) @ ankle_rotation(leg, angles), 1, 2)
+    _, hanging = hang_from_hip(leg, thigh, np.zeros((len(time_s), 3)), angles)
+    hip = _stand(place[stance], yaw[stance], rolled_x, rolled_z) - hanging[2]
+    for swing in swings:
+        _bridge(hip, swing, step_s)
+        _lift_hip(hip, foot, hanging[2], swing)
+    rotations, origins = hang_from_hip(leg, thigh, hip, angles)
+    events = FootEvents(steps.contact_s[1:], steps.full_contact_s[1:], steps.heel_rise_s[:-1], steps.toe_off_s[:-1])
+    return LegMotion(time_s, angles, rotations, origins, events, place)
+
+
+def _stance_at(steps: StepPlan, time_s: FloatArray) -> IntArray:
+    """Which foothold counts at each instant: the next one from the middle of each swing on."""
+    return np.searchsorted(0.5 * (steps.toe_off_s[:-1] + steps.contact_s[1:]), time_s)
+
+
+def _knots(time_s: FloatArray, rows: list[tuple[float, float]], rest: float) -> FloatArray:
+    """A curve (n,) through knots (s, value) that is `rest` long before and after them."""
+    knots = np.array(
+        [(time_s[0] - 2.0, rest), (time_s[0] - 1.0, rest), *rows, (time_s[-1] + 1.0, rest), (time_s[-1] + 2.0, rest)]
+    )
+    return np.asarray(PchipInterpolator(knots[:, 0], knots[:, 1])(time_s))
+
+
+def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Knee flexion (n,) over all strides, of slightly different size each."""
+    stance_s = gait.stance * gait.stride_s
+    rest = float(np.rad2deg(leg.standing_knee_rad))
+    rows: list[tuple[float, float]] = []
+    last = len(steps.contact_s) - 1
+    for i in range(last + 1):
+        loading = gait.knee_loading * leg.knee_gain * rng.normal(1.0, 0.05)
+        swing = gait.knee_swing * leg.knee_gain * rng.normal(1.0, 0.015)
+        on, off = steps.contact_s[i], steps.toe_off_s[i]
+        if i == 0:
+            on = off - stance_s
+            rows.append((steps.heel_rise_s[i], rest))
+        for p, deg in KNEE_STANCE:
+            is_wanted = (i > 0 or on + p * stance_s > steps.heel_rise_s[i] + 0.02) and (i < last or p < 0.3)
+            if i < last and is_wanted:
+                size = loading if p < 0.6 else swing
+                rows.append((on + p * (off - on), 3.5 + (deg - 3.5) * size))
+            elif is_wanted:
+                rows.append((on + p * stance_s, 3.5 + (deg - 3.5) * loading))
+        if i == last:
+            rows.append((on + 0.6 * stance_s, rest))
+        else:
+            rows += [
+                (off + u * (steps.contact_s[i + 1] - off), max(3.5 + (deg - 3.5) * swing, 0.5)) for u, deg in KNEE_SWING
+            ]
+    return np.deg2rad(_knots(time_s, rows if last else [], rest))
+
+
+def _stance_pitch(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> FloatArray:
+    """Pitch of the foot (n,), toes up positive, zero in foot flat; in swing it means nothing."""
+    steps, w = plan.steps[leg.side], PITCH_WIDTH_S
+    shares = ((0.0, 0.0), (0.35, 0.10), (0.6, 0.29), (0.82, 0.63), (1.0, 1.0))
+    if leg.is_prosthetic:  # a stiff ankle turns the foot with the shank
+        shares = ((0.0, 0.0), (0.35, 0.20), (0.6, 0.43), (0.82, 0.71), (1.0, 1.0))
+    rows: list[tuple[float, float]] = []
+    for i in range(len(steps.contact_s)):
+        if i > 0:
+            on = steps.contact_s[i]
+            contact = _contact_pitch(leg, plan.gait, float(np.interp(on, time_s, plan.hip_path_m)) - steps.ankle_m[i])
+            rows += [(on - MARGIN_S - 2 * w, 1.25 * contact), (on, contact), (steps.full_contact_s[i] - w, 0.0)]
+        if i + 1 < len(steps.contact_s):
+            rise, end = steps.heel_rise_s[i] + w, steps.toe_off_s[i]
+            off = _toe_off_pitch(leg, plan.gait, float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i])
+            rows += [(rise + p * (end - rise), share * off) for p, share in shares]
+            rows.append((end + MARGIN_S + 2 * w, 1.2 * off))
+    return _knots(time_s, rows, 0.0)
+
+
+def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
+    """The pitch that lands the heel with the ankle at about zero; the last step before standing lands nearly flat."""
+    wanted = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0)
+    lean = _shank_lean(leg, np.array([hip_ahead_m]), np.deg2rad(np.array([4.0])))
+    return float(np.clip(wanted - lean[0], np.deg2rad(2.0), gait.contact_pitch_rad))
+
+
+def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
+    """The pitch that gives the ankle its plantarflexion at toe-off, when the hip is `hip_ahead_m` of the foothold."""
+    knee = np.deg2rad(np.array([3.5 + 31.5 * leg.knee_gain * gait.knee_swing]))
+    wanted = np.deg2rad(-2.0) if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain
+    pitch = np.array([-0.5])
+    for _ in range(8):  # the rolling foot carries the ankle forward: a contraction by a fifth each time
+        pitch = wanted - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)
+    return float(pitch[0])
+
+
+def _shock(steps: StepPlan, time_s: FloatArray) -> FloatArray:
+    """A decaying 25 Hz oscillation (n,) of unit size after each initial contact, over before full contact."""
+    total = np.zeros_like(time_s)
+    for on, full in zip(steps.contact_s[1:], steps.full_contact_s[1:], strict=True):
+        t = np.maximum(time_s - on, 0.0)
+        fade = np.maximum(1.0 - t / (full - on), 0.0) ** 3
+        total += (1.0 - np.exp(-t / 0.008)) ** 2 * np.exp(-t / 0.02) * np.sin(2.0 * np.pi * 25.0 * t) * fade
+    return total
+
+
+def _roll(pitch: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ankle over the floor (n,), forward of its place in foot flat and height, of a foot rolling over heel or toe."""
+    pivot_x = np.where(pitch > 0.0, HEEL_M[0], TOE_M[0])
+    pivot_z = np.where(pitch > 0.0, HEEL_M[2], TOE_M[2])
+    c, s = np.cos(pitch), np.sin(pitch)
+    return pivot_x - (c * pivot_x - s * pivot_z), -(s * pivot_x + c * pivot_z)
+
+
+def _shank_lean(leg: Leg, ahead_m: FloatArray, knee: FloatArray) -> FloatArray:
+    """How far the shank leans forward, rad (n,), when the hip stands `ahead_m` of the ankle and the knee is bent."""
+    along = leg.shank_m + leg.thigh_m * np.cos(knee)
+    across = leg.thigh_m * np.sin(knee)
+    return np.arcsin(ahead_m / np.hypot(along, across)) + np.arctan2(across, along)
+
+
+def _bridge(signal: FloatArray, swing: tuple[int, int], step_s: float, middle: float | None = None) -> None:
+    """Replace `signal` (n,) or (n, k) between two indices by a curve that joins on with two derivatives, in place.
+
+    With `middle` it passes through this value, level, at 65 % of the way.
+    """
+    ends = []
+    for i in swing:
+        a, b, c, d, e = signal[i - 2 : i + 3]
+        ends.append(
+            np.stack(
+                [c, (a - 8 * b + 8 * d - e) / (12 * step_s), (-a + 16 * b - 30 * c + 16 * d - e) / (12 * step_s**2)]
+            )
+        )
+    x, knots = np.array([0.0, (swing[1] - swing[0]) * step_s]), ends
+    if middle is not None:
+        x = np.array([x[0], 0.65 * x[1], x[1]])
+        knots = [ends[0], np.array([middle, 0.0, -0.5 / x[2] ** 2]), ends[1]]
+    curve = BPoly.from_derivatives(x, knots)
+    signal[swing[0] : swing[1] + 1] = curve(np.arange(swing[1] - swing[0] + 1) * step_s)
+
+
+def _curve(rows_deg: tuple[tuple[float, float], ...], steps: StepPlan, time_s: FloatArray, step_s: float) -> FloatArray:
+    """A curve (n,), rad, given over stance (0-1) and swing (1-2), zero while standing."""
+    rows: list[tuple[float, float]] = []
+    for i in range(1, len(steps.contact_s)):
+        on, off = steps.contact_s[i], steps.toe_off_s[i]
+        if i == 1:
+            rows.append((steps.heel_rise_s[0], 0.0))
+            rows += [
+                (steps.toe_off_s[0] + (p - 1.0) * (on - steps.toe_off_s[0]), deg) for p, deg in rows_deg if p >= 1.0
+            ]
+        if i + 1 < len(steps.contact_s):
+            following = steps.contact_s[i + 1]
+            rows += [
+                (on + p * (off - on) if p <= 1.0 else off + (p - 1.0) * (following - off), deg) for p, deg in rows_deg
+            ]
+        else:
+            rows += [(on, rows_deg[0][1]), (on + 0.8, 0.0)]
+    return smooth(np.deg2rad(_knots(time_s, rows, 0.0)), step_s, 0.05)
+
+
+def _path(walk: Walk | None, hip_path_m: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Where the path lies, (3, m): its length, x, y on a grid of its own; and its heading (m,)."""
+    length = np.arange(hip_path_m.min() - 0.5, hip_path_m.max() + 0.5, 0.01)
+    turn = walk.turn_rad if walk else 0.0
+    half, arc = 0.5 * hip_path_m.max(), max(abs(turn) * TURN_RADIUS_M, 0.1)
+    heading = turn * smooth_step((length - half) / (1.3 * arc) + 0.5)
+    xy = np.cumsum(np.stack([np.cos(heading), np.sin(heading)]), axis=1) * 0.01
+    return np.vstack([length, xy]), heading
+
+
+def _footholds(leg: Leg, steps: StepPlan, path_m: FloatArray, heading: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Ankle over the floor (i, 2) and direction of the foot (i,) of each stance."""
+    yaw = np.interp(steps.ankle_m, path_m[0], heading)
+    beside = 0.08 * leg.outward * np.stack([-np.sin(yaw), np.cos(yaw)], axis=-1)
+    place = np.stack([np.interp(steps.ankle_m, path_m[0], axis) for axis in path_m[1:]], axis=-1) + beside
+    return place, yaw + leg.toe_out_rad
+
+
+def _yaw_at(yaw: FloatArray, steps: StepPlan, time_s: FloatArray) -> FloatArray:
+    """Direction of the foot (n,): it turns in swing only, with a little sway of its own."""
+    total = np.full_like(time_s, yaw[0])
+    for i, (off, on) in enumerate(zip(steps.toe_off_s[:-1], steps.contact_s[1:], strict=True)):
+        u = np.clip((time_s - off) / (on - off), 0.0, 1.0)
+        total += (yaw[i + 1] - yaw[i]) * smooth_step(u) + np.deg2rad(4.0) * (4.0 * u * (1.0 - u)) ** 3
+    return total
+
+
+def _stand(place: FloatArray, yaw: FloatArray, rolled_x: FloatArray, rolled_z: FloatArray) -> FloatArray:
+    """Ankle (n, 3) of a foot that rolls along its own direction over a foothold."""
+    x = place[:, 0] + np.cos(yaw) * rolled_x
+    return np.stack([x, place[:, 1] + np.sin(yaw) * rolled_x, rolled_z], axis=-1)
+
+
+def _lift_hip(hip: FloatArray, foot: FloatArray, ankle_below_hip: FloatArray, swing: tuple[int, int]) -> None:
+    """Raise the hip in mid-swing by what heel or toe would lack over the floor, in place."""
+    span = slice(swing[0], swing[1] + 1)
+    u = np.linspace(0.0, 1.0, swing[1] - swing[0] + 1)
+    bump = (4.0 * u * (1.0 - u)) ** 3
+    ankle_z = hip[span, 2] + ankle_below_hip[span, 2]
+    lowest = ankle_z + np.minimum(foot[span] @ HEEL_M, foot[span] @ TOE_M)[:, 2]
+    inner = slice(len(u) // 5, len(u) - len(u) // 5)
+    lack = (LEAST_CLEARANCE_M - lowest[inner]) / bump[inner]
+    hip[span, 2] += max(0.0, float(lack.max())) * bump

@@ -1,0 +1,247 @@
+"""What does a sensor strapped to a moving segment record?
+
+Rates and specific forces come from the sensor's poses alone, by differences of fourth order on the fine clock.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from core.body import Segment, Side, Site
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
+from devices.walker_body import SENSOR_PLACES_M, SensorErrors, Tissue, WalkerSettings
+from devices.walker_motion import LegMotion
+
+GRAVITY_M_S2 = np.array([0.0, 0.0, -9.81])
+SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
+TISSUE_SHARE = {Segment.THIGH: 1.0, Segment.SHANK: 0.6, Segment.FOOT: 0.25}
+TISSUE_RAD, TISSUE_M = np.deg2rad(2.0), 0.005
+REAL_WALK_WOBBLE, REAL_FREE_WOBBLE = 0.95, 0.45  # in walking the off-axis relative rate is then 0.55-1.05 rad/s
+RING_HZ, RING_DECAY_S = 9.0, 0.08
+LOST_AT_ONCE = 5  # mean length of a burst, samples
+
+
+@dataclass(frozen=True, slots=True)
+class Mounting:
+    """Where a sensor sits: `segment_from_sensor` (3, 3) and `place_m` (3,) from the segment's proximal joint."""
+
+    segment_from_sensor: FloatArray
+    place_m: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class SensorFaults:
+    """What is constant in one sensor over one session: scales (3,) and biases (3,) at the start."""
+
+    gyr_scale: FloatArray
+    gyr_bias_rad_s: FloatArray
+    acc_scale: FloatArray
+    acc_bias_m_s2: FloatArray
+
+
+def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Mounting:
+    """Any rotation alike, near the nominal place of the segment."""
+    q = rng.normal(size=4)
+    w, x, y, z = q / np.linalg.norm(q)
+    v = np.array([x, y, z])
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turned = (w * w - v @ v) * np.eye(3) + 2.0 * np.outer(v, v) + 2.0 * w * cross
+    outward = np.array([1.0, 1.0 if site.side is Side.LEFT else -1.0, 1.0])
+    return Mounting(turned, SENSOR_PLACES_M[site.segment] * outward + rng.normal(0.0, spread_m, 3))
+
+
+def draw_faults(errors: SensorErrors, rng: np.random.Generator) -> SensorFaults:
+    draws = rng.normal(size=(4, 3))
+    return SensorFaults(
+        1.0 + errors.gyro_scale_sd * draws[0],
+        errors.gyro_bias_sd_rad_s * draws[1],
+        1.0 + errors.acc_scale_sd * draws[2],
+        errors.acc_bias_sd_m_s2 * draws[3],
+    )
+
+
+def sensor_poses(
+    leg: LegMotion, site: Site, mounting: Mounting, tissue: Tissue, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock."""
+    row = SEGMENT_ROW[site.segment]
+    segment, origin = leg.rotations[row], leg.origins_m[row]
+    if tissue is Tissue.RIGID:
+        return segment @ mounting.segment_from_sensor, origin + segment @ mounting.place_m
+    turn, shift = _tissue_motion(leg, site.segment, tissue, rng)
+    rotation = segment @ _small_rotation(turn) @ mounting.segment_from_sensor
+    return rotation, origin + np.einsum("nij,nj->ni", segment, mounting.place_m + shift)
+
+
+def _tissue_motion(
+    leg: LegMotion, segment: Segment, tissue: Tissue, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3).
+
+    It follows the flexion, rings after each contact and, in the real setting, wobbles at 1.5 to 6 Hz while moving.
+    """
+    t, share = leg.time_s, TISSUE_SHARE[segment]
+    step_s = t[1] - t[0]
+    flexion = leg.angles.ankle if segment is Segment.FOOT else leg.angles.knee
+    drives = [flexion / np.deg2rad(60.0), gaussian_filter1d(np.gradient(flexion, step_s), 0.01 / step_s) / 4.0]
+    ring = np.zeros_like(t)
+    for contact in leg.events.initial_contact_s:
+        since = np.maximum(t - contact, 0.0)
+        start = (1.0 - np.exp(-since / 0.015)) ** 3
+        ring += start * np.exp(-since / RING_DECAY_S) * np.sin(2.0 * np.pi * RING_HZ * since)
+    drives.append(2.0 * ring)
+    turn = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
+    shift = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
+    wobble, wobble_shift = _wobble(t, rng), _wobble(t, rng)
+    if tissue is Tissue.REAL:
+        size = (REAL_WALK_WOBBLE if ring.any() else REAL_FREE_WOBBLE) * _is_moving(leg)[:, None]
+        turn, shift = turn + size * wobble, shift + size * wobble_shift
+    return share * TISSUE_RAD * turn, share * TISSUE_M * shift
+
+
+def _direction(rng: np.random.Generator) -> FloatArray:
+    v = rng.normal(size=3)
+    return np.asarray(v / np.linalg.norm(v))
+
+
+def _wobble(t: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Band noise (n, 3) of unit standard deviation: a few sines each between 1.5 and 6 Hz."""
+    count = 8
+    frequency, phase = rng.uniform(1.5, 6.0, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
+    waves = [np.sin(2.0 * np.pi * np.outer(t, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
+    return np.stack(waves, axis=-1) * np.sqrt(2.0 / count)
+
+
+def _is_moving(leg: LegMotion) -> FloatArray:
+    """How much the leg moves (n,), 0 to 1, smooth."""
+    step_s = leg.time_s[1] - leg.time_s[0]
+    speed = np.abs(np.gradient(leg.angles.knee, step_s)) + np.abs(np.gradient(leg.angles.ankle, step_s))
+    return np.minimum(gaussian_filter1d(np.minimum(speed, 1.5), 0.15 / step_s) / 0.5, 1.0)
+
+
+def _small_rotation(v: FloatArray) -> FloatArray:
+    """Rotation matrices (n, 3, 3) of rotation vectors (n, 3)."""
+    angle = np.linalg.norm(v, axis=1)
+    k = np.zeros((len(v), 3, 3))
+    k[:, 0, 1], k[:, 0, 2], k[:, 1, 2] = -v[:, 2], v[:, 1], -v[:, 0]
+    k -= np.swapaxes(k, 1, 2)
+    sine = np.sinc(angle / np.pi)[:, None, None]
+    versine = 0.5 * np.sinc(0.5 * angle / np.pi)[:, None, None] ** 2
+    return np.asarray(np.eye(3) + sine * k + versine * (k @ k))
+
+
+def angular_rate(rotations: FloatArray, step_s: float) -> FloatArray:
+    """Rate in sensor axes (n, 3) of earth-from-sensor (n, 3, 3) by central differences; two at each end repeat."""
+    near = _rotation_between(rotations[1:-3], rotations[3:-1])
+    far = _rotation_between(rotations[:-4], rotations[4:])
+    return _repeat_ends((8.0 * near - far) / (12.0 * step_s))
+
+
+def _rotation_between(first: FloatArray, second: FloatArray) -> FloatArray:
+    """Rotation vectors (n, 3) from first to second (n, 3, 3), both turned by less than a right angle."""
+    relative = np.swapaxes(first, 1, 2) @ second
+    sine = 0.5 * (relative - np.swapaxes(relative, 1, 2))
+    v = np.stack([sine[:, 2, 1], sine[:, 0, 2], sine[:, 1, 0]], axis=-1)
+    size = np.linalg.norm(v, axis=1, keepdims=True)
+    return np.asarray(v / np.sinc(np.arcsin(np.minimum(size, 1.0)) / np.pi))
+
+
+def acceleration(place_m: FloatArray, step_s: float) -> FloatArray:
+    """Second derivative (n, 3) of a path by central differences; two at each end repeat."""
+    p = place_m
+    return _repeat_ends((-p[:-4] + 16.0 * p[1:-3] - 30.0 * p[2:-2] + 16.0 * p[3:-1] - p[4:]) / (12.0 * step_s**2))
+
+
+def _repeat_ends(inner: FloatArray) -> FloatArray:
+    return np.concatenate([inner[:1], inner[:1], inner, inner[-1:], inner[-1:]])
+
+
+def interpolate(signal: FloatArray, at: FloatArray) -> FloatArray:
+    """Cubic through the four nearest values of `signal` (n, ...), at fractional indices (m,)."""
+    i = np.clip(np.floor(at).astype(int), 1, len(signal) - 3)
+    u = (at - i).reshape(-1, *(1,) * (signal.ndim - 1))
+    a, b, c, d = (signal[i + k] for k in (-1, 0, 1, 2))
+    return np.asarray(
+        -a * u * (u - 1) * (u - 2) / 6
+        + b * (u + 1) * (u - 1) * (u - 2) / 2
+        - c * (u + 1) * u * (u - 2) / 2
+        + d * (u + 1) * u * (u - 1) / 6
+    )
+
+
+def _integral(signal: FloatArray) -> FloatArray:
+    """Running integral (n, 3) per step, exact for cubics inside."""
+    inner = (-signal[:-3] + 13.0 * signal[1:-2] + 13.0 * signal[2:-1] - signal[3:]) / 24.0
+    ends = 0.5 * (signal[:-1] + signal[1:])
+    steps = np.concatenate([ends[:1], inner, ends[-1:]])
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+
+
+@dataclass(frozen=True, slots=True)
+class Clock:
+    """The instants of one sensor's samples (m,) that were kept, and the stamps they got."""
+
+    true_s: FloatArray
+    stamp_s: FloatArray
+
+
+def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> Clock:
+    rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
+    count = int(np.floor(duration_s * rate_hz + 1e-9)) + 1
+    late_s = settings.clock_late_s.get(site, 0.0)
+    stamp = np.arange(count) / rate_hz
+    true = stamp - late_s
+    jitter, lost = rng.normal(size=count), _lost(count, settings.loss_fraction, rng)
+    stamp = stamp + np.clip(settings.stamp_jitter_s * jitter, -0.4 / rate_hz, 0.4 / rate_hz)
+    return Clock(true[~lost], stamp[~lost])
+
+
+def _lost(count: int, fraction: float, rng: np.random.Generator) -> BoolArray:
+    """Which samples (n,) are lost: bursts of `LOST_AT_ONCE` on average, `fraction` of all on average."""
+    chance = rng.uniform(size=count)
+    lost = np.zeros(count, dtype=np.bool_)
+    start = fraction / (LOST_AT_ONCE * max(1.0 - fraction, 1e-9))
+    for i in range(1, count) if fraction > 0.0 else ():
+        lost[i] = chance[i] < (1.0 - 1.0 / LOST_AT_ONCE if lost[i - 1] else start)
+    return lost
+
+
+def record(
+    settings: WalkerSettings,
+    site: Site,
+    clock: Clock,
+    fine_s: FloatArray,
+    poses: tuple[FloatArray, FloatArray],
+    faults: SensorFaults,
+    rng: np.random.Generator,
+) -> tuple[ImuBlock, FloatArray]:
+    """One sensor's samples over one recording, and the gyroscope's bias at each (m, 3)."""
+    rotations, place = poses
+    step_s = float(fine_s[1] - fine_s[0])
+    rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
+    at = (clock.true_s - fine_s[0]) / step_s
+    rate = angular_rate(rotations, step_s)
+    if settings.rate_kind is RateKind.AVERAGED:
+        total = _integral(rate)
+        before = at - 1.0 / (rate_hz * step_s)
+        gyr = np.asarray((interpolate(total, at) - interpolate(total, before)) * step_s * rate_hz)
+    else:
+        gyr = interpolate(rate, at)
+    without_gravity = acceleration(place, step_s) - GRAVITY_M_S2
+    acc = interpolate(np.einsum("nji,nj->ni", rotations, without_gravity), at)
+
+    errors, n = settings.errors, len(at)
+    gyr_noise, acc_noise = rng.normal(size=(2, n, 3)) * np.sqrt(0.5 * rate_hz)
+    since = np.diff(clock.true_s, prepend=clock.true_s[:1])[:, None]
+    bias = np.asarray(
+        faults.gyr_bias_rad_s
+        + errors.gyro_bias_walk_rad_s * np.cumsum(rng.normal(size=(n, 3)) * np.sqrt(since), axis=0)
+    )
+    block = ImuBlock(
+        sensor=f"DEMO-{site.value}",
+        time_s=clock.stamp_s,
+        gyr_rad_s=faults.gyr_scale * gyr + bias + errors.gyro_noise_rad_s * gyr_noise,
+        acc_m_s2=faults.acc_scale * acc + faults.acc_bias_m_s2 + errors.acc_noise_m_s2 * acc_noise,
+    )
+    return block, bias
