@@ -8,7 +8,7 @@ are numbered here; and it ends a file with a table of contents in random order, 
 anew, as it does for a log that was never closed.
 """
 
-import os
+import errno
 import struct
 import tempfile
 import uuid
@@ -174,15 +174,19 @@ def _remove_chance(path: Path, layout_name: bytes) -> None:
 
     Raises
     ------
+    OSError
+        The log has no end, because Rerun could not write it whole.
     ValueError
         A file of another version of Rerun.
     """
     with path.open("r+b") as file:
         position = FILE_HEADER_BYTES
-        end = os.fstat(file.fileno()).st_size
-        while position < end:
+        while True:
             file.seek(position)
-            kind, length = MESSAGE_HEADER.unpack(file.read(MESSAGE_HEADER.size))
+            header = file.read(MESSAGE_HEADER.size)
+            if len(header) < MESSAGE_HEADER.size:
+                raise OSError(errno.EIO, "the log ends too early", str(path))
+            kind, length = MESSAGE_HEADER.unpack(header)
             if kind == END:
                 file.truncate(position)
                 return

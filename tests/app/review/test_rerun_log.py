@@ -124,3 +124,9 @@ def test_a_session_without_joints_or_recordings_is_a_log_all_the_same(tmp_path: 
 def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
     with pytest.raises(OSError, match="missing"):
         write_log(*visit(), tmp_path / "missing" / "session.rrd")
+
+
+def test_a_log_that_was_not_written_to_its_end_is_an_os_error(tmp_path: Path) -> None:
+    write_log(*visit(), tmp_path / "session.rrd")  # whose end is cut off
+    with pytest.raises(OSError, match="too early"):
+        rerun_log._remove_chance(tmp_path / "session.rrd", b"no such layout")

@@ -1,0 +1,292 @@
+"""What can be done without eyes? One subcommand per thing; without any, the window opens.
+
+Exit codes: 0 done, 2 bad usage or a file that is not what it says it is, 3 interrupted. What takes long to import is
+imported where it is used, so that `--help` and the window come at once.
+"""
+
+import argparse
+import io
+import math
+import os
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, TextIO
+
+if TYPE_CHECKING:
+    from core.findings import Finding
+    from core.results import Analysis
+    from core.samples import Session
+    from devices.files.imports import Imported
+
+DONE, REFUSED, INTERRUPTED = 0, 2, 3
+
+# as core.results.Method, core.published.angles, core.samples.RecordingKind and _importers() have them, whose imports
+# would cost half a second here
+DEFAULT_TAU_S = 2.0
+METHODS = ("robust", "published")
+KINDS = ("standing", "free_motion", "walking")
+FORMATS = ("xsens-mtmanager",)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Do what the command line says and give the exit code.
+
+    Raises
+    ------
+    SystemExit
+        After `--help` (0) and on bad usage (2).
+    """
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")  # a terminal without a degree sign is no reason to stop
+    arguments = list(sys.argv[1:] if argv is None else argv)
+    if not arguments:
+        return _open_window(arguments)
+    wanted = _parser().parse_args(arguments)
+    try:
+        return _run(wanted)
+    except KeyboardInterrupt:
+        return _say_last(f"Stopped. {wanted.out} is as it was before.", INTERRUPTED)
+
+
+def _run(wanted: argparse.Namespace) -> int:
+    from devices.files.refusal import FileRefusedError, one_line
+
+    try:
+        wanted.run(wanted)
+    except FileRefusedError as refusal:
+        return _say_last(str(refusal), REFUSED)
+    except OSError as problem:  # readers put theirs into words, so this is OUT
+        why = one_line(problem.strerror or str(problem))
+        message = f"{one_line(str(wanted.out))}: this cannot be written ({why}). Make room or choose another --out."
+        return _say_last(message, REFUSED)
+    return DONE
+
+
+def _say_last(message: str, code: int) -> int:
+    print(message, file=sys.stderr)
+    return code
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message: str) -> NoReturn:
+        """Refuse in one line, as everything else is refused."""
+        self.exit(REFUSED, f"{self.prog}: {message}. See {self.prog} --help.\n")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="gaitwright",
+        description="Knee and ankle angles from inertial sensors worn in any orientation. "
+        "Without a subcommand the window opens.",
+        epilog="Research use. Not a medical device.",
+    )
+    commands = parser.add_subparsers(title="subcommands", metavar="", required=True)
+    _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
+    _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
+    _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
+    return parser
+
+
+def _add_analyse(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Compute knee and ankle angles of a session folder and write them as a folder of results."
+    parser.add_argument("session", metavar="SESSION", type=Path, help="the session folder")
+    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of results to write")
+    parser.add_argument(
+        "--method",
+        type=_one_of(METHODS),
+        default=METHODS[0],
+        metavar="{robust,published}",
+        help="how joints are identified and which angle is the result (robust)",
+    )
+    parser.add_argument(
+        "--tau",
+        type=_positive,
+        default=DEFAULT_TAU_S,
+        metavar="S",
+        help="time constant of the published fusion in seconds (2)",
+    )
+    parser.add_argument("--no-report", action="store_true", help="write no report.pdf; this version writes none anyway")
+    parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
+    parser.set_defaults(run=_analyse)
+
+
+def _add_demo(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Simulate a patient with known angles, write the session and analyse it. The data are marked."
+    parser.add_argument(
+        "--out",
+        metavar="OUT",
+        type=Path,
+        default=Path("gaitwright-demo"),
+        help="the folder to write: OUT/session and its results in OUT (./gaitwright-demo)",
+    )
+    parser.set_defaults(run=_demo)
+
+
+def _add_import(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Make one recording of files of another program and add it to a session folder."
+    parser.add_argument("files", metavar="FILES", type=Path, nargs="+", help="the files of one recording")
+    parser.add_argument(
+        "--as", dest="format", type=_one_of(FORMATS), required=True, metavar="FORMAT", help=", ".join(FORMATS)
+    )
+    parser.add_argument(
+        "--map",
+        required=True,
+        metavar="SITE=FILE_OR_SENSOR_ID,...",
+        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot",
+    )
+    parser.add_argument("--kind", type=_one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
+    parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
+    parser.add_argument("--rate", type=_positive, metavar="HZ", help="samples per second, where the files do not tell")
+    parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
+    parser.set_defaults(run=_import)
+
+
+def _analyse(wanted: argparse.Namespace) -> None:
+    from app.reports.result_folder import OWN_SESSION, check_place, written_beside
+    from devices.files.session_folder import read_session
+
+    check_place(wanted.out, wanted.session)
+    session_is_inside = wanted.session.resolve() == wanted.out.resolve() / OWN_SESSION
+    with _Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
+        progress(0.0, str(wanted.session))
+        session = read_session(wanted.session)
+        analysis = _write_analysis(session, folder, wanted.method, wanted.tau, not wanted.no_rrd, progress)
+    _tell(analysis, wanted.out)
+
+
+def _demo(wanted: argparse.Namespace) -> None:
+    from app.reports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
+    from devices.files.session_folder import read_session, write_session
+    from devices.walker import WalkerSettings, simulate
+
+    check_demonstration_place(wanted.out)
+    with _Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
+        progress(0.0, "simulated patient")
+        simulated = simulate(WalkerSettings())
+        write_session(simulated.session, folder / OWN_SESSION)
+        session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
+        analysis = _write_analysis(session, folder, METHODS[0], DEFAULT_TAU_S, True, progress)
+    _tell(analysis, wanted.out)
+
+
+def _import(wanted: argparse.Namespace) -> None:
+    from core.samples import Recording, RecordingKind, Session
+    from devices.files.imports import add_recording, folder_for, free_name, parse_map
+    from devices.files.refusal import FileRefusedError
+    from devices.files.session_folder import read_session, write_session
+
+    kind = RecordingKind(wanted.kind)
+    placement = parse_map(wanted.map)
+    with _Progress(sys.stderr) as progress:
+        is_new = not wanted.out.exists() or (wanted.out.is_dir() and not any(wanted.out.iterdir()))
+        session = Session(()) if is_new else read_session(wanted.out)
+        name = wanted.recording or free_name(session, kind)
+        progress(0.0, name)
+        try:
+            imported = _importers()[wanted.format](wanted.files, placement, name, wanted.rate)
+        except OSError as problem:
+            what = f"this cannot be read ({problem.strerror})"
+            raise FileRefusedError(str(problem.filename), what, "Check its permissions") from problem
+        recording = Recording(name, kind, folder_for(name), imported.imu)
+        session = add_recording(session, recording, imported.sensors, imported.findings)
+        progress(0.5, str(wanted.out))
+        write_session(session, wanted.out)
+    print(f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites.")
+    _tell_findings(imported.findings, lowest="info")
+
+
+def _importers() -> dict[str, Callable[..., "Imported"]]:
+    from devices.files.xsens_mtmanager import import_mtmanager
+
+    return {"xsens-mtmanager": import_mtmanager}
+
+
+def _write_analysis(
+    session: "Session", folder: Path, method: str, tau_s: float, has_log: bool, progress: "_Progress"
+) -> "Analysis":
+    from app.reports.result_folder import write_results
+    from core.analysis import analyse
+    from core.results import Method
+
+    analysis = analyse(session, Method(method), tau_s, progress)
+    progress(1.0, "writing")
+    write_results(session, analysis, folder, has_log=has_log)
+    return analysis
+
+
+def _tell(analysis: "Analysis", out: Path) -> None:
+    """Say where the results are and what needs a look."""
+    from app.wording import name_of
+
+    joints = [joint for span in analysis.calibrations for joint in span.joints]
+    names = ", ".join(name_of(joint) for joint in dict.fromkeys(joints)) or "no joint"
+    print(f"{out}: {names}; {len(analysis.recordings)} recordings.")
+    _tell_findings(analysis.findings, lowest="warning")
+
+
+def _tell_findings(findings: Sequence["Finding"], lowest: str) -> None:
+    from app.wording import sentence
+    from core.findings import Severity
+
+    severities = list(Severity)
+    for finding in findings:
+        if severities.index(finding.severity) >= severities.index(Severity(lowest)):
+            print(f"- {sentence(finding)}")
+
+
+class _Progress:
+    """A line that renews itself on a terminal, else a line for every tenth of the work."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._is_terminal = stream.isatty()
+        self._next_percent = 0
+
+    def __enter__(self) -> "_Progress":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._is_terminal:
+            print("\r\x1b[K", end="", file=self._stream, flush=True)
+
+    def __call__(self, share: float, what: str) -> None:
+        from app.wording import place
+        from devices.files.refusal import one_line
+
+        percent = min(100, round(100 * share))
+        text = f"{percent:3d} % {place(one_line(what))}"
+        if self._is_terminal:
+            print(f"\r\x1b[K{text[:78]}", end="", file=self._stream, flush=True)
+        elif percent >= self._next_percent:
+            print(text, file=self._stream, flush=True)
+            self._next_percent = percent // 10 * 10 + 10
+
+
+def _open_window(arguments: list[str]) -> int:
+    variables = ("DISPLAY", "WAYLAND_DISPLAY", "QT_QPA_PLATFORM")
+    if sys.platform.startswith("linux") and not any(os.environ.get(name) for name in variables):
+        return _say_last("There is no screen here. See gaitwright --help for what works without one.", REFUSED)
+    from app.main_window import open_window
+
+    return open_window(arguments)
+
+
+def _one_of(words: Sequence[str]) -> Callable[[str], str]:
+    def check(text: str) -> str:
+        if text not in words:
+            raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(words)}")
+        return text
+
+    return check
+
+
+def _positive(text: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0 < number < math.inf:
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return number

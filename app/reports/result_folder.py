@@ -1,0 +1,142 @@
+"""Where does an analysis go, and what may it replace there?
+
+A folder of results is written beside its place and renamed, so that it is whole or not there. Recordings are never
+replaced: a place that holds any is refused, but for the session of which the results stand around it (`OUT/session`).
+"""
+
+import shutil
+import tempfile
+import tomllib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path, PurePosixPath
+
+from app.reports.csv_report import write_angles
+from app.reports.summary import read_summary, write_summary
+from core.results import Analysis
+from core.samples import Session
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME as SESSION_FILE
+
+SUMMARY = "summary.json"
+ANGLES = "angles.csv"
+LOG = "session.rrd"
+OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
+
+
+def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log: bool) -> None:
+    """Write every file of an analysis into `folder`, which is there.
+
+    Raises
+    ------
+    FileRefusedError
+        A recording's folder would stand where one of these files or the session stands.
+    OSError
+        The disk is full or cannot be written to.
+    """
+    for recording in analysis.recordings:
+        if PurePosixPath(recording.folder).parts[:1] in ((SUMMARY,), (LOG,), (OWN_SESSION,)):
+            what = f"its folder {recording.folder} has the name of one of the results"
+            raise FileRefusedError(recording.name, what, "Give this recording's folder another name")
+        (folder / recording.folder).mkdir(parents=True, exist_ok=True)
+        write_angles(recording, folder / recording.folder / ANGLES)
+    if has_log:
+        from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write
+
+        write_log(session, analysis, folder / LOG)
+    write_summary(analysis, folder / SUMMARY)
+
+
+def check_place(out: Path, session: Path) -> None:
+    """See whether the results of `session` may stand at `out`.
+
+    Raises
+    ------
+    FileRefusedError
+        `out` lies inside the session, holds other recordings, or is something else than an analysis.
+    """
+    out, session = out.resolve(), session.resolve()
+    if out == session or session in out.parents:
+        what = "this lies inside the session, which stays as it was recorded"
+        raise FileRefusedError(str(out), what, "Choose a folder outside of it for --out")
+    if _is_free(out):
+        return
+    if read_summary(out / SUMMARY) is None:
+        raise FileRefusedError(str(out), "this is there already and is not an analysis", "Choose another --out")
+    _refuse_recordings(out, out / OWN_SESSION if session == out / OWN_SESSION else None)
+
+
+def check_demonstration_place(out: Path) -> None:
+    """See whether a demonstration may stand at `out`: nothing is there, or only a demonstration.
+
+    Raises
+    ------
+    FileRefusedError
+        Something else is there.
+    """
+    out = out.resolve()
+    if _is_free(out):
+        return
+    summary = read_summary(out / SUMMARY)
+    if summary is None or summary.get("simulated") is not True or not _is_simulated(out / OWN_SESSION):
+        raise FileRefusedError(str(out), "this is there already and is not a demonstration", "Choose another --out")
+    _refuse_recordings(out, out / OWN_SESSION)
+
+
+@contextmanager
+def written_beside(out: Path, *, keeps_session: bool = False) -> Iterator[Path]:
+    """Give a folder to write into, and put it in the place of `out` when all is written.
+
+    Whatever is raised inside leaves `out` as it was. With `keeps_session` the recordings in `out` stay in it.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be made or renamed.
+    """
+    out = out.resolve()
+    out.parent.mkdir(parents=True, exist_ok=True)
+    beside = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.parent))
+    new, old = beside / "new", beside / "old"
+    try:
+        new.mkdir()
+        yield new
+        _exchange(out, new, old, [OWN_SESSION] if keeps_session else [])
+    finally:
+        if out.exists() or not old.exists():  # else the old results could not be put back, and are left where they are
+            shutil.rmtree(beside, ignore_errors=True)
+
+
+def _exchange(out: Path, new: Path, old: Path, kept: list[str]) -> None:
+    try:
+        if out.exists():
+            out.rename(old)
+        for name in kept:
+            (old / name).rename(new / name)
+        new.rename(out)
+    except BaseException:
+        for name in kept:
+            if (new / name).exists():
+                (new / name).rename(old / name)
+        if old.exists() and not out.exists():
+            old.rename(out)
+        raise
+
+
+def _is_free(out: Path) -> bool:
+    return not out.exists() or (out.is_dir() and not any(out.iterdir()))
+
+
+def _refuse_recordings(out: Path, own: Path | None) -> None:
+    for file in sorted(out.rglob(SESSION_FILE)):
+        if file.parent != own:
+            what = "this holds recordings, which are never replaced"
+            raise FileRefusedError(str(file.parent), what, "Choose another --out")
+
+
+def _is_simulated(session: Path) -> bool:
+    try:
+        about = tomllib.loads((session / SESSION_FILE).read_text(encoding="utf-8")).get("session")
+    except (OSError, ValueError):
+        return False
+    return isinstance(about, dict) and about.get("simulated") is True
