@@ -33,7 +33,7 @@ def parse_map(text: str) -> dict[Site, str]:
         Not of this shape, an unknown site, a site twice.
     """
     placement: dict[Site, str] = {}
-    for part in re.split(r",(?=\s*\w+=)", text):
+    for part in re.split(r",(?=\s*\w+\s*=)", text):
         site, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or not value:
             raise FileRefusedError(MAP, f"{quoted(part)} does not say which file is at which site", AS_IN)

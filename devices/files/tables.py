@@ -161,7 +161,7 @@ def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: st
         if not text or (comment is not None and text.startswith(comment)):
             continue
         delimiter = max(delimiters, key=text.count)
-        cells = next(csv.reader([text], delimiter=delimiter))
+        cells = next(csv.reader([text], delimiter=delimiter, skipinitialspace=delimiter != " "))
         names = [name.strip() or f"{UNNAMED} {i}" for i, name in enumerate(cells, 1)]
         _refuse_twice(names, where, f"line {number}")
         return names, delimiter, number

@@ -35,6 +35,7 @@ DELIMITERS = "\t;, "
 COUNTER_TURNS_AT = 65536  # 16 bit
 FINE_TICKS_PER_S = 10_000.0
 FINE_TURNS_AT = 2.0**32
+ROTATION_ERROR = 0.01  # of a matrix or norm; six decimals leave 1e-5
 LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
 EXPORT_AGAIN = "Export it again from MT Manager"
 Numbers = NDArray[np.int64]
@@ -202,16 +203,19 @@ def _orientation(table: Table, where: str) -> FloatArray | None:
         error = np.abs(np.linalg.norm(q, axis=1) - 1.0)
     elif names >= set(MATRIX):
         matrix = table.matrix(MATRIX).reshape(-1, 3, 3)
-        error = np.abs(matrix @ matrix.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
-        error = np.where(np.linalg.det(matrix) < 0, np.inf, error)
-        q = _quaternions(Rotation.from_matrix, matrix, error < 0.1)
+        error = np.abs(matrix).max(axis=(1, 2)) - 1.0  # NaN where an element is missing
+        is_small = error < ROTATION_ERROR  # what is larger might not even be multiplied
+        small = matrix[is_small]
+        error[is_small] = np.abs(small @ small.swapaxes(1, 2) - np.eye(3)).max(axis=(1, 2))
+        error[is_small] += np.linalg.det(small) < 0
+        q = _quaternions(Rotation.from_matrix, matrix, error < ROTATION_ERROR)
     elif names >= set(EULER):
         angles = table.matrix(EULER)
         error = np.zeros(len(angles))
         q = _quaternions(lambda a: Rotation.from_euler("ZYX", a, degrees=True), angles, np.isfinite(angles.sum(axis=1)))
     else:
         return None
-    wrong = np.flatnonzero(error > 0.01)  # six decimals leave 1e-5
+    wrong = np.flatnonzero(error > ROTATION_ERROR)
     if len(wrong):
         raise FileRefusedError(f"{where}, {table.place(int(wrong[0]))}", "the orientation is no rotation", EXPORT_AGAIN)
     return q

@@ -1,0 +1,151 @@
+"""Do files find their sites, and recordings their session?"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import ImuBlock, RateKind, Recording, RecordingKind, SensorInfo, Session
+from devices.files.imports import add_recording, folder_for, free_name, parse_map, place_files
+from devices.files.refusal import FileRefusedError
+from devices.files.session_folder import read_session, write_session
+
+
+def block(sensor: str) -> ImuBlock:
+    return ImuBlock(sensor, np.arange(2.0), np.ones((2, 3)), np.ones((2, 3)))
+
+
+def walk(name: str, sensor: str = "A1") -> Recording:
+    return Recording(name, RecordingKind.WALKING, folder_for(name), {Site.LEFT_THIGH: block(sensor)})
+
+
+def test_a_map_names_sites() -> None:
+    placement = parse_map("left_thigh=a/b.txt, left_shank = _00B421E6,right_foot=x,y z.txt")
+    assert placement == {
+        Site.LEFT_THIGH: "a/b.txt",
+        Site.LEFT_SHANK: "_00B421E6",
+        Site.RIGHT_FOOT: "x,y z.txt",
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "does not say which file"),
+        ("left_thigh", "does not say which file"),
+        ("left_thigh=", "does not say which file"),
+        ("pelvis=a", '"pelvis" is not a site'),
+        ("left_thigh=a,left_thigh=b", "left_thigh is there twice"),
+    ],
+)
+def test_a_wrong_map_is_refused(text: str, words: str) -> None:
+    with pytest.raises(FileRefusedError, match=words):
+        parse_map(text)
+
+
+@pytest.fixture
+def files(tmp_path: Path) -> list[Path]:
+    paths = [tmp_path / name for name in ("t_00B40001.txt", "t_00B40002.txt", "u_00B40002.txt", "readme.md")]
+    for path in paths:
+        path.write_text("")
+    return paths
+
+
+def sensors_of(path: Path) -> list[str]:
+    return [path.stem[-8:]] if path.suffix == ".txt" else []
+
+
+@pytest.mark.parametrize("sensor", ["00B40001", "_00B40001", "00b40001", "t_00B40001.txt", "t_00B40001"])
+def test_a_file_is_found_by_its_name_or_sensor(files: list[Path], sensor: str) -> None:
+    placed, left_out = place_files(files, {Site.LEFT_FOOT: sensor}, sensors_of)
+    assert placed == {Site.LEFT_FOOT: files[0].resolve()}
+    assert left_out == files[1:]
+
+
+def test_a_file_is_found_by_its_path(files: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(files[0].parent.parent)
+    for value in (str(files[2]), f"{files[2].parent.name}/u_00B40002.txt"):
+        placed, _ = place_files(files, {Site.LEFT_FOOT: value}, sensors_of)
+        assert placed == {Site.LEFT_FOOT: files[2].resolve()}
+
+
+@pytest.mark.parametrize(
+    ("placement", "words"),
+    [
+        ({Site.LEFT_FOOT: "00B49999"}, "none of the files is or holds .* The sensors there are 00B40001, 00B40002"),
+        ({Site.LEFT_FOOT: "00B40002"}, "may be t_00B40002.txt and u_00B40002.txt"),
+        ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is at two sites"),
+    ],
+)
+def test_a_map_that_fits_no_file_is_refused(files: list[Path], placement: dict[Site, str], words: str) -> None:
+    with pytest.raises(FileRefusedError, match=words):
+        place_files(files, placement, sensors_of)
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(FileRefusedError, match="there is no such file"):
+        place_files([tmp_path / "none.txt"], {}, sensors_of)
+
+
+def test_a_second_import_adds_a_recording(tmp_path: Path) -> None:
+    told = Finding("file_left_out", Severity.INFO, "walk 1", {"name": "x"})
+    info = {Site.LEFT_THIGH: SensorInfo("A1", rate_hz=100.0, rate_kind=RateKind.AVERAGED)}
+    session = add_recording(Session(()), walk("walk 1"), info, [told])
+    assert session.findings == (told,)
+    write_session(session, tmp_path / "s")
+    session = add_recording(read_session(tmp_path / "s"), walk("walk 2"), info)
+    assert session.findings == ()
+    write_session(session, tmp_path / "s")
+    session = read_session(tmp_path / "s")
+    assert [recording.name for recording in session.recordings] == ["walk 1", "walk 2"]
+    assert session.sensors == info
+    assert session.findings == ()
+
+
+def test_a_sensor_that_changes_is_told(tmp_path: Path) -> None:
+    session = add_recording(Session(()), walk("walk 1"), {Site.LEFT_THIGH: SensorInfo("A1", rate_hz=100.0)})
+    other = {Site.LEFT_THIGH: SensorInfo("B2", rate_hz=60.0)}
+    session = add_recording(session, walk("walk 2", "B2"), other)
+    assert [(f.key, f.where) for f in session.findings] == [("sensor_changed", "walk 2, left_thigh")]
+    assert session.sensors[Site.LEFT_THIGH] == SensorInfo("A1")  # the rate is no longer the same for all
+    session = add_recording(session, walk("walk 3", "B2"), other)
+    assert len(session.findings) == 1
+    write_session(session, tmp_path / "s")
+    again = read_session(tmp_path / "s")
+    assert [recording.imu[Site.LEFT_THIGH].sensor for recording in again.recordings] == ["A1", "B2", "B2"]
+    assert [(f.key, f.where) for f in again.findings] == [("sensor_changed", "walk 2, left_thigh")]
+
+
+@pytest.mark.parametrize(
+    ("name", "words"), [("walk 1", "has a recording of this name already"), ("walk_1", 'holds the recording "walk 1"')]
+)
+def test_a_recording_that_is_there_already_is_refused(name: str, words: str) -> None:
+    session = add_recording(Session(()), walk("walk 1"))
+    with pytest.raises(FileRefusedError, match=words):
+        add_recording(session, walk(name))
+
+
+def test_recordings_are_named_by_their_kind() -> None:
+    session = Session(())
+    names = []
+    for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING) * 2:
+        name = free_name(session, kind)
+        session = add_recording(session, Recording(name, kind, folder_for(name), {}))
+        names.append(name)
+    assert names == ["standing", "free motion", "walk 1", "standing 2", "free motion 2", "walk 2"]
+
+
+@pytest.mark.parametrize(
+    ("name", "folder"),
+    [
+        ("walk 1", "walk_1"),
+        ("../../etc", "etc"),
+        ("a/b\\c: d", "a_b_c_d"),
+        ("Übung 2.1", "Übung_2.1"),
+        ("//", "recording"),
+    ],
+)
+def test_a_folder_is_named_after_its_recording(name: str, folder: str) -> None:
+    assert folder_for(name) == folder

@@ -1,0 +1,677 @@
+"""Does a session folder come back as it was written, and is a spoilt one refused in words?"""
+
+import os
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as npst
+
+from core.body import Joint, Site
+from core.findings import Severity
+from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
+from devices.files import session_folder, site_files
+from devices.files.refusal import FileRefusedError
+from devices.files.session_folder import read_session, write_session
+
+COLUMNS = "time_s,acc_x_m_s2,acc_y_m_s2,acc_z_m_s2,gyr_x_rad_s,gyr_y_rad_s,gyr_z_rad_s"
+ROWS = ["0.0,0.1,0.2,9.8,0.01,0.02,0.03", "0.01,0.1,0.2,9.8,0.01,0.02,0.03", "0.02,0.1,0.2,9.8,0.01,0.02,0.03"]
+TOML = """\
+format = "gaitwright-session/1"
+[[recordings]]
+name = "walk 1"
+kind = "walking"
+folder = "walk_1"
+"""
+PLACE = "walk 1, left_thigh"
+MakeSession = Callable[..., Path]
+
+some_text = st.text(st.characters(exclude_categories=["Cs", "Cc"]), max_size=12)
+
+
+def table(*rows: str, columns: str = COLUMNS, end: str = "\n") -> str:
+    return "\n".join([columns, *rows]) + end
+
+
+def thigh(folder: Path) -> ImuBlock:
+    return read_session(folder).recordings[0].imu[Site.LEFT_THIGH]
+
+
+def refusal(folder: Path) -> str:
+    with pytest.raises(FileRefusedError) as caught:
+        read_session(folder)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def keys(session: Session) -> list[tuple[str, str, object]]:
+    return [(finding.key, finding.where, finding.numbers.get("name")) for finding in session.findings]
+
+
+def simple_block(n: int = 3, sensor: str = "left_thigh") -> ImuBlock:
+    rng = np.random.default_rng(n)
+    return ImuBlock(sensor, np.arange(n) / 100, rng.normal(size=(n, 3)), rng.normal(size=(n, 3)))
+
+
+def walk(imu: dict[Site, ImuBlock], name: str = "walk 1", folder: str = "walk_1") -> Recording:
+    return Recording(name, RecordingKind.WALKING, folder, imu)
+
+
+# --- what is read
+
+
+def test_a_session_folder_is_read(make_session: MakeSession) -> None:
+    session = read_session(make_session())
+    assert session.findings == ()
+    assert [(r.name, r.kind, r.folder) for r in session.recordings] == [("walk 1", "walking", "walk_1")]
+    block = session.recordings[0].imu[Site.LEFT_THIGH]
+    np.testing.assert_array_equal(block.time_s, [0.0, 0.01, 0.02])
+    np.testing.assert_array_equal(block.acc_m_s2, [[0.1, 0.2, 9.8]] * 3)
+    np.testing.assert_array_equal(block.gyr_rad_s, [[0.01, 0.02, 0.03]] * 3)
+    assert block.q_earth_from_sensor is None
+    assert block.mag is None
+
+
+def test_every_key_of_the_format_is_read(make_session: MakeSession) -> None:
+    toml = """\
+        format = "gaitwright-session/1"
+        [session]
+        started = 2024-05-01T10:00:00
+        operator = "N. N."
+        surface = "carpet"
+        notes = "none"
+        software = "x 1"
+        simulated = true
+        [patient]
+        code = "P-001"
+        birth_year = 1950
+        sex = "f"
+        height_m = 1.7
+        mass_kg = 70
+        device = "AFO"
+        aids = "stick"
+        affected_side = "left"
+        prosthetic_side = "none"
+        [sensors.left_thigh]
+        serial = "A1"
+        model = "M"
+        firmware = "1.2"
+        rate_hz = 100
+        rate_kind = "averaged"
+        [zero]
+        left_knee = 5
+        [sign]
+        left_knee = -1
+        right_ankle = 1
+        [[recordings]]
+        name = "walk 1"
+        kind = "walking"
+        folder = "walk_1"
+        condition = "alignment A"
+        started = "2024-05-01T10:01:00"
+        kept = false
+        note = "slow"
+        restrapped_before = true
+        """
+    session = read_session(make_session(toml=toml))
+    assert session.findings == ()
+    assert (session.started, session.operator, session.surface) == ("2024-05-01T10:00:00", "N. N.", "carpet")
+    assert (session.notes, session.software, session.is_simulated) == ("none", "x 1", True)
+    assert session.patient == Patient("P-001", 1950, "f", 1.7, 70.0, "AFO", "stick", "left", "none")
+    assert session.sensors == {Site.LEFT_THIGH: SensorInfo("A1", "M", "1.2", 100.0, RateKind.AVERAGED)}
+    assert session.zero_rad == {Joint.LEFT_KNEE: pytest.approx(np.radians(5.0))}
+    assert session.turned_sign == {Joint.LEFT_KNEE: -1, Joint.RIGHT_ANKLE: 1}
+    recording = session.recordings[0]
+    assert (recording.condition, recording.started, recording.note) == ("alignment A", "2024-05-01T10:01:00", "slow")
+    assert (recording.is_kept, recording.is_restrapped_before) == (False, True)
+    assert recording.imu[Site.LEFT_THIGH].sensor == "A1"
+
+
+def test_how_a_text_is_dressed_does_not_matter(make_session: MakeSession) -> None:
+    quoted = ", ".join(f'"{name}"' for name in COLUMNS.split(","))
+    text = "\ufeff" + "\r\n".join([quoted, ROWS[0], ROWS[1].replace(",", " , "), ROWS[2], "", ""])
+    folder = make_session({"left_thigh.csv": text}, toml="\ufeff" + TOML.replace("\n", "\r\n"))
+    assert read_session(folder).findings == ()
+    np.testing.assert_array_equal(thigh(folder).acc_m_s2, [[0.1, 0.2, 9.8]] * 3)
+
+
+def test_columns_may_stand_in_any_order(make_session: MakeSession) -> None:
+    names = ",".join(reversed(COLUMNS.split(",")))
+    folder = make_session({"left_thigh.csv": table("3,2,1,6,5,4,0", columns=names)})
+    np.testing.assert_array_equal(thigh(folder).acc_m_s2, [[4, 5, 6]])
+    np.testing.assert_array_equal(thigh(folder).gyr_rad_s, [[1, 2, 3]])
+
+
+def test_an_empty_cell_is_nan_and_a_missing_row_a_gap(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table("0,,1,1,1,1,1", "0.01, ,nan,1,1,1,1", "5,1,1,1,1,1,1")})
+    block = thigh(folder)
+    np.testing.assert_array_equal(block.time_s, [0, 0.01, 5])
+    np.testing.assert_array_equal(np.isnan(block.acc_m_s2), [[1, 0, 0], [1, 1, 0], [0, 0, 0]])
+
+
+def test_parquet_holds_the_same_samples(make_session: MakeSession) -> None:
+    folder = make_session({})
+    columns: dict[str, object] = {name: np.arange(4.0) + i for i, name in enumerate(COLUMNS.split(","))}
+    columns["gyr_x_rad_s"] = pa.array([1, None, 3, 4], pa.int32())
+    columns["battery"] = pa.array([90, 91, 92, 93])
+    columns["remark"] = pa.array(["a", None, "c", "d"])
+    pq.write_table(pa.table(columns), folder / "walk_1" / "left_thigh.parquet")
+    session = read_session(folder)
+    block = session.recordings[0].imu[Site.LEFT_THIGH]
+    np.testing.assert_array_equal(block.acc_m_s2[:, 1], np.arange(4.0) + 2)
+    np.testing.assert_array_equal(block.gyr_rad_s[:, 0], [1, np.nan, 3, 4])
+    np.testing.assert_array_equal(block.unknown["battery"], [90, 91, 92, 93])
+    assert list(block.unknown["remark"]) == ["a", "", "c", "d"]
+    assert keys(session) == [("unknown_column", PLACE, "battery"), ("unknown_column", PLACE, "remark")]
+
+
+@pytest.mark.parametrize("rows", [0, 1, 5])
+def test_few_samples_are_not_refused(make_session: MakeSession, rows: int) -> None:
+    text = table(*[f"{i},1,1,1,1,1,1" for i in range(rows)])
+    assert len(thigh(make_session({"left_thigh.csv": text}))) == rows
+
+
+def test_orientation_and_field_are_read(make_session: MakeSession) -> None:
+    names = COLUMNS + ",mag_x,mag_y,mag_z,quat_w,quat_x,quat_y,quat_z"
+    block = thigh(make_session({"left_thigh.csv": table("0,1,1,1,1,1,1,7,8,9,1,0,0,0", columns=names)}))
+    np.testing.assert_array_equal(block.mag, [[7, 8, 9]])
+    np.testing.assert_array_equal(block.q_earth_from_sensor, [[1, 0, 0, 0]])
+
+
+def test_half_an_orientation_is_kept_as_unknown(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table("0,1,1,1,1,1,1,0.5", columns=COLUMNS + ",quat_w")})
+    assert keys(read_session(folder)) == [("unknown_column", PLACE, "quat_w")]
+    assert thigh(folder).q_earth_from_sensor is None
+    np.testing.assert_array_equal(thigh(folder).unknown["quat_w"], [0.5])
+
+
+# --- findings
+
+
+def test_doubled_stamps_keep_the_first_row(make_session: MakeSession) -> None:
+    session = read_session(make_session({"left_thigh.csv": table("0,1,1,1,1,1,1", "0,2,2,2,2,2,2", "1,3,3,3,3,3,3")}))
+    assert [(f.key, f.where, f.numbers) for f in session.findings] == [("doubled_stamps", PLACE, {"count": 1})]
+    np.testing.assert_array_equal(session.recordings[0].imu[Site.LEFT_THIGH].acc_m_s2[:, 0], [1, 3])
+
+
+def test_an_infinite_value_is_missing(make_session: MakeSession) -> None:
+    session = read_session(make_session({"left_thigh.csv": table("0,inf,1,1,1,1,1e999")}))
+    assert [(f.key, f.numbers) for f in session.findings] == [("infinite_values", {"count": 2})]
+    assert np.isnan(session.recordings[0].imu[Site.LEFT_THIGH].acc_m_s2[0, 0])
+
+
+def test_a_last_line_without_end_is_read_and_told(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table("0,1,1,1,1,1,1", end="")})
+    assert keys(read_session(folder)) == [("last_line_open", PLACE, None)]
+    assert len(thigh(folder)) == 1
+
+
+def test_files_without_a_site_are_told(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table(*ROWS), "video.mp4": b"\0", ".DS_Store": b"\0"})
+    assert keys(read_session(folder)) == [("file_left_out", "walk 1", "video.mp4")]
+
+
+def test_a_recording_without_data_beside_one_with(make_session: MakeSession) -> None:
+    folder = make_session(toml=TOML + '[[recordings]]\nname = "walk 2"\nkind = "walking"\nfolder = "walk_2"\n')
+    (folder / "walk_2").mkdir()
+    session = read_session(folder)
+    assert keys(session) == [("no_sites", "walk 2", None)]
+    assert len(session.recordings[1].imu) == 0
+
+
+def test_a_sensor_that_changes_is_told(make_session: MakeSession) -> None:
+    second = '[[recordings]]\nname = "walk 2"\nkind = "walking"\nfolder = "walk_2"\nsensors = {left_thigh = "B"}\n'
+    folder = make_session(toml=TOML + second)
+    (folder / "walk_2").mkdir()
+    (folder / "walk_2" / "left_thigh.csv").write_text(table(*ROWS))
+    session = read_session(folder)
+    assert [(f.key, f.where) for f in session.findings] == [("sensor_changed", "walk 2, left_thigh")]
+    assert session.findings[0].numbers == {"before": "left_thigh", "after": "B"}
+
+
+UNKNOWN = """\
+format = "gaitwright-session/1"
+clinic = "north"
+[session]
+room = 4
+[patient]
+shoe = 42.5
+[sensors.left_thigh]
+colour = "red"
+[sensors.pelvis]
+serial = "P"
+[zero]
+left_hip = 3.0
+[sign]
+left_hip = 1
+[extra]
+deep = {list = [1, 2, {a = 2024-01-01}]}
+[[recordings]]
+name = "walk 1"
+kind = "walking"
+folder = "walk_1"
+speed = "slow"
+sensors = 6
+rates_derived = ["hip"]
+"""
+
+
+def test_unknown_keys_are_told_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
+    session = read_session(make_session(toml=UNKNOWN))
+    assert sorted(keys(session)) == sorted(
+        [
+            ("unknown_key", "session.toml", "clinic"),
+            ("unknown_key", "session.toml", "extra"),
+            ("unknown_key", "session", "room"),
+            ("unknown_key", "patient", "shoe"),
+            ("unknown_key", "left_thigh", "colour"),
+            ("unknown_key", "sensors", "pelvis"),
+            ("unknown_key", "zero", "left_hip"),
+            ("unknown_key", "sign", "left_hip"),
+            ("unknown_key", "walk 1", "speed"),
+            ("unknown_key", "walk 1", "sensors"),
+            ("unknown_key", "walk 1", "rates_derived"),
+        ]
+    )
+    grave = {f.where for f in session.findings if f.severity is not Severity.INFO}
+    assert grave == {"zero", "sign"}
+    write_session(session, tmp_path / "copy")
+    assert_same(read_session(tmp_path / "copy"), session)
+
+
+def test_unknown_columns_are_told_and_survive(make_session: MakeSession, tmp_path: Path) -> None:
+    names = COLUMNS + ',"a ""b"", c",steps'
+    session = read_session(make_session({"left_thigh.csv": table('0,1,1,1,1,1,1," x, ""y""",007', columns=names)}))
+    assert keys(session) == [("unknown_column", PLACE, 'a "b", c'), ("unknown_column", PLACE, "steps")]
+    write_session(session, tmp_path / "copy")
+    again = read_session(tmp_path / "copy")
+    assert_same(again, session)
+    unknown = again.recordings[0].imu[Site.LEFT_THIGH].unknown
+    assert {name: list(values) for name, values in unknown.items()} == {'a "b", c': [' x, "y"'], "steps": ["007"]}
+
+
+def test_delimiters_at_the_end_of_every_line_are_nothing(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table(*[row + ",," for row in ROWS], columns=COLUMNS + ",,")})
+    assert read_session(folder).findings == ()
+
+
+# --- refusals
+
+
+@pytest.mark.parametrize(
+    ("toml", "words"),
+    [
+        ("format = ", "session.toml: this is not TOML"),
+        ("x = " + "[" * 5000, "session.toml: this is not TOML"),
+        ("x = " + "9" * 5000, "session.toml: this is not TOML"),
+        (b"\xff\xfe", "not UTF-8"),
+        (TOML.replace('format = "gaitwright-session/1"', ""), "the format is not named"),
+        (TOML.replace("gaitwright-session/1", "gaitwright-session/2"), "later version.*Update Gaitwright"),
+        (TOML.replace("gaitwright-session/1", "other/1"), 'format "other/1" is not known'),
+        (TOML.replace('"gaitwright-session/1"', "1"), 'format "1" is not known'),
+        ('format = "gaitwright-session/1"', "no recording at all"),
+        ('format = "gaitwright-session/1"\nrecordings = []', "no recording at all"),
+        ('format = "gaitwright-session/1"\nrecordings = 5', "not a list of tables"),
+        (TOML.replace('name = "walk 1"', ""), "number 1: name is missing"),
+        (TOML.replace('kind = "walking"', ""), '"walk 1": kind is missing'),
+        (TOML.replace('folder = "walk_1"', ""), '"walk 1": folder is missing'),
+        (TOML.replace('"walk 1"', '" "'), "name is"),
+        (TOML.replace('"walking"', '"running"'), 'kind is "running", expected one of standing, free_motion, walking'),
+        (TOML.replace("walk_1", "walk_9"), "folder of this recording is missing"),
+        (TOML.replace("walk_1", "../session/walk_1"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "/tmp"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "C:/walk"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "a\\\\..\\\\..\\\\b"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "."), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", ""), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "w" * 5000), "cannot be read"),
+        (TOML.replace('"walk_1"', "1"), "expected the name of a folder inside"),
+        (TOML + TOML.partition("\n")[2].replace("walk_1", "walk_2"), "two recordings have the name"),
+        (TOML + TOML.partition("\n")[2].replace("walk 1", "walk 2"), "two recordings have the folder"),
+        (TOML + '[[recordings]]\nname="b"\nkind="walking"\nfolder="./walk_1/"', "two recordings have the folder"),
+        (TOML + "kept = 1", "kept is"),
+        (TOML + '[zero]\nleft_knee = "5"', r'\[zero\]: left_knee is "5", expected a number of degrees'),
+        (TOML + "[zero]\nleft_knee = nan", "left_knee is"),
+        (TOML + "[zero]\nleft_knee = 200", "left_knee is"),
+        (TOML + "[zero]\nleft_knee = true", "left_knee is"),
+        (TOML + "[sign]\nleft_knee = 0", r"\[sign\]: left_knee is .*expected 1 or -1"),
+        (TOML + "[sign]\nleft_knee = true", "expected 1 or -1"),
+        (TOML + '[patient]\naffected_side = "port"', "expected one of left, right, both, none"),
+        (TOML + '[patient]\nprosthetic_side = ["left"]', "expected one of left, right, both, none"),
+        (TOML + "[patient]\nheight_m = 170", "height_m is .* a number of metres"),
+        (TOML + "[patient]\nmass_kg = -1", "mass_kg is"),
+        (TOML + "[patient]\nbirth_year = 50", "birth_year is"),
+        (TOML + "[patient]\ncode = 5", "code is"),
+        (TOML + "[session]\nsimulated = 1", "simulated is"),
+        (TOML + "[sensors]\nleft_thigh = 5", r"\[sensors.left_thigh\]: this is not a table"),
+        (TOML + "[sensors.left_thigh]\nrate_hz = 0", "rate_hz is"),
+        (TOML + '[sensors.left_thigh]\nrate_kind = "mean"', "rate_kind is"),
+        ("zero = 5\n" + TOML, r"\[zero\]: this is not a table"),
+    ],
+)
+def test_a_wrong_session_toml_is_refused(make_session: MakeSession, toml: str | bytes, words: str) -> None:
+    assert re.search(words, refusal(make_session(toml=toml)))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "walk_1/left_thigh.csv: the file has no header line"),
+        ("\n\n", "the file has no header line"),
+        ("a,b\n1,2\n", "line 1: required columns are missing: time_s"),
+        (table("0,1,1,1,1,1", columns=COLUMNS.replace("acc_y_m_s2,", "")), "columns are missing: acc_y_m_s2"),
+        (table(*ROWS, columns=COLUMNS.replace("acc_y", "acc_x")), 'line 1: column "acc_x_m_s2" is there twice'),
+        (table("0,1,1,1,1,1,1", "1,1,1,1,1,1,1", "0.5,1,1,1,1,1,1"), "line 4: the clock steps back from 1 s to 0.5 s"),
+        (table("0,1,1,1,1,1,1", "", "1,1,1,1,1,1,1", "", "0.5,1,1,1,1,1,1"), "line 6: the clock steps back"),
+        (table("0,1,1,1,1,1,1", "1,1,x1,1,1,1,1"), 'line 3: "x1" in column acc_y_m_s2 is not a number'),
+        (table("0,1,1,1,1,1,1", "1,1,0x10,1,1,1,1"), "line 3: .* is not a number"),
+        (table("0;1;1;1;1;1;1", columns=COLUMNS.replace(",", ";")), "line 1: required columns are missing"),
+        (table("0,1,1,1,1,1,1", "1,1,1", end=""), "line 3: the line ends after 3 of 7 columns"),
+        (table("0,1,1,1,1,1,1", "1,1,1"), "line 3: the line ends after 3 of 7 columns"),
+        (table("0,1,1", "1,1,1,1,1,1,1"), "line 2: the line ends after 3 of 7 columns"),
+        (table("0,1,1,1,1,1,1,1"), "line 2: the line has 8 columns, the header 7"),
+        (table(",1,1,1,1,1,1"), "line 2: a sample has no time"),
+        (table("0,1,1,1,1,1,1", "nan,1,1,1,1,1,1"), "line 3: a sample has no time"),
+        (table("inf,1,1,1,1,1,1"), "line 2: a sample's time is infinite"),
+        (table('0,1,1,1,1,1,1,"a', "1,1,1,1,1,1,1,b", columns=COLUMNS + ",x"), "line 2: a quotation mark"),
+        (table('0,1,1,1,1,1,"1'), "line 2: a quotation mark"),
+        (COLUMNS.encode() + b"\n0,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
+        ((COLUMNS + ",x").encode() + b"\n0,1,1,1,1,1,1,\xff\n", "line 2: this is not UTF-8"),
+        (b"\xff\xd8\xff", "line 1: this is not UTF-8"),
+        (b"PK\0\0", "line 1: this is not a table but binary data"),
+        (b"x" * 200_000, "line 1: this is not a table but binary data"),
+    ],
+)
+def test_a_wrong_text_is_refused(make_session: MakeSession, text: str | bytes, words: str) -> None:
+    assert re.search(words, refusal(make_session({"left_thigh.csv": text})))
+
+
+@pytest.mark.parametrize(
+    ("columns", "words"),
+    [
+        ({"time_s": [0.0, 1.0]}, "required columns are missing"),
+        ({"time_s": ["a", "b"]}, "column time_s holds string, not numbers"),
+        ({"time_s": [1.0, 0.0]}, "row 2: the clock steps back from 1 s to 0 s"),
+    ],
+)
+def test_a_wrong_parquet_is_refused(make_session: MakeSession, columns: dict[str, list[object]], words: str) -> None:
+    folder = make_session({})
+    others = {} if words.startswith("required") else {name: [0.0, 1.0] for name in COLUMNS.split(",")}
+    pq.write_table(pa.table(others | columns), folder / "walk_1" / "left_thigh.parquet")
+    assert words in refusal(folder)
+
+
+def test_a_text_named_parquet_is_refused(make_session: MakeSession) -> None:
+    assert "not a readable Parquet file" in refusal(make_session({"left_thigh.parquet": table(*ROWS)}))
+
+
+def test_a_folder_without_session_toml_is_refused(tmp_path: Path) -> None:
+    assert "it holds no session.toml" in refusal(tmp_path)
+    assert "it holds no session.toml" in refusal(tmp_path / "none")
+
+
+def test_a_session_without_any_site_file_is_refused(make_session: MakeSession) -> None:
+    assert "no recording has a file named after a site" in refusal(make_session({"notes.txt": "x"}))
+
+
+def test_a_site_twice_is_refused(make_session: MakeSession) -> None:
+    folder = make_session({"left_thigh.csv": table(*ROWS), "left_thigh.parquet": b""})
+    assert "walk_1: left_thigh is there twice: left_thigh.csv and left_thigh.parquet" in refusal(folder)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="links need rights there")
+def test_links_out_of_the_session_are_refused(make_session: MakeSession, tmp_path: Path) -> None:
+    folder = make_session({})
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "left_thigh.csv").write_text(table(*ROWS))
+    link = folder / "walk_1" / "left_thigh.csv"
+    link.symlink_to(outside / "left_thigh.csv")
+    assert "walk_1/left_thigh.csv: this leads outside" in refusal(folder)
+    link.unlink()
+    (folder / "walk_1").rmdir()
+    (folder / "walk_1").symlink_to(outside)
+    assert "walk_1: this leads outside" in refusal(folder)
+    (folder / "walk_1").unlink()
+    (folder / "walk_1").symlink_to(folder / "walk_1")
+    assert "walk_1" in refusal(folder)
+
+
+def test_a_folder_in_place_of_a_file_is_refused(make_session: MakeSession) -> None:
+    folder = make_session({})
+    (folder / "walk_1" / "left_thigh.csv").mkdir()
+    assert "this is not a file" in refusal(folder)
+
+
+@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="needs a user whom permissions stop")
+def test_a_file_that_may_not_be_read_is_refused(make_session: MakeSession) -> None:
+    folder = make_session()
+    (folder / "walk_1" / "left_thigh.csv").chmod(0)
+    assert "cannot be read (Permission denied)" in refusal(folder)
+
+
+# --- writing
+
+
+def assert_same(one: Session, other: Session) -> None:
+    """Equal in all but the findings, samples bit for bit."""
+    for field in ("patient", "sensors", "turned_sign", "started", "operator", "surface", "notes", "software"):
+        assert getattr(one, field) == getattr(other, field)
+    assert (one.is_simulated, one.unknown) == (other.is_simulated, other.unknown)
+    assert dict(one.zero_rad) == pytest.approx(dict(other.zero_rad), abs=1e-10)
+    assert len(one.recordings) == len(other.recordings)
+    for a, b in zip(one.recordings, other.recordings, strict=True):
+        for field in ("name", "kind", "folder", "condition", "started", "note", "unknown"):
+            assert getattr(a, field) == getattr(b, field)
+        assert (a.is_kept, a.is_restrapped_before) == (b.is_kept, b.is_restrapped_before)
+        assert list(a.imu) == list(b.imu)
+        for site in a.imu:
+            assert_same_block(a.imu[site], b.imu[site])
+
+
+def assert_same_block(one: ImuBlock, other: ImuBlock) -> None:
+    assert (one.sensor, one.is_rate_derived) == (other.sensor, other.is_rate_derived)
+    for name in ("time_s", "acc_m_s2", "gyr_rad_s", "q_earth_from_sensor", "mag"):
+        np.testing.assert_array_equal(getattr(one, name), getattr(other, name))
+    assert list(one.unknown) == list(other.unknown)
+    for name, column in one.unknown.items():
+        assert [str(value) for value in column] == [str(value) for value in other.unknown[name]]
+
+
+measured = st.floats(allow_infinity=False)
+
+
+@st.composite
+def blocks(draw: st.DrawFn) -> ImuBlock:
+    stamps = draw(st.lists(st.floats(allow_nan=False, allow_infinity=False), max_size=6, unique=True))
+    n = len(stamps)
+    optional = (
+        [st.none(), npst.arrays(float, (n, 4), elements=measured)],
+        [
+            st.none(),
+            npst.arrays(float, (n, 3), elements=measured),
+        ],
+    )
+    names = draw(st.lists(some_text.map(str.strip).filter(lambda t: t and "\ufeff" not in t), max_size=2, unique=True))
+    return ImuBlock(
+        sensor=draw(some_text.filter(bool)),
+        time_s=np.array(sorted(stamps), dtype=float),
+        gyr_rad_s=draw(npst.arrays(float, (n, 3), elements=measured)),
+        acc_m_s2=draw(npst.arrays(float, (n, 3), elements=measured)),
+        q_earth_from_sensor=draw(st.one_of(optional[0])),
+        mag=draw(st.one_of(optional[1])),
+        is_rate_derived=draw(st.booleans()),
+        unknown={name: np.array(draw(st.lists(some_text, min_size=n, max_size=n)), dtype=object) for name in names},
+    )
+
+
+@st.composite
+def sessions(draw: st.DrawFn) -> Session:
+    folders = draw(st.lists(st.sampled_from(["standing", "walk_1", "a/b", "ünì 2"]), min_size=1, unique=True))
+    recordings = tuple(
+        Recording(
+            name=f"{folder} {draw(some_text)}",
+            kind=draw(st.sampled_from(RecordingKind)),
+            folder=folder,
+            imu={site: draw(blocks()) for site in [Site.LEFT_THIGH, Site.RIGHT_FOOT][: draw(st.integers(1, 2))]},
+            condition=draw(some_text),
+            is_kept=draw(st.booleans()),
+            note=draw(st.text(max_size=9).filter(str.isprintable)),
+            is_restrapped_before=draw(st.booleans()),
+        )
+        for folder in folders
+    )
+    return Session(
+        recordings=recordings,
+        patient=Patient(code=draw(some_text), birth_year=draw(st.none() | st.integers(1900, 2020))),
+        sensors={Site.LEFT_THIGH: SensorInfo(serial=draw(some_text), rate_kind=draw(st.sampled_from(RateKind)))},
+        zero_rad=draw(st.dictionaries(st.sampled_from(Joint), st.floats(-3, 3))),
+        turned_sign=draw(st.dictionaries(st.sampled_from(Joint), st.sampled_from([1, -1]))),
+        notes=draw(some_text),
+        software="gaitwright 0",
+        is_simulated=draw(st.booleans()),
+        unknown=draw(st.dictionaries(some_text.map(lambda t: "x" + t), st.integers(0, 9), max_size=2)),
+    )
+
+
+@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@given(session=sessions())
+def test_what_is_written_is_read_back_bit_for_bit(session: Session, tmp_path_factory: pytest.TempPathFactory) -> None:
+    folder = tmp_path_factory.mktemp("round") / "session"
+    write_session(session, folder)
+    again = read_session(folder)
+    assert_same(again, session)
+    bytes_before = {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+    write_session(again, folder)
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == bytes_before
+
+
+def test_nothing_is_left_beside_what_was_written(tmp_path: Path) -> None:
+    session = Session((walk({Site.LEFT_THIGH: simple_block()}),))
+    write_session(session, tmp_path / "deep" / "session")
+    write_session(session, tmp_path / "deep" / "session")
+    assert [path.name for path in (tmp_path / "deep").iterdir()] == ["session"]
+
+
+def test_a_failing_write_leaves_the_old_session(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session((walk({Site.LEFT_THIGH: simple_block()}),))
+    write_session(session, tmp_path / "session")
+    before = (tmp_path / "session" / "walk_1" / "left_thigh.csv").read_bytes()
+
+    def fail(*_: object) -> None:
+        raise OSError("disk full")
+
+    monkeypatch.setattr(session_folder, "write_site", fail)
+    with pytest.raises(OSError, match="disk full"):
+        write_session(Session((walk({Site.LEFT_THIGH: simple_block(9)}),)), tmp_path / "session")
+    assert [path.name for path in tmp_path.iterdir()] == ["session"]
+    assert (tmp_path / "session" / "walk_1" / "left_thigh.csv").read_bytes() == before
+
+
+def test_a_rename_that_fails_puts_the_old_session_back(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = Session((walk({Site.LEFT_THIGH: simple_block()}),))
+    write_session(session, tmp_path / "session")
+    rename = Path.rename
+
+    def fail(path: Path, target: Path) -> Path:
+        if path.name == "new":
+            raise OSError("in use")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", fail)
+    with pytest.raises(OSError, match="in use"):
+        write_session(session, tmp_path / "session")
+    assert len(thigh(tmp_path / "session")) == 3
+
+
+def test_what_else_a_session_folder_holds_is_taken_along(tmp_path: Path) -> None:
+    folder = tmp_path / "session"
+    write_session(Session((walk({Site.LEFT_THIGH: simple_block()}),)), folder)
+    (folder / "truth.csv").write_text("a")
+    (folder / "walk_1" / "video.mp4").write_text("b")
+    write_session(Session((walk({Site.RIGHT_FOOT: simple_block(sensor="right_foot")}),)), folder)
+    files = sorted(str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file())
+    assert files == ["session.toml", "truth.csv", "walk_1/right_foot.csv", "walk_1/video.mp4"]
+
+
+def test_a_folder_that_is_no_session_is_not_replaced(tmp_path: Path) -> None:
+    (tmp_path / "holiday.jpg").write_text("x")
+    with pytest.raises(FileRefusedError, match="is not a session folder"):
+        write_session(Session((walk({Site.LEFT_THIGH: simple_block()}),)), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["holiday.jpg"]
+
+
+@pytest.mark.parametrize("folder", ["../out", "/tmp/out", ""])
+def test_nothing_is_written_outside_of_the_folder(tmp_path: Path, folder: str) -> None:
+    with pytest.raises(FileRefusedError, match="inside of the session folder"):
+        write_session(Session((walk({Site.LEFT_THIGH: simple_block()}, folder=folder),)), tmp_path / "session")
+    assert list(tmp_path.iterdir()) == []
+
+
+# --- large sessions
+
+
+def test_a_large_session_is_read_site_by_site(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    imu = {site: simple_block(4 + i, site) for i, site in enumerate(Site)}
+    write_session(Session((walk(imu),)), tmp_path / "session")
+    monkeypatch.setattr(session_folder, "HELD_BYTES", 10)
+    reads: list[Path] = []
+    read_site = site_files.SiteFile.read
+
+    def counting(file: site_files.SiteFile) -> object:
+        reads.append(file.path)
+        return read_site(file)
+
+    monkeypatch.setattr(site_files.SiteFile, "read", counting)
+    found = read_session(tmp_path / "session").recordings[0]
+    assert len(reads) == 6
+    assert list(found.imu) == list(Site)
+    assert found.holds(Site.LEFT_FOOT)
+    assert Site.LEFT_FOOT in found.imu
+    assert len(reads) == 6  # asking which sites there are reads nothing
+    for site in (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_THIGH, Site.LEFT_SHANK):
+        assert_same_block(found.imu[site], imu[site])
+    assert len(reads) == 8  # two are kept
+    write_session(Session((found,)), tmp_path / "session")
+    assert_same_block(read_session(tmp_path / "session").recordings[0].imu[Site.LEFT_FOOT], imu[Site.LEFT_FOOT])
+
+
+def test_a_large_session_is_refused_at_once(make_session: MakeSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(session_folder, "HELD_BYTES", 10)
+    text = table("0,1,1,1,1,1,1", "1,1,1")
+    assert "line 3" in refusal(make_session({"left_thigh.csv": table(*ROWS), "right_foot.csv": text}))
+
+
+# --- spoilt files
+
+
+@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(data=st.data(), kind=st.sampled_from(["left_thigh.csv", "left_thigh.parquet", "session.toml"]))
+def test_spoilt_files_are_refused_or_read(
+    data: st.DataObject, kind: str, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    folder = tmp_path_factory.mktemp("spoilt")
+    (folder / "walk_1").mkdir()
+    (folder / "session.toml").write_text(UNKNOWN)
+    path = folder / ("session.toml" if kind == "session.toml" else f"walk_1/{kind}")
+    if kind.endswith("parquet"):
+        pq.write_table(pa.table({name: [0.0, 1.0, 2.0] for name in (*COLUMNS.split(","), "x")}), path)
+    else:
+        (folder / "walk_1" / "left_thigh.csv").write_text(table(*[r + ",a" for r in ROWS], columns=COLUMNS + ",x"))
+    content = bytearray(path.read_bytes())
+    for _ in range(data.draw(st.integers(0, 4))):
+        content[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
+    path.write_bytes(content[: data.draw(st.integers(0, len(content)))])
+    try:
+        session = read_session(folder)
+    except FileRefusedError as refused:
+        said = str(refused)
+        assert said.isprintable()
+        return
+    assert session.recordings
