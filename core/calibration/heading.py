@@ -15,8 +15,8 @@ from core.calibration.joint_axis import (
 from core.pair import Pair
 from core.samples import BoolArray, FloatArray, IntArray
 
-SAMPLES_PER_S = 20.0
-STEPS = 4
+SAMPLES_PER_S = 10.0  # residuals are correlated over half a second
+STEPS = 3
 MIN_RATE_SCALE_RAD_S = 0.01
 MIN_NEUTRAL_SCALE_RAD = np.deg2rad(0.3)
 

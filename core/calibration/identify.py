@@ -106,7 +106,7 @@ def decide(data: Datasets) -> Decision:
     alone.
     """
     few = data.thinned(CANDIDATE_SAMPLES)
-    found = joined([candidates(data, s) for s in _richest_stretches(data)])
+    found = joined([candidates(data, few, s) for s in _richest_stretches(data)])
     found = polish(few, found, CANDIDATE_STEPS)
     some = data.thinned(DECISION_SAMPLES)
     coincidence = fit_coincidence(some, relative_rotation(some, some.heading(found.knots_rad)))

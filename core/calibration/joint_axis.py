@@ -45,16 +45,21 @@ def joined(many: list[Candidates]) -> Candidates:
     return Candidates(*(np.concatenate([getattr(one, name) for one in many]) for name in Candidates.__slots__))
 
 
-def candidates(data: Datasets, stretch: int) -> Candidates:
+def candidates(data: Datasets, few: Datasets, stretch: int) -> Candidates:
     """Axes and headings under which little of the relative rate is off axis, and their mirror pairings.
 
     The relative rate is w(d) = cos d A + sin d B + C, so six 3x3 moments give its scatter at every heading d. At each
     of the best minima the axes are the principal directions; the opposite pairing of the two axes is a candidate as
     well.
+
+    Parameters
+    ----------
+    few
+        Some of the same samples, enough to tell the headings of all stretches from the axes.
     """
     axes_1, axes_2 = _scan(data, stretch)
     pairs_1, pairs_2 = np.concatenate([axes_1, axes_1]), np.concatenate([axes_2, -axes_2])
-    knots = heading_from_axes(data, pairs_1, pairs_2)
+    knots = heading_from_axes(few, pairs_1, pairs_2)
     return Candidates(pairs_1, pairs_2, knots, np.full(len(pairs_1), np.inf))
 
 
@@ -102,14 +107,12 @@ def heading_from_axes(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) ->
     e2 = np.einsum("nij,cj->cni", data.earth_from_2, axis_2)
     product = (e1[..., 0] + 1j * e1[..., 1]) * (e2[..., 0] - 1j * e2[..., 1])
     weights = knot_weights(data)
-    knots = product @ weights
+    knots = product.real @ weights + 1j * (product.imag @ weights)
+    heading = np.empty(knots.shape)
     for first, last in _stretch_knots(data):
-        mean = product @ weights[:, first : last + 1].sum(axis=1)
+        mine = knots[:, first : last + 1]
         # a knot without samples near it takes the stretch's mean
-        knots[:, first : last + 1] += 1e-3 * mean[:, None]
-    heading = np.angle(knots)
-    for first, last in _stretch_knots(data):
-        heading[:, first : last + 1] = np.unwrap(heading[:, first : last + 1], axis=1)
+        heading[:, first : last + 1] = np.unwrap(np.angle(mine + 1e-3 * mine.sum(axis=1, keepdims=True)), axis=1)
     return heading
 
 

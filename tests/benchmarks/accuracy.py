@@ -1,0 +1,190 @@
+"""How accurate are axes, centres, signs and angles on the project's own patient?
+
+    python tests/benchmarks/accuracy.py --seeds 500 --workers 2 [--only rigid soft ...]
+
+Prints one line per condition and quantity: 50th, 90th percentile and worst over sessions, beside the target.
+"""
+
+import argparse
+from collections import defaultdict
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from core.analysis import analyse
+from core.body import Joint, Segment, Site
+from core.results import Analysis, JointCalibration, Method, ZeroKind
+from core.rotations import angle_between
+from core.samples import RecordingKind
+from devices.walker import (
+    FreeMotion,
+    JointTruth,
+    Motion,
+    SensorErrors,
+    SimulatedSession,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
+
+Errors = dict[str, list[float]]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """`settings` are varied by seed only; `targets` by quantity: 90th percentile at most."""
+
+    settings: WalkerSettings
+    targets: dict[str, float]
+    method: Method = Method.ROBUST
+    note: str = ""
+
+
+LONG, SHORT = (Standing(), FreeMotion(), Walk()), (Standing(), FreeMotion(duration_s=3.0), Walk())
+SIGNS = {"pairing wrong": 0.0, "sign wrong": 0.0}
+BAD_SENSORS = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)
+LATE = {site: 0.03 for site in Site if site.segment is Segment.SHANK}
+
+CONDITIONS = {
+    "rigid": Condition(WalkerSettings(), {**SIGNS, "knee axis": 0.25, "knee Z": 0.13, "ankle Z": 0.45}),
+    "rigid 3 s": Condition(WalkerSettings(recordings=SHORT), {**SIGNS, "knee axis": 0.35}),
+    "rigid 60 Hz": Condition(WalkerSettings(rate_hz=60.0), {**SIGNS, "knee Z": 0.13, "ankle Z": 0.45}),
+    "rigid 200 Hz": Condition(WalkerSettings(rate_hz=200.0), {**SIGNS, "knee Z": 0.13, "ankle Z": 0.45}),
+    "rigid, biased sensors": Condition(
+        WalkerSettings(errors=BAD_SENSORS), {**SIGNS, "knee Z": 0.20, "knee centre": 3.5, "ankle centre": 3.5}
+    ),
+    "soft tissue": Condition(WalkerSettings(tissue=Tissue.SOFT), {**SIGNS, "ankle Z": 1.2}),
+    "real tissue": Condition(WalkerSettings(tissue=Tissue.REAL), {**SIGNS}),
+    "walk only, rigid": Condition(WalkerSettings(recordings=(Standing(), Walk())), {**SIGNS}),
+    "walk only, soft": Condition(WalkerSettings(recordings=(Standing(), Walk()), tissue=Tissue.SOFT), {**SIGNS}),
+    "walk only, no standing": Condition(WalkerSettings(recordings=(Walk(),), tissue=Tissue.SOFT), {**SIGNS}),
+    "soft tissue, 3 s": Condition(WalkerSettings(recordings=SHORT, tissue=Tissue.SOFT), {**SIGNS}),
+    "lag 30 ms": Condition(WalkerSettings(clock_late_s=LATE), {**SIGNS, "lag": 1.5}),
+    "lag 30 ms, soft": Condition(WalkerSettings(clock_late_s=LATE, tissue=Tissue.SOFT), {**SIGNS, "lag": 1.5}),
+    "side lying, rigid": Condition(
+        WalkerSettings(recordings=(Standing(), FreeMotion(), FreeMotion("lying", motion=Motion.SIDE_LYING))),
+        {"lying knee M": 0.15},
+    ),
+    "side lying, soft": Condition(
+        WalkerSettings(
+            recordings=(Standing(), FreeMotion(), FreeMotion("lying", motion=Motion.SIDE_LYING)), tissue=Tissue.SOFT
+        ),
+        {"lying knee M": 0.5},
+    ),
+    "published, rigid": Condition(WalkerSettings(), {}, Method.PUBLISHED),
+    "published, soft": Condition(WalkerSettings(tissue=Tissue.SOFT), {}, Method.PUBLISHED),
+}
+
+
+def score(name: str, seed: int) -> Errors:
+    """Errors of one simulated session: degrees, millimetres, milliseconds, or 1 for wrong."""
+    condition = CONDITIONS[name]
+    simulated = simulate(replace(condition.settings, seed=seed))
+    analysis = analyse(simulated.session, condition.method)
+    errors: Errors = defaultdict(list)
+    for recording in analysis.recordings:
+        truths = simulated.truth.recordings[recording.name].joints
+        calibration = analysis.calibrations[-1].joints
+        is_walk = recording.kind is RecordingKind.WALKING
+        for joint in Joint:
+            if joint not in recording.joints:
+                errors["missing"].append(1.0)
+                continue
+            kind = "knee" if joint.is_knee else "ankle"
+            if is_walk or len(analysis.recordings) == 1:
+                _score_calibration(errors, kind, calibration[joint], truths[joint])
+            label = kind if is_walk else f"{recording.name} {kind}"
+            _score_angle(errors, label, analysis, recording.name, joint, calibration[joint], truths[joint])
+    return errors
+
+
+def _score_calibration(errors: Errors, kind: str, found: JointCalibration, truth: JointTruth) -> None:
+    j1, j2 = found.clinical_sign * found.axis_proximal, found.clinical_sign * found.axis_distal
+    right = float(j1 @ truth.functional_proximal), float(j2 @ truth.functional_distal)
+    errors["pairing wrong"].append(float(right[0] * right[1] < 0))
+    errors["sign wrong"].append(float(right[0] < 0))
+    for own, other in ((j1, truth.functional_proximal), (j2, truth.functional_distal)):
+        errors[f"{kind} axis"].append(float(np.rad2deg(min(angle_between(own, other), angle_between(-own, other)))))
+    if found.centre_proximal_m is not None and found.centre_distal_m is not None:
+        offsets = found.centre_proximal_m - truth.centre_proximal_m, found.centre_distal_m - truth.centre_distal_m
+        for offset, axis in zip(offsets, (truth.axis_proximal, truth.axis_distal), strict=True):
+            observable = offset - axis * (axis @ offset) if kind == "knee" else offset
+            errors[f"{kind} centre"].append(float(1000 * np.linalg.norm(observable)))
+    errors["lag"].append(1000 * abs(found.lag_s - truth.lag_s))
+    errors["margin under 1.3"].append(float((found.sign_margin or 0.0) < 1.3))
+    errors["sign unsure"].append(float(not found.is_sign_certain))
+    errors[f"{kind} called hinge"].append(float(found.is_hinge))
+
+
+def _score_angle(
+    errors: Errors,
+    label: str,
+    analysis: Analysis,
+    name: str,
+    joint: Joint,
+    calibration: JointCalibration,
+    truth: JointTruth,
+) -> None:
+    recording = next(r for r in analysis.recordings if r.name == name)
+    angle = recording.joints[joint]
+    lead_s = 0.0 if joint.is_knee else analysis.calibrations[-1].joints[_knee(joint)].lag_s if _knee(joint) else 0.0
+    true = np.interp(recording.time_s, truth.time_s + lead_s, truth.angle_rad)
+    difference = np.rad2deg(angle.angle_rad - true)
+    difference = difference[np.isfinite(difference)]
+    if calibration.zero is ZeroKind.STANDING:
+        errors[f"{label} Z"].append(float(np.sqrt(np.mean((difference + np.rad2deg(truth.standing_rad)) ** 2))))
+    errors[f"{label} M"].append(float(np.std(difference)))
+    published = np.rad2deg(angle.published_rad - true)
+    errors[f"{label} M eq 15"].append(float(np.nanstd(published)))
+    inside = np.abs(difference - difference.mean()) < 2 * np.rad2deg(np.nanmedian(angle.sd_rad))
+    errors[f"{label} 2 sd misses"].append(float(np.mean(~inside)))
+    errors[f"{label} sd/error"].append(float(np.rad2deg(np.nanmedian(angle.sd_rad)) / np.std(difference)))
+
+
+def _knee(joint: Joint) -> Joint:
+    return Joint(f"{joint.side}_knee")
+
+
+def run(name: str, seeds: range, workers: int) -> dict[str, np.ndarray]:
+    one: Callable[[int], Errors] = partial(score, name)
+    pooled: Errors = defaultdict(list)
+    if workers == 1:
+        results = map(one, seeds)
+        for errors in results:
+            for key, values in errors.items():
+                pooled[key].extend(values)
+    else:
+        with ProcessPoolExecutor(workers) as pool:
+            for errors in pool.map(one, seeds, chunksize=4):
+                for key, values in errors.items():
+                    pooled[key].extend(values)
+    return {key: np.array(values) for key, values in pooled.items()}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--only", nargs="*", default=list(CONDITIONS))
+    arguments = parser.parse_args()
+    for name in arguments.only:
+        pooled = run(name, range(arguments.first, arguments.first + arguments.seeds), arguments.workers)
+        print(f"\n{name} ({arguments.seeds} sessions)")
+        for key, values in pooled.items():
+            if key in ("pairing wrong", "sign wrong", "margin under 1.3", "sign unsure", "missing") or "hinge" in key:
+                print(f"  {key:24s} {int(values.sum()):5d} of {len(values)}")
+                continue
+            p50, p90 = np.quantile(values, [0.5, 0.9])
+            target = CONDITIONS[name].targets.get(key)
+            verdict = "" if target is None else f"   target {target:g} {'met' if p90 <= target else 'MISSED'}"
+            print(f"  {key:24s} p50 {p50:7.2f}  p90 {p90:7.2f}  worst {values.max():7.2f}{verdict}")
+
+
+if __name__ == "__main__":
+    main()
