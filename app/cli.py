@@ -157,15 +157,17 @@ def _analyse(wanted: argparse.Namespace) -> None:
 
 
 def _demo(wanted: argparse.Namespace) -> None:
+    from app.reports.csv_report import write_table
     from app.reports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
     from devices.files.session_folder import read_session, write_session
-    from devices.walker import WalkerSettings, simulate
+    from devices.walker import WalkerSettings, simulate, truth_table
 
     check_demonstration_place(wanted.out)
     with _Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
         progress(0.0, "simulated patient")
         simulated = simulate(WalkerSettings())
         write_session(simulated.session, folder / OWN_SESSION)
+        write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
         analysis = _write_analysis(session, folder, METHODS[0], DEFAULT_TAU_S, True, progress)
     _tell(analysis, wanted.out)

@@ -1,6 +1,7 @@
 """Which numbers stand behind the plotted curves? One table per recording, in degrees."""
 
-from collections.abc import Iterator
+import csv
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -34,6 +35,18 @@ def write_angles(recording: RecordingAnalysis, path: Path) -> None:
             writer.write_batch(first)
             for block in blocks:
                 writer.write_batch(block)
+
+
+def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path) -> None:
+    """Write a small table of cells that are texts already.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([header, *rows])
 
 
 def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:

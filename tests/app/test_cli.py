@@ -1,5 +1,6 @@
 """Does the command line keep its word: exit codes, one-line refusals, whole results or none, nothing destroyed?"""
 
+import csv
 import json
 import os
 import shutil
@@ -14,6 +15,7 @@ import pytest
 from app import cli
 from app.cli import main
 from app.reports import result_folder
+from app.wording import SENTENCES
 from core.body import Site
 from core.published.angles import DEFAULT_TAU_S
 from core.results import Method
@@ -185,6 +187,51 @@ def test_without_a_screen_the_window_says_so(
         monkeypatch.delenv(name, raising=False)
     assert main([]) == 2
     assert "no screen" in refusal(capsys)
+
+
+# The demonstration
+
+
+def test_a_demonstration_is_a_session_with_its_truth_and_the_analysis_of_it(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["demo"]) == 0
+    out = tmp_path / "gaitwright-demo"
+    files = files_in(out)
+    summary = json.loads(files["summary.json"])
+    assert summary["simulated"] is True
+    assert len(summary["joints"]) == 4
+    assert [finding["key"] for finding in summary["findings"] if finding["key"] not in SENTENCES] == []
+    assert analyse(out / "session", tmp_path / "again") == 0
+    assert files_in(tmp_path / "again") == {name: c for name, c in files.items() if not name.startswith("session/")}
+
+    with (out / "session" / "truth.csv").open(newline="") as file:
+        truth = [row for row in csv.DictReader(file) if row["recording"] == "walk 1" and row["left_knee_deg"]]
+    with (out / "walk_1" / "angles.csv").open(newline="") as file:
+        angles = list(csv.DictReader(file))
+    found_deg = np.interp(
+        [float(row["time_s"]) for row in truth],
+        [float(row["time_s"]) for row in angles if row["left_knee_deg"]],
+        [float(row["left_knee_deg"]) for row in angles if row["left_knee_deg"]],
+    )
+    assert np.std(found_deg - [float(row["left_knee_deg"]) for row in truth]) < 1.0
+
+    assert main(["demo"]) == 0
+    assert files_in(out) == files
+
+
+def test_a_demonstration_replaces_no_real_session(
+    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
+    shutil.copytree(session, tmp_path / "out" / "session")
+    summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
+    (tmp_path / "out" / "summary.json").write_text(json.dumps(summary | {"simulated": True}))
+    capsys.readouterr()
+    assert main(["demo", "--out", str(tmp_path / "out")]) == 2
+    assert "is not a demonstration" in refusal(capsys)
+    assert files_in(tmp_path / "out" / "session") == files_in(session)
 
 
 # What stands at OUT
