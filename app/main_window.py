@@ -1,0 +1,361 @@
+"""The window: a header, a page, an action bar. It opens sessions and knows nothing of gait."""
+
+import logging
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QSize, Qt, QUrl
+from PySide6.QtGui import (
+    QCloseEvent,
+    QColor,
+    QDragEnterEvent,
+    QDragLeaveEvent,
+    QDropEvent,
+    QGuiApplication,
+    QKeySequence,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+    QShortcut,
+)
+from PySide6.QtWidgets import (
+    QApplication,
+    QFileDialog,
+    QFrame,
+    QHBoxLayout,
+    QScrollArea,
+    QSizePolicy,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.theme import Look, load_fonts
+from app.widgets.banner import Banner
+from app.widgets.button import Button, Kind
+from app.widgets.focus_ring import FocusRing
+from app.widgets.header import Header
+from app.widgets.icons import Icon
+from app.widgets.start_pages import EmptyPage, WorkingPage
+from app.widgets.text import Text
+from app.wording import place
+from app.workers.background import Background, Work
+from app.workers.opening import opening_demonstration, opening_folder
+from devices.files.refusal import FileRefusedError
+
+if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
+    from app.widgets.result_page import ResultPage
+    from app.workers.opening import Opened
+    from core.samples import Patient
+
+_log = logging.getLogger(__name__)
+
+FIRST_SIZE = (1280, 800)
+SMALLEST_SIZE = (640, 480)
+COMPACT_BELOW = (1180, 720)
+NARROW_BELOW = 800
+BAR = 72
+DROP_EDGE = 2.5
+
+STOPPED = ("The analysis was stopped.", "Nothing was changed; open the session again to go on.")
+ENDED_EARLY = ("The analysis ended before it was done.", "The folder is unchanged; the log holds the details.")
+
+
+class MainWindow(QWidget):
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._background = Background(self)
+        self._is_closing = False
+        self._is_drop_welcome = False
+        self._results: ResultPage | None = None
+        self._dialog: QFileDialog | None = None
+        self.setWindowTitle("Gaitwright")
+        self.setAcceptDrops(True)
+        self.setMinimumSize(*SMALLEST_SIZE)
+        self.resize(*FIRST_SIZE)
+        self.header = Header(look)
+        self.banner = Banner(look)
+        self.empty = EmptyPage(look)
+        self.working = WorkingPage(look)
+        self.pages = _Pages()
+        self.bar = _ActionBar(look)
+        self._build()
+        FocusRing(look, self)
+        self._connect()
+        self._on_look_changed()
+        self._show_page(self.empty)
+
+    @property
+    def results(self) -> "ResultPage | None":
+        """The page of results; None before the first session was analysed."""
+        return self._results
+
+    @property
+    def is_working(self) -> bool:
+        return self._background.is_busy
+
+    def open_folder(self, folder: Path) -> None:
+        """Read and analyse a session folder in the background, and show what comes of it."""
+        self._begin(opening_folder(folder), f"Analysing {folder.name}")
+
+    def open_demonstration(self) -> None:
+        """Let the simulated patient walk, in the background, and show what comes of it."""
+        self._begin(opening_demonstration(), "Analysing the demonstration")
+
+    def stop(self) -> None:
+        """End what is running, and go back to what was there before."""
+        if self._background.is_busy:
+            self._background.stop()
+            self._show_page(self._results or self.empty)
+            self.banner.tell(*STOPPED)
+
+    def closeEvent(self, event: QCloseEvent) -> None:
+        if self._background.is_idle:
+            event.accept()
+            return
+        self._background.stop()
+        self._is_closing = True
+        self.hide()  # gone at once for the user; the thread ends at its next report
+        event.ignore()
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if event.mimeData().hasUrls():
+            event.acceptProposedAction()
+            self._set_drop_welcome(True)
+
+    def dragLeaveEvent(self, _event: QDragLeaveEvent) -> None:
+        self._set_drop_welcome(False)
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        self._set_drop_welcome(False)
+        event.acceptProposedAction()
+        self._open_dropped(event.mimeData().urls())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(theme.colours.ground))
+        if self._is_drop_welcome:
+            painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
+            painter.drawRect(self.pages.geometry().adjusted(2, 2, -2, -2))
+
+    def _build(self) -> None:
+        for page in (self.empty, self.working):
+            self.pages.addWidget(page)
+        self._banner_row = QVBoxLayout()
+        self._banner_row.addWidget(self.banner)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.header)
+        column.addLayout(self._banner_row)
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        scroll.setWidget(self.pages)
+        column.addWidget(scroll, 1)
+        column.addWidget(self.bar)
+
+    def _connect(self) -> None:
+        for page in (self.empty, self.bar):
+            page.open_folder.clicked.connect(self._on_open_folder)
+            page.open_demonstration.clicked.connect(self.open_demonstration)
+        self.working.stop_pressed.connect(self.stop)
+        self._background.progressed.connect(self._on_progressed)
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        self._background.idle.connect(self._on_idle)
+        self._look.changed.connect(self._on_look_changed)
+        for keys, slot in (
+            (QKeySequence.StandardKey.Open, self._on_open_folder),
+            ("Ctrl+D", self.open_demonstration),
+            ("Esc", self.stop),
+            ("Ctrl++", self._on_larger),
+            ("Ctrl+=", self._on_larger),
+            ("Ctrl+-", self._on_smaller),
+            ("Ctrl+0", self._on_usual_size),
+        ):
+            shortcut = QShortcut(QKeySequence(keys), self)
+            shortcut.activated.connect(slot)
+
+    def _begin(self, work: Work, title: str) -> None:
+        self.banner.hide()
+        self.working.begin(title)
+        self._show_page(self.working)
+        self._background.start(work)
+
+    def _show_page(self, page: QWidget) -> None:
+        self.pages.setCurrentWidget(page)
+        self.bar.setVisible(page is self._results)
+        if page is self.working:
+            self.working.stop.setFocus()
+        elif page is self.empty:
+            self.empty.open_folder.setFocus()
+        elif self._results is not None:
+            self._results.methods.focus()
+        self._fit()
+
+    def _fit(self) -> None:
+        """Tell the pages how much room there is, in px of the design."""
+        scale = self._look.theme.scale
+        width, height = self.width() / scale, self.height() / scale
+        is_narrow = width < NARROW_BELOW
+        self.empty.set_narrow(is_narrow)
+        self.bar.set_narrow(is_narrow)
+        if self._results is not None:
+            self._results.set_room(width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1], is_narrow)
+
+    def _open_dropped(self, urls: list[QUrl]) -> None:
+        paths = [Path(url.toLocalFile()) for url in urls if url.isLocalFile()]
+        if len(paths) == 1 and paths[0].name == "session.toml":
+            paths = [paths[0].parent]
+        if len(paths) != 1 or not paths[0].is_dir():
+            self.banner.tell("This is not one folder.", "Drop the folder that holds session.toml.")
+            return
+        self.open_folder(paths[0])
+
+    def _set_drop_welcome(self, is_welcome: bool) -> None:
+        self._is_drop_welcome = is_welcome
+        self.update()
+
+    def _on_open_folder(self) -> None:
+        self._dialog = QFileDialog(self, "Open a session folder")
+        self._dialog.setFileMode(QFileDialog.FileMode.Directory)
+        self._dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._dialog.fileSelected.connect(self._on_folder_selected)
+        self._dialog.open()
+
+    def _on_folder_selected(self, folder: str) -> None:
+        self.open_folder(Path(folder))
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        words = place(what)
+        self.working.show_progress(share, words[:1].upper() + words[1:])
+
+    def _on_done(self, opened: "Opened") -> None:
+        if self._results is None:
+            from app.widgets.result_page import ResultPage
+
+            self._results = ResultPage(self._look)
+            self.pages.addWidget(self._results)
+        session = opened.session
+        self._results.show_analysis(opened.analysis)
+        self.header.show_session(session.patient.code or "No code", _in_words(session.patient), session.is_simulated)
+        self._show_page(self._results)
+
+    def _on_failed(self, error: Exception) -> None:
+        self._show_page(self._results or self.empty)
+        if isinstance(error, FileRefusedError):
+            self.banner.tell(f"{error.where}: {error.what}.", f"{error.remedy}.")
+        else:
+            _log.error("the analysis ended early", exc_info=error)
+            self.banner.tell(*ENDED_EARLY)
+
+    def _on_idle(self) -> None:
+        if self._is_closing:
+            self.close()
+
+    def _on_larger(self) -> None:
+        self._look.grow(1)
+
+    def _on_smaller(self) -> None:
+        self._look.grow(-1)
+
+    def _on_usual_size(self) -> None:
+        self._look.grow(0)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
+        self._fit()
+        self.update()
+
+
+class _Pages(QStackedWidget):
+    """As large as the page in sight needs to be, not as the largest."""
+
+    def minimumSizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.minimumSizeHint() if page is not None else QSize()
+
+    def sizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.sizeHint() if page is not None else QSize()
+
+
+class _ActionBar(QWidget):
+    """The ways on from a result."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.open_folder = Button(look, "Open a session folder", Kind.SECONDARY, Icon.FOLDER, "Ctrl O")
+        self.open_demonstration = Button(look, "Open the demonstration", Kind.QUIET, Icon.PLAY, "Ctrl D")
+        self._purpose = Text(look, "Research use. Not a medical device.", size=12, tone="ink2")
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(self.open_folder)
+        self._row.addWidget(self.open_demonstration)
+        self._row.addStretch(1)
+        self._row.addWidget(self._purpose)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        self._purpose.setVisible(not is_narrow)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(theme.colours.surface))
+        painter.setPen(theme.pen(theme.colours.line, 1))
+        painter.drawLine(self.rect().topLeft(), self.rect().topRight())
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(24), 0, px(24), 0)
+        self._row.setSpacing(px(16))
+        self.setFixedHeight(px(BAR))
+        self.update()
+
+
+def _in_words(patient: "Patient") -> str:
+    """Give what the clinic typed, in one line."""
+    person = ", ".join(filter(None, [str(patient.birth_year or ""), patient.sex]))
+    side = ""
+    if patient.prosthetic_side and patient.prosthetic_side != "none":
+        side = f"{patient.prosthetic_side} prosthetic"
+    elif patient.affected_side and patient.affected_side != "none":
+        side = f"{patient.affected_side} affected"
+    return " · ".join(filter(None, [person, side, patient.device]))
+
+
+def open_window(argv: list[str]) -> int:
+    """Open the application, with the session folder named in `argv` if one is, and stay until it is closed.
+
+    Parameters
+    ----------
+    argv
+        What stood behind the program's name.
+    """
+    QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+    app = QApplication([sys.argv[0], *argv])
+    app.setApplicationName("Gaitwright")
+    app.setStyle("Fusion")
+    load_fonts()
+    look = Look(app)
+    look.follow_system()
+    window = MainWindow(look)
+    window.show()
+    folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
+    if folders:
+        window.open_folder(Path(folders[0]))
+    return app.exec()

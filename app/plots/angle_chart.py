@@ -1,0 +1,251 @@
+"""One kind of joint over time: left solid, right dashed, certainty as a band, gaps as gaps, always the same axes."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPolygonF
+from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
+
+from app.plots.thinning import thin
+from app.theme import Look
+from core.body import Side
+from core.samples import FloatArray
+
+LEAST_SIZE = (320, 100)  # what can just be read; the page gives more where it has more
+AXIS_WIDTH = 40  # fixed, so that charts above one another align
+AXIS_HEIGHT = 24
+CURVE_PX = 2.0
+SECOND_PX = 1.0  # the thin curve of another method beside the result
+TICK_DEG = 20
+SHORTEST_VIEW_S = 0.2
+WIDEN_TO_DEG = 10  # a range that is left is widened to the next full ten
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """What one leg draws, degrees, all (n,) on the chart's time; `sd_deg` and `second_deg` None where not shown."""
+
+    angle_deg: FloatArray
+    sd_deg: FloatArray | None = None
+    second_deg: FloatArray | None = None
+
+
+class AngleChart(pg.PlotWidget):  # type: ignore[misc]  # pyqtgraph has no types
+    """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them."""
+
+    def __init__(self, look: Look, lowest_deg: float, highest_deg: float) -> None:
+        super().__init__(axisItems={"bottom": _TimeAxis("bottom"), "left": _AngleAxis("left")})
+        self._look = look
+        self._fixed = (lowest_deg, highest_deg)
+        self.range_deg = self._fixed
+        self.curves: Mapping[Side, Curve] = {}
+        self._time_s: FloatArray = np.zeros(0)
+        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self.setFrameShape(pg.PlotWidget.Shape.NoFrame)
+        plot = self.getPlotItem()
+        plot.hideButtons()
+        plot.setMenuEnabled(False)
+        self._view = plot.getViewBox()
+        self._view.setMouseEnabled(x=True, y=False)
+        self._view.setDefaultPadding(0.0)
+        self._view.disableAutoRange()
+        self._view.setYRange(*self._fixed, padding=0)
+        self._zero = pg.InfiniteLine(0.0, angle=0)
+        self._cursor = pg.InfiniteLine(angle=90)
+        self._cursor.hide()
+        self._items = {side: _CurveItem(look, side) for side in Side}
+        for item in (self._zero, *self._items.values(), self._cursor):
+            self.addItem(item, ignoreBounds=True)
+        self._view.sigXRangeChanged.connect(self._on_x_range_changed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    @property
+    def is_widened(self) -> bool:
+        return self.range_deg != self._fixed
+
+    @property
+    def visible_s(self) -> tuple[float, float]:
+        first, last = self._view.viewRange()[0]
+        return float(first), float(last)
+
+    @property
+    def whole_s(self) -> tuple[float, float]:
+        """First and last stamp; a second from zero where there is no sample."""
+        if len(self._time_s) == 0:
+            return 0.0, 1.0
+        first, last = float(self._time_s[0]), float(self._time_s[-1])
+        return first, max(last, first + SHORTEST_VIEW_S)
+
+    def show_curves(self, time_s: FloatArray, curves: Mapping[Side, Curve]) -> None:
+        """Draw `curves` over `time_s`, and widen the axis where they leave it."""
+        self._time_s, self.curves = time_s, curves
+        self.range_deg = self._range_for(curves)
+        self._view.setYRange(*self.range_deg, padding=0)
+        first, last = self.whole_s
+        self._view.setLimits(xMin=first, xMax=last, minXRange=SHORTEST_VIEW_S)
+        span = self.range_deg[1] - self.range_deg[0]
+        step = TICK_DEG if span <= 8 * TICK_DEG else None
+        axis = self.getPlotItem().getAxis("left")
+        axis.setTickSpacing(levels=[(step, 0)] if step else None)
+        self._redraw()
+
+    def see(self, first_s: float, last_s: float) -> None:
+        self._view.setXRange(first_s, last_s, padding=0)
+
+    def set_cursor(self, time_s: float | None) -> None:
+        self._cursor.setVisible(time_s is not None)
+        if time_s is not None:
+            self._cursor.setPos(time_s)
+
+    def time_at(self, scene_x: float, scene_y: float) -> float | None:
+        """Give the time under a point of the scene; None beside the axes."""
+        if not self._view.sceneBoundingRect().contains(scene_x, scene_y):
+            return None
+        return float(self._view.mapSceneToView(pg.Point(scene_x, scene_y)).x())
+
+    def curve_points(self, side: Side) -> tuple[FloatArray, FloatArray]:
+        """Give time and angle of the points that are drawn."""
+        item = self._items[side]
+        return item.time_s, item.angle_deg
+
+    def _range_for(self, curves: Mapping[Side, Curve]) -> tuple[float, float]:
+        lowest, highest = self._fixed
+        for curve in curves.values():
+            for values in (curve.angle_deg, curve.second_deg):
+                if values is not None and np.isfinite(values).any():
+                    lowest = min(lowest, WIDEN_TO_DEG * np.floor(np.nanmin(values) / WIDEN_TO_DEG))
+                    highest = max(highest, WIDEN_TO_DEG * np.ceil(np.nanmax(values) / WIDEN_TO_DEG))
+        return float(lowest), float(highest)
+
+    def _redraw(self) -> None:
+        """Hand the items what is in sight, no finer than the screen."""
+        first, last = np.searchsorted(self._time_s, self.visible_s)
+        part = slice(max(int(first) - 1, 0), int(last) + 1)
+        columns = max(int(self._view.width()), 100)
+        for side, item in self._items.items():
+            item.setData(self._time_s[part], self.curves.get(side), part, columns)
+
+    def _on_x_range_changed(self) -> None:
+        self._redraw()
+
+    def _on_look_changed(self) -> None:
+        theme = self._look.theme
+        c = theme.colours
+        self.setBackground(c.surface)
+        plot = self.getPlotItem()
+        plot.getAxis("left").setWidth(theme.px(AXIS_WIDTH))
+        plot.getAxis("bottom").setHeight(theme.px(AXIS_HEIGHT))
+        for name in ("left", "bottom"):
+            axis = plot.getAxis(name)
+            axis.setPen(theme.pen(c.control, 1))
+            axis.setTextPen(QColor(c.ink2))
+            axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
+        plot.layout.setContentsMargins(0, theme.px(6), theme.px(16), 0)
+        self._zero.setPen(pg.mkPen(c.control, width=1))
+        self._cursor.setPen(pg.mkPen(c.ink, width=1))
+        for item in self._items.values():
+            item.update()
+
+
+class _AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
+    def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
+        return [f"{value:.0f}".replace("-", "\N{MINUS SIGN}") for value in values]
+
+
+class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
+    """Ticks that carry their unit: "2.5 s" up to two minutes, "3:20" beyond."""
+
+    def tickStrings(self, values: list[float], _scale: float, spacing: float) -> list[str]:
+        if self.range[1] <= 120 or spacing < 1:
+            decimals = max(0, int(np.ceil(-np.log10(spacing) - 1e-9)))
+            return [f"{value:.{decimals}f} s".replace("-", "\N{MINUS SIGN}") for value in values]
+        return [f"{int(value) // 60}:{int(value) % 60:02d}" for value in values]
+
+
+class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """Band and curves of one leg in one item: pyqtgraph's own curves join their bands across gaps."""
+
+    def __init__(self, look: Look, side: Side) -> None:
+        super().__init__()
+        self._look, self._side = look, side
+        self.time_s: FloatArray = np.zeros(0)
+        self.angle_deg: FloatArray = np.zeros(0)
+        self._line = QPainterPath()
+        self._second = QPainterPath()
+        self._band = QPainterPath()
+        self._bounds = QRectF()
+        # moving the cursor over it must not paint thousands of dashes again
+        self.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)
+
+    def setData(self, time_s: FloatArray, curve: Curve | None, part: slice, columns: int) -> None:
+        self.prepareGeometryChange()
+        self._line, self._second, self._band = QPainterPath(), QPainterPath(), QPainterPath()
+        self.time_s, self.angle_deg = np.zeros(0), np.zeros(0)
+        if curve is not None:
+            self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], columns)
+            self._line = _line_path(self.time_s, self.angle_deg)
+            if curve.second_deg is not None:
+                self._second = _line_path(*thin(time_s, curve.second_deg[part], columns))
+            if curve.sd_deg is not None:
+                low = thin(time_s, curve.angle_deg[part] - 2 * curve.sd_deg[part], columns)
+                high = thin(time_s, curve.angle_deg[part] + 2 * curve.sd_deg[part], columns)
+                self._band = _band_path(low, high)
+        paths = (self._line, self._second, self._band)
+        self._bounds = paths[0].boundingRect().united(paths[1].boundingRect()).united(paths[2].boundingRect())
+        self.update()
+
+    def boundingRect(self) -> QRectF:
+        reach = CURVE_PX * self._look.theme.scale
+        x, y = reach * (self.pixelWidth() or 0.0), reach * (self.pixelHeight() or 0.0)
+        return self._bounds.adjusted(-x, -y, x, y)
+
+    def viewTransformChanged(self) -> None:
+        self.prepareGeometryChange()
+        super().viewTransformChanged()
+
+    def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, _widget: QWidget | None = None) -> None:
+        theme = self._look.theme
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.fillPath(self._band, theme.band(self._side))
+        painter.strokePath(self._second, theme.side_pen(self._side, SECOND_PX))
+        painter.strokePath(self._line, theme.side_pen(self._side, CURVE_PX))
+
+
+def _runs(values: FloatArray) -> list[slice]:
+    """Give the stretches without a gap."""
+    known = np.concatenate([[False], np.isfinite(values), [False]]).astype(np.int8)
+    borders = np.flatnonzero(np.diff(known))
+    return [slice(int(start), int(end)) for start, end in borders.reshape(-1, 2)]
+
+
+def _polygon(x: FloatArray, y: FloatArray) -> QPolygonF:
+    return pg.functions.arrayToQPolygonF(x, y)
+
+
+def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
+    path = QPainterPath()
+    for run in _runs(values):
+        path.addPolygon(_polygon(time_s[run], values[run]))
+    return path
+
+
+def _band_path(low: tuple[FloatArray, FloatArray], high: tuple[FloatArray, FloatArray]) -> QPainterPath:
+    """Give the area between two curves that have the same gaps."""
+    path = QPainterPath()
+    for below, above in zip(_runs(low[1]), _runs(high[1]), strict=False):
+        x = np.concatenate([low[0][below], high[0][above][::-1]])
+        y = np.concatenate([low[1][below], high[1][above][::-1]])
+        path.addPolygon(_polygon(x, y))
+        path.closeSubpath()
+    return path

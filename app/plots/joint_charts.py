@@ -1,0 +1,287 @@
+"""Knee above ankle over one recording: one time axis, one reading line, and always a way back to the whole."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from PySide6.QtCore import QPointF, Qt, Signal
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.plots.angle_chart import AngleChart, Curve
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.chip import SideKey
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from core.body import Joint, Side, ankle_of, knee_of
+from core.samples import FloatArray
+
+KNEE_DEG = (-10.0, 80.0)
+ANKLE_DEG = (-30.0, 30.0)
+ZOOM = 0.6  # what one press of + leaves of the time in sight
+NO_VALUE = "no value"
+
+
+class JointCharts(QWidget):
+    """Two charts that act as one control: the mouse or the keys read, move along and zoom in time.
+
+    `view_changed` tells whether the whole recording is in sight, and which part is.
+    """
+
+    view_changed = Signal(bool, str)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._time_s: FloatArray = np.zeros(0)
+        self._cursor_s: float | None = None
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.knee = ChartFrame(look, "Knee", "flexion + (°)", AngleChart(look, *KNEE_DEG), tells_time=True)
+        self.ankle = ChartFrame(look, "Ankle", "dorsiflexion + (°)", AngleChart(look, *ANKLE_DEG))
+        self._frames = (self.knee, self.ankle)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        for frame in self._frames:
+            self._column.addWidget(frame, 1)
+            frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
+        self.ankle.chart.setXLink(self.knee.chart)
+        self.knee.chart.getPlotItem().getViewBox().sigXRangeChanged.connect(self._on_x_range_changed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def visible_s(self) -> tuple[float, float]:
+        return self.knee.chart.visible_s
+
+    @property
+    def is_whole(self) -> bool:
+        first, last = self.knee.chart.whole_s
+        shown = self.visible_s
+        return bool(np.allclose(shown, (first, last), atol=1e-3 * (last - first)))
+
+    def show_recording(self, name: str, time_s: FloatArray, is_simulated: bool) -> None:
+        """Make the charts ready for another recording, all of it in sight; `show_joints` then draws."""
+        self._time_s = time_s
+        self.setAccessibleName(f"Knee and ankle angles of {name}")
+        for frame in self._frames:
+            frame.set_simulated(is_simulated)
+            frame.chart.show_curves(time_s, {})
+        self._read_at(None)
+        self.show_whole()
+
+    def show_joints(self, curves: Mapping[Joint, Curve]) -> None:
+        """Draw the joints' curves, all on the time of `show_recording`; the stretch in sight stays."""
+        for frame, joint_of in ((self.knee, knee_of), (self.ankle, ankle_of)):
+            frame.show_curves(self._time_s, {side: curves[joint_of(side)] for side in Side if joint_of(side) in curves})
+        self.setAccessibleDescription(" ".join(frame.in_words() for frame in self._frames))
+        self._read_at(self._cursor_s)
+
+    def show_whole(self) -> None:
+        self._see(*self.knee.chart.whole_s)
+
+    def zoom(self, share: float) -> None:
+        """Keep `share` of the time in sight, about the reading line if it is there."""
+        first, last = self.visible_s
+        centre = (
+            self._cursor_s if self._cursor_s is not None and first <= self._cursor_s <= last else (first + last) / 2
+        )
+        self._see(centre - (centre - first) * share, centre + (last - centre) * share)
+
+    def go_on(self, share: float) -> None:
+        """Go on by `share` of the time in sight; negative goes back."""
+        first, last = self.visible_s
+        whole = self.knee.chart.whole_s
+        step = min(max(share * (last - first), whole[0] - first), whole[1] - last)
+        self._see(first + step, last + step)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
+            super().keyPressEvent(event)
+            return
+        match event.key():
+            case Qt.Key.Key_Plus | Qt.Key.Key_Equal:
+                self.zoom(ZOOM)
+            case Qt.Key.Key_Minus:
+                self.zoom(1 / ZOOM)
+            case Qt.Key.Key_Home:
+                self.show_whole()
+            case Qt.Key.Key_PageUp:
+                self.go_on(-0.5)
+            case Qt.Key.Key_PageDown:
+                self.go_on(0.5)
+            case Qt.Key.Key_Left | Qt.Key.Key_Right:
+                pixels = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
+                self._step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
+            case _:
+                super().keyPressEvent(event)
+
+    def _step(self, pixels: int) -> None:
+        """Move the reading line by pixels, but at least from sample to sample, and keep it in sight."""
+        if len(self._time_s) == 0:
+            return
+        first, last = self.visible_s
+        at = self._cursor_s if self._cursor_s is not None else (first + last) / 2
+        here = int(np.searchsorted(self._time_s, at))
+        there = int(np.searchsorted(self._time_s, at + pixels * (last - first) / max(self.knee.chart.width(), 1)))
+        if there == here:
+            there += 1 if pixels > 0 else -1
+        self._read_at(float(self._time_s[min(max(there, 0), len(self._time_s) - 1)]))
+        assert self._cursor_s is not None
+        if not first <= self._cursor_s <= last:
+            self.go_on(0.5 if self._cursor_s > last else -0.5)
+        said = " ".join(frame.reading_in_words() for frame in self._frames)
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, f"{self._cursor_s:.2f} s. {said}"))
+
+    def _see(self, first_s: float, last_s: float) -> None:
+        first, last = self.knee.chart.whole_s
+        self.knee.chart.see(max(first_s, first), min(last_s, last))
+
+    def _read_at(self, time_s: float | None) -> None:
+        """Put the reading line on the sample nearest to `time_s`, None takes it away."""
+        row = None
+        if time_s is not None and len(self._time_s):
+            row = int(np.argmin(np.abs(self._time_s - time_s)))
+            time_s = float(self._time_s[row])
+        self._cursor_s = time_s
+        for frame in self._frames:
+            frame.read(row, time_s)
+
+    def _on_mouse_moved(self, position: QPointF) -> None:
+        for frame in self._frames:
+            if frame.chart.underMouse():
+                time_s = frame.chart.time_at(position.x(), position.y())
+                if time_s is not None:
+                    self._read_at(time_s)
+
+    def _on_x_range_changed(self) -> None:
+        first, last = self.visible_s
+        length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
+        shown = f"{first:.1f} to {last:.1f} s of {length:.1f} s".replace("-", "\N{MINUS SIGN}")
+        self.view_changed.emit(self.is_whole, f"Whole recording, {length:.1f} s" if self.is_whole else shown)
+
+    def _on_look_changed(self) -> None:
+        self._column.setSpacing(self._look.theme.px(12))
+
+
+class ChartFrame(Card):
+    """A chart with its title, its sign in words, and what stands at the reading line."""
+
+    def __init__(self, look: Look, name: str, sign: str, chart: AngleChart, tells_time: bool = False) -> None:
+        self._name = name
+        self.chart = chart
+        self._title = Text(look, name, size=16, weight=SEMIBOLD)
+        self._sign = Text(look, sign, size=12, tone="ink2")
+        self._simulated = Text(look, "SIMULATED", size=12, weight=SEMIBOLD)
+        self._moment = Text(look, size=14, tone="ink2")
+        self._moment.setVisible(tells_time)
+        self._keys = {side: SideKey(look, side) for side in Side}
+        self._values = {side: Text(look, size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
+        self._wide_mark = IconMark(look, Icon.WARNING, size=18)
+        self._wide = Text(look, size=12, weight=MEDIUM)
+        super().__init__(look, spacing=4)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        head = QGridLayout()
+        head.setHorizontalSpacing(8)
+        head.setVerticalSpacing(4)
+        names, readings = QHBoxLayout(), QHBoxLayout()
+        names.setSpacing(8)
+        readings.setSpacing(8)
+        for widget in (self._title, self._sign, self._wide_mark, self._wide, self._simulated):
+            names.addWidget(widget)
+        names.addStretch(1)
+        readings.addStretch(1)
+        readings.addWidget(self._moment)
+        for side in Side:
+            readings.addSpacing(12)
+            readings.addWidget(self._keys[side])
+            readings.addWidget(self._values[side])
+        self._head = (names, readings)
+        self._grid = head
+        self._place(is_narrow=False)
+        self.column.addLayout(head)
+        self.column.addWidget(chart, 1)
+        self._set_widened()
+        self._on_look_changed()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Put the readings under the title where they do not fit beside it."""
+        self._place(is_narrow)
+
+    def set_simulated(self, is_simulated: bool) -> None:
+        self._simulated.setVisible(is_simulated)
+
+    def show_curves(self, time_s: FloatArray, curves: Mapping[Side, Curve]) -> None:
+        self.chart.show_curves(time_s, curves)
+        for side in Side:
+            for widget in (self._keys[side], self._values[side]):
+                widget.setVisible(side in curves)
+        self._set_widened()
+        self.chart.setAccessibleName(f"{self._name} over time")
+        self.chart.setAccessibleDescription(self.in_words())
+
+    def read(self, row: int | None, time_s: float | None) -> None:
+        """Show the values of sample `row`."""
+        self._moment.setText("" if time_s is None else f"{time_s:.2f} s".replace("-", "\N{MINUS SIGN}"))
+        for side, value in self._values.items():
+            curve = self.chart.curves.get(side)
+            value.setText("" if row is None or curve is None else _reading(curve, row))
+        self._reserve_room()
+        self.chart.set_cursor(time_s)
+
+    def reading_in_words(self) -> str:
+        return " ".join(
+            f"{side} {self._name.lower()} {self._values[side].text()}." for side in Side if side in self.chart.curves
+        )
+
+    def in_words(self) -> str:
+        """Say each leg's range, for who cannot see the curves."""
+        said = []
+        for side, curve in self.chart.curves.items():
+            part = f"{side.capitalize()} {self._name.lower()}"
+            if np.isfinite(curve.angle_deg).any():
+                lowest, highest = np.nanmin(curve.angle_deg), np.nanmax(curve.angle_deg)
+                said.append(f"{part} from {_degrees(lowest)} to {_degrees(highest)}.")
+            else:
+                said.append(f"{part} has no values.")
+        return " ".join(said) or f"No {self._name.lower()} angles."
+
+    def _place(self, is_narrow: bool) -> None:
+        for part in self._head:
+            self._grid.removeItem(part)
+        self._grid.addLayout(self._head[0], 0, 0)
+        if is_narrow:
+            self._grid.addLayout(self._head[1], 1, 0)
+        else:
+            self._grid.addLayout(self._head[1], 0, 1)
+
+    def _reserve_room(self) -> None:
+        """Make the readings as wide as they ever get, so that nothing jumps while the line moves."""
+        for label, widest in (
+            (self._moment, "1000.00 s"),
+            *((value, "\N{MINUS SIGN}100.0° ± 10.0°") for value in self._values.values()),
+        ):
+            label.setMinimumWidth(label.fontMetrics().horizontalAdvance(widest) if label.text() else 0)
+
+    def _set_widened(self) -> None:
+        lowest, highest = self.chart.range_deg
+        self._wide.setText(f"Axis widened: {_degrees(lowest, 0)} to {_degrees(highest, 0)}")
+        self._wide.setVisible(self.chart.is_widened)
+        self._wide_mark.setVisible(self.chart.is_widened)
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        self._reserve_room()
+
+
+def _reading(curve: Curve, row: int) -> str:
+    angle = curve.angle_deg[row]
+    if not np.isfinite(angle):
+        return NO_VALUE
+    said = _degrees(angle)
+    if curve.sd_deg is not None and np.isfinite(curve.sd_deg[row]):
+        said += f" ± {2 * curve.sd_deg[row]:.1f}°"
+    return said
+
+
+def _degrees(value: float | np.floating, decimals: int = 1) -> str:
+    return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")

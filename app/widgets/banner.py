@@ -1,0 +1,81 @@
+"""What happened and what to do, in the page and never in a dialog. It stays until it is dismissed or made good."""
+
+from PySide6.QtCore import QPointF, QRectF, Signal
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.button import Button, Kind
+from app.widgets.text import SEMIBOLD, Text
+
+HEIGHT = 64
+MARK = 28
+ABOVE = 12  # clear of the header; gone together with the banner
+
+
+class Banner(QWidget):
+    """Hidden until it is told something."""
+
+    dismissed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self._what = Text(look, size=14, weight=SEMIBOLD, tone="caution_ink", wraps=True)
+        self._next = Text(look, size=14, tone="caution_ink", wraps=True)
+        self._dismiss = Button(look, "Dismiss", Kind.QUIET, height=44)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addStretch(1)
+        words.addWidget(self._what)
+        words.addWidget(self._next)
+        words.addStretch(1)
+        self._row = QHBoxLayout(self)
+        self._row.addLayout(words, 1)
+        self._row.addWidget(self._dismiss)
+        self._dismiss.clicked.connect(self._on_dismiss_clicked)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self.hide()
+
+    @property
+    def text(self) -> str:
+        return " ".join(filter(None, [self._what.text(), self._next.text()]))
+
+    def tell(self, what: str, then: str = "") -> None:
+        """Show what happened, in bold, and what follows or what to do."""
+        self._what.setText(what)
+        self._next.setText(then)
+        self._next.setVisible(bool(then))
+        self.setAccessibleName(self.text)
+        self.show()
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(c.caution_edge, 1))
+        painter.setBrush(QColor(c.caution))
+        radius = CONTROL_RADIUS * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5), radius, radius)
+        centre = QPointF(px(16 + MARK / 2), (self.height() + px(ABOVE)) / 2)
+        painter.setPen(theme.pen(c.caution_edge, 1))
+        painter.setBrush(QColor(c.caution_mark))
+        painter.drawEllipse(centre, MARK / 2 * theme.scale, MARK / 2 * theme.scale)
+        painter.setPen(theme.pen(c.caution_mark_ink, 2.5))
+        painter.drawLine(centre + QPointF(0, -px(7)), centre + QPointF(0, px(2)))
+        painter.drawPoint(centre + QPointF(0, px(7)))
+
+    def _on_dismiss_clicked(self) -> None:
+        self.hide()
+        self.dismissed.emit()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(16 + MARK + 12), px(ABOVE + 8), px(8), px(8))
+        self._row.setSpacing(px(16))
+        self.setMinimumHeight(px(HEIGHT + ABOVE))
+        self.update()

@@ -1,0 +1,74 @@
+"""What was noticed, in words, the gravest first; how grave it is shows in the shape beside it."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.icons import SEVERITY_ICONS, Icon, IconMark
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import sentence
+from core.findings import Finding, Severity
+
+ORDER = (Severity.GRAVE, Severity.WARNING, Severity.INFO)
+LEAST_SIZE = (320, 96)  # the rest is scrolled
+NOTHING = "Nothing stands out."
+
+
+class FindingsList(QScrollArea):
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setWidgetResizable(True)
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setAccessibleName("Findings")
+
+    def show_findings(self, findings: Sequence[Finding]) -> None:
+        page = QWidget()
+        column = QVBoxLayout(page)
+        column.setContentsMargins(0, 0, self._look.theme.px(8), 0)
+        column.setSpacing(self._look.theme.px(12))
+        for finding in sorted(findings, key=lambda finding: ORDER.index(finding.severity)):
+            column.addWidget(
+                FindingRow(self._look, SEVERITY_ICONS[finding.severity], finding.severity, sentence(finding))
+            )
+        if not findings:
+            column.addWidget(FindingRow(self._look, Icon.CHECK, Severity.INFO, NOTHING))
+        column.addStretch(1)
+        self.setWidget(page)
+        self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or NOTHING)
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+
+class FindingRow(QWidget):
+    """What happened in bold, what follows below it."""
+
+    def __init__(self, look: Look, icon: Icon, severity: Severity, text: str) -> None:
+        super().__init__()
+        what, then = _in_two(text)
+        self.setAccessibleName(f"{severity}: {text}")
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(look.theme.px(12))
+        row.addWidget(IconMark(look, icon), 0, Qt.AlignmentFlag.AlignTop)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(Text(look, what, weight=SEMIBOLD, wraps=True))
+        if then:
+            words.addWidget(Text(look, then, tone="ink2", wraps=True))
+        row.addLayout(words, 1)
+
+
+def _in_two(text: str) -> tuple[str, str]:
+    """Split after the first sentence; a point inside a figure ends none."""
+    what, stop, then = text.partition(". ")
+    return (what + ".", then) if stop else (text, "")

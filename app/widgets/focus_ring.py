@@ -1,0 +1,64 @@
+"""The ring round whatever has the focus, 3 px outside it, where a control cannot paint for itself."""
+
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QRectF, Qt
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import QApplication, QWidget
+from shiboken6 import isValid
+
+from app.theme import CONTROL_RADIUS, Look
+
+DISTANCE = 3
+WIDTH = 2
+
+
+class FocusRing(QWidget):
+    """Lies over all of `window` and follows the focus inside it."""
+
+    def __init__(self, look: Look, window: QWidget) -> None:
+        super().__init__(window)
+        self._look, self._window = look, window
+        self._chain: list[QWidget] = []
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        app = QApplication.instance()
+        if isinstance(app, QApplication):
+            app.focusChanged.connect(self._on_focus_changed)
+        look.changed.connect(self.update)
+        self.hide()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.ink, WIDTH))
+        half = WIDTH * theme.scale / 2
+        radius = (CONTROL_RADIUS + DISTANCE) * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(half, half, -half, -half), radius, radius)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        moved = (QEvent.Type.Move, QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Hide)
+        if event.type() in moved and watched is not self:
+            self._follow()
+        return super().eventFilter(watched, event)
+
+    def _on_focus_changed(self, _old: QWidget | None, new: QWidget | None) -> None:
+        for left in filter(isValid, self._chain):  # the focus also leaves what is being deleted
+            left.removeEventFilter(self)
+        self._chain = []
+        if new is not None and self._window.isAncestorOf(new):
+            while new is not None and new is not self._window:
+                self._chain.append(new)
+                new.installEventFilter(self)
+                new = new.parentWidget()
+        self._follow()
+
+    def _follow(self) -> None:
+        seen = self._chain[0].visibleRegion().boundingRect() if self._chain else QRect()
+        if seen.isEmpty():
+            self.hide()
+            return
+        reach = self._look.theme.px(DISTANCE + WIDTH)
+        corner = self._chain[0].mapTo(self._window, QPoint(0, 0))
+        self.setGeometry(seen.translated(corner).adjusted(-reach, -reach, reach, reach))
+        self.raise_()
+        self.show()

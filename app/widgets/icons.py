@@ -1,0 +1,146 @@
+"""Icons drawn in the theme's ink: 24 px grid, stroke of 1.75, round ends. Never alone, never coloured."""
+
+from collections.abc import Callable
+from enum import StrEnum
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPainterPath, QPaintEvent, QPen, QPolygonF
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.theme import Look
+from core.findings import Severity
+
+
+class Icon(StrEnum):
+    FOLDER = "folder"
+    PLAY = "play"
+    STOP = "stop"
+    CHEVRON = "chevron"
+    CLOSE = "close"
+    WHOLE = "whole"
+    CHECK = "check"
+    INFO = "info"
+    WARNING = "warning"
+    GRAVE = "grave"
+
+
+SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
+
+
+def paint_icon(painter: QPainter, icon: Icon, rect: QRectF, ink: QColor | str) -> None:
+    """Draw `icon` into the square `rect`."""
+    painter.save()
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.translate(rect.topLeft())
+    painter.scale(rect.width() / 24, rect.height() / 24)
+    pen = QPen(QColor(ink), 1.75)
+    pen.setCapStyle(Qt.PenCapStyle.RoundCap)
+    pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
+    painter.setPen(pen)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    _DRAWINGS[icon](painter, QColor(ink))
+    painter.restore()
+
+
+class IconMark(QWidget):
+    """An icon beside words. The words say what it says, so a reader of screens passes over it."""
+
+    def __init__(self, look: Look, icon: Icon, size: float = 20, tone: str = "ink") -> None:
+        super().__init__()
+        self._look, self._icon, self._size, self._tone = look, icon, size, tone
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self._on_look_changed)
+
+    def sizeHint(self) -> QSize:
+        side = self._look.theme.px(self._size)
+        return QSize(side, side)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+def _lines(painter: QPainter, *points: tuple[float, float]) -> None:
+    painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in points]))
+
+
+def _filled(painter: QPainter, ink: QColor, *points: tuple[float, float]) -> None:
+    painter.setBrush(QBrush(ink))
+    painter.drawPolygon(QPolygonF([QPointF(x, y) for x, y in points]))
+
+
+def _folder(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (3, 18.5), (3, 5.5), (9.5, 5.5), (11.5, 8), (21, 8), (21, 18.5), (3, 18.5))
+
+
+def _play(painter: QPainter, ink: QColor) -> None:
+    _filled(painter, ink, (7, 5.5), (18.5, 12), (7, 18.5))
+
+
+def _stop(painter: QPainter, ink: QColor) -> None:
+    _filled(painter, ink, (7, 7), (17, 7), (17, 17), (7, 17))
+
+
+def _chevron(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (6, 9), (12, 15), (18, 9))
+
+
+def _close(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (6, 6), (18, 18))
+    _lines(painter, (18, 6), (6, 18))
+
+
+def _whole(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (3, 5), (3, 19))
+    _lines(painter, (21, 5), (21, 19))
+    _lines(painter, (6.5, 12), (17.5, 12))
+    _lines(painter, (9.5, 9), (6.5, 12), (9.5, 15))
+    _lines(painter, (14.5, 9), (17.5, 12), (14.5, 15))
+
+
+def _check(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (5, 12.5), (10, 17.5), (19, 7))
+
+
+def _info(painter: QPainter, _ink: QColor) -> None:
+    painter.drawEllipse(QPointF(12, 12), 9, 9)
+    _lines(painter, (12, 11), (12, 16.5))
+    painter.drawPoint(QPointF(12, 7.6))
+
+
+def _warning(painter: QPainter, _ink: QColor) -> None:
+    painter.drawPolygon(QPolygonF([QPointF(12, 3.5), QPointF(21.5, 20), QPointF(2.5, 20)]))
+    _lines(painter, (12, 9.5), (12, 14.2))
+    painter.drawPoint(QPointF(12, 17))
+
+
+def _grave(painter: QPainter, ink: QColor) -> None:
+    """An octagon filled with ink, a bar cut out of it: the heaviest shape stands for the gravest word."""
+    corners = [(8, 2.5), (16, 2.5), (21.5, 8), (21.5, 16), (16, 21.5), (8, 21.5), (2.5, 16), (2.5, 8)]
+    shape = QPainterPath()  # filled by odd and even, so that what lies inside is a hole
+    shape.addPolygon(QPolygonF([QPointF(x, y) for x, y in corners]))
+    shape.closeSubpath()
+    shape.addRoundedRect(QRectF(10.8, 6.2, 2.4, 7.6), 1.2, 1.2)
+    shape.addEllipse(QPointF(12, 17), 1.5, 1.5)
+    painter.fillPath(shape, QBrush(ink))
+
+
+_DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
+    Icon.FOLDER: _folder,
+    Icon.PLAY: _play,
+    Icon.STOP: _stop,
+    Icon.CHEVRON: _chevron,
+    Icon.CLOSE: _close,
+    Icon.WHOLE: _whole,
+    Icon.CHECK: _check,
+    Icon.INFO: _info,
+    Icon.WARNING: _warning,
+    Icon.GRAVE: _grave,
+}

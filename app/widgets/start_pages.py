@@ -1,0 +1,93 @@
+"""What stands in the place of a result before there is one: an empty page, and a page that works."""
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.icons import Icon
+from app.widgets.text import SEMIBOLD, Text
+
+SENTENCE = "No session is open."
+
+
+class EmptyPage(QWidget):
+    """One sentence and the two ways on."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.open_folder = Button(look, "Open a session folder", Kind.PRIMARY, Icon.FOLDER, "Ctrl O")
+        self.open_demonstration = Button(look, "Open the demonstration", Kind.SECONDARY, Icon.PLAY, "Ctrl D")
+        self._sentence = Text(look, SENTENCE, size=26, weight=SEMIBOLD)
+        self._hint = Text(look, "A session folder can also be dropped here.", tone="ink2")
+        self._row = QHBoxLayout()
+        self._row.addStretch(1)
+        self._row.addWidget(self.open_folder)
+        self._row.addWidget(self.open_demonstration)
+        self._row.addStretch(1)
+        self._column = QVBoxLayout(self)
+        self._column.addStretch(1)
+        self._column.addWidget(self._sentence, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addLayout(self._row)
+        self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addStretch(1)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Stack the two buttons where they do not fit side by side."""
+        way = QHBoxLayout.Direction.TopToBottom if is_narrow else QHBoxLayout.Direction.LeftToRight
+        self._row.setDirection(way)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
+        self._column.setSpacing(px(24))
+        self._row.setSpacing(px(16))
+
+
+class WorkingPage(QWidget):
+    """What is being done, how far it is, and the way out."""
+
+    stop_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self._title.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._what = Text(look, tone="ink2")
+        self._line = QProgressBar()
+        self._line.setTextVisible(False)
+        self._line.setRange(0, 1000)
+        self._line.setAccessibleName("Progress")
+        self.stop = Button(look, "Stop", Kind.SECONDARY, Icon.STOP, "Esc")
+        self._column = QVBoxLayout(self)
+        self._column.addStretch(1)
+        self._column.addWidget(self._title)
+        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addWidget(self._what, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addStretch(1)
+        self.stop.clicked.connect(self.stop_pressed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def begin(self, title: str) -> None:
+        self._title.setText(title)
+        self.show_progress(0.0, "")
+
+    def show_progress(self, share: float, what: str) -> None:
+        self._line.setValue(round(share * 1000))
+        self._what.setText(what)
+
+    @property
+    def progress(self) -> tuple[float, str]:
+        return self._line.value() / 1000, self._what.text()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
+        self._column.setSpacing(px(16))
+        self._line.setFixedSize(px(400), px(8))

@@ -1,0 +1,41 @@
+"""A piece of text that follows the theme. It is never cut short: it wraps, or it asks for the room it needs."""
+
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor, QFont, QPalette
+from PySide6.QtWidgets import QLabel, QWidget
+
+from app.theme import Look
+
+REGULAR = QFont.Weight.Normal
+MEDIUM = QFont.Weight.Medium
+SEMIBOLD = QFont.Weight.DemiBold
+
+
+class Text(QLabel):
+    """`tone` is the token of its colour; `wraps` lets it take several lines."""
+
+    def __init__(
+        self,
+        look: Look,
+        text: str = "",
+        size: float = 14,
+        weight: QFont.Weight = REGULAR,
+        tone: str = "ink",
+        wraps: bool = False,
+        is_code: bool = False,
+        parent: QWidget | None = None,
+    ) -> None:
+        super().__init__(text, parent)
+        self._look = look
+        self._size, self._weight, self._tone, self._is_code = size, weight, tone, is_code
+        self.setTextFormat(Qt.TextFormat.PlainText)  # what files hold is never markup
+        self.setWordWrap(wraps)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def _on_look_changed(self) -> None:
+        theme = self._look.theme
+        self.setFont(theme.font(self._size, self._weight, self._is_code))
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.WindowText, QColor(getattr(theme.colours, self._tone)))
+        self.setPalette(palette)

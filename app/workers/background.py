@@ -1,0 +1,112 @@
+"""How does slow work run without holding up the screen? One piece at a time, with progress, and a stop that stops."""
+
+import logging
+from collections.abc import Callable
+
+from PySide6.QtCore import QObject, QThread, Signal
+
+_log = logging.getLogger(__name__)
+
+Report = Callable[[float, str], None]
+"""Called by the work with the share done (0 to 1) and what is being done. Raises `Stopped` once nobody waits for it."""
+
+Work = Callable[[Report], object]
+
+
+class Stopped(Exception):  # noqa: N818  being stopped is no error
+    """Raised inside the work by its report when it was told to stop."""
+
+
+class Background(QObject):
+    """Runs one piece of work at a time; a newer one takes the older one's place.
+
+    Signals of a piece that was stopped or replaced never arrive. Its thread ends at its next report; `idle` tells when
+    the last thread has.
+    """
+
+    progressed = Signal(float, str)
+    done = Signal(object)
+    failed = Signal(object)
+    idle = Signal()
+
+    def __init__(self, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._threads: set[_WorkThread] = set()
+        self._current: _WorkThread | None = None
+
+    @property
+    def is_busy(self) -> bool:
+        """Whether somebody waits for a result."""
+        return self._current is not None
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether no thread is left, not even one that is being stopped."""
+        return not self._threads
+
+    def start(self, work: Work) -> None:
+        """Begin `work` in a thread of its own, and stop whatever ran before."""
+        self.stop()
+        thread = _WorkThread(work, self)
+        thread.progressed.connect(self._on_progressed)
+        thread.done.connect(self._on_done)
+        thread.failed.connect(self._on_failed)
+        thread.ended.connect(self._on_ended)
+        self._threads.add(thread)
+        self._current = thread
+        thread.start()
+
+    def stop(self) -> None:
+        """Let the running work end at its next report. Nothing more is heard of it."""
+        if self._current is not None:
+            self._current.requestInterruption()
+            self._current = None
+
+    def _on_progressed(self, thread: "_WorkThread", share: float, what: str) -> None:
+        if thread is self._current:
+            self.progressed.emit(share, what)
+
+    def _on_done(self, thread: "_WorkThread", result: object) -> None:
+        if thread is self._current:
+            self._current = None
+            self.done.emit(result)
+
+    def _on_failed(self, thread: "_WorkThread", error: Exception) -> None:
+        if thread is self._current:
+            self._current = None
+            self.failed.emit(error)
+
+    def _on_ended(self, thread: "_WorkThread") -> None:
+        thread.wait()  # it has left run(); only its last few instructions are awaited
+        self._threads.discard(thread)
+        thread.deleteLater()
+        if self.is_idle:
+            self.idle.emit()
+
+
+class _WorkThread(QThread):
+    progressed = Signal(object, float, str)
+    done = Signal(object, object)
+    failed = Signal(object, object)
+    ended = Signal(object)
+
+    def __init__(self, work: Work, parent: QObject) -> None:
+        super().__init__(parent)
+        self._work = work
+
+    def run(self) -> None:
+        try:
+            result = self._work(self._report)
+        except Stopped:
+            pass
+        except Exception as error:  # the edge of the thread: beyond it nobody could catch it
+            _log.info("work in the background ended early", exc_info=error)
+            self.failed.emit(self, error)
+        else:
+            self.done.emit(self, result)
+        self.ended.emit(self)
+
+    def _report(self, share: float, what: str) -> None:
+        if self.isInterruptionRequested():
+            raise Stopped
+        self.progressed.emit(self, share, what)

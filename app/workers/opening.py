@@ -1,0 +1,61 @@
+"""From a folder or the demonstration to an analysis: what the background does when a session is opened.
+
+Whatever takes long to import is imported inside the work: numpy alone would hold up the screen for a third of a second.
+"""
+
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.workers.background import Report, Work
+
+if TYPE_CHECKING:
+    from core.results import Analysis
+    from core.samples import Session
+
+DEMONSTRATION_SEED = 1
+READING_SHARE = 0.1  # of the progress; the analysis takes the rest
+
+
+@dataclass(frozen=True, slots=True)
+class Opened:
+    """A session as it was read, with what came of it."""
+
+    session: "Session"
+    analysis: "Analysis"
+
+
+def opening_folder(folder: Path) -> Work:
+    """Give the work that reads and analyses a session folder. It raises `FileRefusedError` as the reader does."""
+
+    def work(report: Report) -> Opened:
+        from devices.files.session_folder import read_session
+
+        report(0.0, f"reading {folder.name}")
+        return _analysed(read_session(folder), report)
+
+    return work
+
+
+def opening_demonstration() -> Work:
+    """Give the work that lets the simulated patient walk and analyses it."""
+
+    def work(report: Report) -> Opened:
+        from devices.walker import WalkerSettings, simulate
+
+        report(0.0, "simulating a patient")
+        return _analysed(simulate(WalkerSettings(seed=DEMONSTRATION_SEED)).session, report)
+
+    return work
+
+
+def _analysed(session: "Session", report: Report) -> Opened:
+    from core.analysis import analyse
+
+    report(READING_SHARE / 2, "preparing the curves")
+    import_module("app.widgets.result_page")  # the page itself is made later, on the thread of the screen
+    report(READING_SHARE, "looking at the samples")
+    analysis = analyse(session, progress=lambda share, what: report(READING_SHARE + (1 - READING_SHARE) * share, what))
+    report(1.0, "")
+    return Opened(session, analysis)

@@ -1,0 +1,1 @@
+"""What the program brings along: fonts and pictures, each with its licence. No code."""
