@@ -231,11 +231,12 @@ def _tell(analysis: "Analysis", out: Path) -> None:
 def _tell_findings(findings: Sequence["Finding"], lowest: str) -> None:
     from app.wording import sentence
     from core.findings import Severity
+    from devices.files.refusal import one_line
 
     severities = list(Severity)
     for finding in findings:
         if severities.index(finding.severity) >= severities.index(Severity(lowest)):
-            print(f"- {sentence(finding)}")
+            print(f"- {one_line(sentence(finding))}")
 
 
 class _Progress:

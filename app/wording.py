@@ -27,7 +27,7 @@ SENTENCES = {
     "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
     "no_sites": "no sensor data. Nothing can be computed from this recording.",
     "rate_from_orientation": (
-        "the file holds no angular rates, so they come from the sensor's own orientation. Fast movements are "
+        "no angular rates were recorded, so they come from the sensor's own orientation. Fast movements are "
         "smoother than they were."
     ),
     "sensor_changed": (

@@ -26,7 +26,8 @@ def write_summary(analysis: Analysis, path: Path) -> None:
         The file cannot be written.
     """
     text = json.dumps(summarise(analysis), indent=2, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8", newline="\n")
+    # a file's name may hold bytes that are no text: what replaces them is an escape of JSON too
+    path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
 
 
 def read_summary(path: Path) -> dict[str, Any] | None:

@@ -1,6 +1,7 @@
 """Does the command line keep its word: exit codes, one-line refusals, whole results or none, nothing destroyed?"""
 
 import csv
+import io
 import json
 import os
 import shutil
@@ -187,6 +188,35 @@ def test_without_a_screen_the_window_says_so(
         monkeypatch.delenv(name, raising=False)
     assert main([]) == 2
     assert "no screen" in refusal(capsys)
+
+
+def test_on_a_terminal_progress_is_one_line_that_renews_itself(
+    session: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    terminal = Terminal()
+    monkeypatch.setattr(sys, "stderr", terminal)
+    assert analyse(session, tmp_path / "out", "--no-rrd") == 0
+    said = terminal.getvalue()
+    assert "\n" not in said
+    assert "\r\x1b[K100 % writing" in said
+    assert said.endswith("\r\x1b[K")  # the line is cleared at the end
+
+
+def test_what_files_say_cannot_steer_the_terminal(
+    session: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    about = (session / "session.toml").read_text().replace('name = "walk 1"', 'name = "walk \\u001b[2J"')
+    (session / "session.toml").write_text(about)
+    header = (session / "walk_1" / "left_thigh.csv").read_text().splitlines()[0]
+    (session / "walk_1" / "left_thigh.csv").write_text(header + "\n")  # a finding that names the recording
+    analyse(session, tmp_path / "out", "--no-rrd")
+    said = capsys.readouterr()
+    assert "[2J" in said.out + said.err
+    assert "\x1b" not in said.out + said.err
 
 
 # The demonstration

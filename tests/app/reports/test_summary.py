@@ -136,3 +136,13 @@ def test_names_in_any_script_survive(tmp_path: Path) -> None:
     write_summary(Analysis(Method.ROBUST, False, (), (), (finding,)), tmp_path / "summary.json")
     assert "gangbild_größe" in (tmp_path / "summary.json").read_text(encoding="utf-8")
     assert json.loads((tmp_path / "summary.json").read_bytes())["findings"][0]["severity"] == "info"
+
+
+def test_a_name_that_is_no_text_is_still_json(tmp_path: Path) -> None:
+    finding = Finding(
+        "file_left_out", Severity.INFO, "walk 1", {"name": b"caf\xe9.csv".decode(errors="surrogateescape")}
+    )
+    write_summary(Analysis(Method.ROBUST, False, (), (), (finding,)), tmp_path / "summary.json")
+    summary = read_summary(tmp_path / "summary.json")
+    assert summary is not None
+    assert summary["findings"][0]["numbers"]["name"] == "caf\udce9.csv"
