@@ -81,10 +81,10 @@ SENTENCES = {
     "no_joint": (
         "no joint angle could be computed. Two neighbouring sensors, such as thigh and shank, must be worn and move."
     ),
-    "too_little_motion": "too little motion to find the joint axis. Record ten seconds of free motion.",
+    "too_little_motion": "no axis was found, for lack of motion or of usable samples. Record ten seconds of free motion.",
     "sign_in_doubt": (
-        "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or"
-        " record free motion."
+        "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or "
+        "record free motion."
     ),
     "clinical_sign_uncertain": (
         "the motion does not tell flexion from extension (margin {margin:.2f}). Look at the curve and turn the "
@@ -98,13 +98,13 @@ SENTENCES = {
     ),
     "is_a_hinge": "moves like a true hinge. The stricter method was used and the angle is more certain.",
     "flexion_did_not_dominate": (
-        "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat"
-        " free motion and bend this joint more."
+        "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat "
+        "free motion and bend this joint more."
     ),
     "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
     "not_the_same_joint": (
-        "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one"
-        " receiver for all sensors."
+        "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one "
+        "receiver for all sensors."
     ),
     "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
     "axis_from_walking": (
@@ -124,8 +124,8 @@ SENTENCES = {
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
     "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
     "calibration_after_walk": (
-        "was calibrated with a recording made after the walk, as there is none before. It holds only if no sensor"
-        " moved in between."
+        "was calibrated with a recording made after the walk, as there is none before. It holds only if no sensor "
+        "moved in between."
     ),
     "simulated": "these data are simulated. They come from no patient.",
     "axis_uncertain": "the joint axis is certain to {axis_sd_deg:.1f}° only. Record free motion, or move longer.",
