@@ -81,7 +81,7 @@ SENTENCES = {
     "no_joint": (
         "no joint angle could be computed. Two neighbouring sensors, such as thigh and shank, must be worn and move."
     ),
-    "too_little_motion": "no axis was found, for lack of motion or of usable samples. Record ten seconds of free motion.",
+    "too_little_motion": "no axis was found, for lack of motion or usable samples. Record ten seconds of free motion.",
     "sign_in_doubt": (
         "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or "
         "record free motion."
