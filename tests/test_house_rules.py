@@ -146,58 +146,6 @@ def test_an_exception_from_a_rule_names_the_rule_and_its_reason() -> None:
     assert [place(file, line) for file in files for line in unexplained(file.read_text(encoding="utf-8"))] == []
 
 
-def functions(tree: ast.Module) -> Iterator[ast.FunctionDef]:
-    return (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef))
-
-
-def first_arguments(tree: ast.AST, name: str, keyword: str) -> Iterator[ast.expr]:
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Call) and ast.unparse(node.func).split(".")[-1] == name:
-            yield from [*node.args[:1], *(given.value for given in node.keywords if given.arg == keyword)]
-
-
-def finding_keys(tree: ast.Module) -> Iterator[tuple[str, int]]:
-    """Find the keys of findings, given to `Finding` or to a function that hands its first argument on as the key."""
-    makers = ["Finding"]
-    for function in functions(tree):
-        parameters = [argument.arg for argument in function.args.args if argument.arg != "self"]
-        for given in first_arguments(function, "Finding", "key"):
-            if isinstance(given, ast.Name) and parameters[:1] == [given.id]:
-                makers.append(function.name)
-    for maker in makers:
-        for given in first_arguments(tree, maker, "key"):
-            for node in ast.walk(given):
-                if isinstance(node, ast.Constant) and isinstance(node.value, str):
-                    yield node.value, node.lineno
-
-
-def test_the_key_of_a_finding_is_found_where_it_is_written() -> None:
-    source = """
-def note(key: str, where: str) -> Finding:
-    return Finding(key, Severity.INFO, where)
-note("gaps", "walk 1"); Finding(key="clipped"); Finding("all_zero" if nothing else "too_few", Severity.INFO, "")
-"""
-    assert {key for key, _ in finding_keys(ast.parse(source))} == {"gaps", "clipped", "all_zero", "too_few"}
-
-
-def test_every_finding_has_its_sentence() -> None:
-    wording = parse(ROOT / "app" / "wording.py")
-    sentences = {
-        key.value
-        for node in ast.walk(wording)
-        if isinstance(node, ast.Dict)
-        for key in node.keys
-        if isinstance(key, ast.Constant)
-    }
-    missing = [
-        f"{key} at {place(file, line)}"
-        for file in python_files("core", "devices")
-        for key, line in finding_keys(parse(file))
-        if key not in sentences
-    ]
-    assert missing == []
-
-
 def test_no_file_says_where_packages_are_fetched_from() -> None:
     # in two parts, so that this file does not name them either
     hosts = [f"{name}.{end}" for name, end in (("pypi", "org"), ("pythonhosted", "org"), ("anaconda", "org"))]
