@@ -36,7 +36,7 @@ def test_data() -> Callable[[str], Path]:
 
 
 @pytest.fixture(autouse=True)
-def _nothing_left_behind(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _nothing_left_behind(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Fail a test after which a thread or timer still runs or a widget still exists."""
     started: list[Any] = []
     for kind in (QThread, QTimer):
@@ -48,7 +48,9 @@ def _nothing_left_behind(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         return
     application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
     if set(_widgets()) - before:
+        request.node.funcargs.clear()  # pytest lets go of a test's arguments only later
         gc.collect()  # widgets and their slots refer to each other
+        application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
     widgets = [repr(widget) for widget in _widgets() if widget not in before]
     assert widgets == [], "widgets left: give them to qtbot.addWidget or to a parent"
     assert [repr(one) for one in started if _is_running(one)] == [], "threads or timers still running"
