@@ -1,5 +1,6 @@
 """How does one sensor's file become a block of samples, and the other way round?"""
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
@@ -18,6 +19,7 @@ GYR = ("gyr_x_rad_s", "gyr_y_rad_s", "gyr_z_rad_s")
 QUAT = ("quat_w", "quat_x", "quat_y", "quat_z")
 MAG = ("mag_x", "mag_y", "mag_z")
 REQUIRED = (TIME, *ACC, *GYR)
+LINE_END = re.compile(r"[\r\n]+")  # would end the row in a CSV
 NUMERIC = frozenset((*REQUIRED, *QUAT, *MAG))
 
 
@@ -49,6 +51,7 @@ def read_site(
         raise FileRefusedError(f"{where}, line 1", f"required columns are missing: {', '.join(missing)}", CORRECT_IT)
     time_s = table.numbers[TIME]
     is_new = _check_clock(time_s, table, where)
+    kept = slice(None) if is_new.all() else is_new  # ten hours are not copied for nothing
     findings = list(_table_findings(table, place, int(np.sum(~is_new)), is_rate_derived))
 
     has_quat, has_mag = (all(n in table.numbers for n in names) for names in (QUAT, MAG))
@@ -58,13 +61,13 @@ def read_site(
     findings += [Finding("unknown_column", Severity.INFO, place, {"name": name}) for name in unknown]
     block = ImuBlock(
         sensor=sensor,
-        time_s=time_s[is_new],
-        gyr_rad_s=table.matrix(GYR)[is_new],
-        acc_m_s2=table.matrix(ACC)[is_new],
-        q_earth_from_sensor=table.matrix(QUAT)[is_new] if has_quat else None,
-        mag=table.matrix(MAG)[is_new] if has_mag else None,
+        time_s=time_s[kept],
+        gyr_rad_s=table.matrix(GYR)[kept],
+        acc_m_s2=table.matrix(ACC)[kept],
+        q_earth_from_sensor=table.matrix(QUAT)[kept] if has_quat else None,
+        mag=table.matrix(MAG)[kept] if has_mag else None,
         is_rate_derived=is_rate_derived,
-        unknown={name: column[is_new] for name, column in unknown.items()},
+        unknown={name: column[kept] for name, column in unknown.items()},
     )
     return block, tuple(findings)
 
@@ -85,11 +88,13 @@ def write_site(block: ImuBlock, path: Path) -> None:
         columns |= dict(zip(MAG, block.mag.T, strict=True))
     arrays = [pa.array(np.ascontiguousarray(column, dtype=float), from_pandas=True) for column in columns.values()]
     for name, column in block.unknown.items():
+        if name in columns:
+            raise ValueError(f"the unknown column {name} is one of the block's own")
         is_number = np.issubdtype(column.dtype, np.floating)
-        texts = ["" if is_number and np.isnan(v) else str(v).replace("\n", " ") for v in column]
+        texts = ["" if is_number and np.isnan(v) else LINE_END.sub(" ", str(v)) for v in column]
         arrays.append(pa.array(texts, pa.string()))
         columns[name] = column
-    header = ",".join('"' + n.replace('"', '""') + '"' if set(n) & set(',"') else n for n in columns)
+    header = ",".join(_header_cell(name) for name in columns)
     with path.open("wb") as file:
         file.write(f"{header}\n".encode())
         if len(block):
@@ -167,6 +172,11 @@ def sensor_changes(worn: Sequence[tuple[str, Mapping[Site, str]]]) -> tuple[Find
                 findings.append(Finding("sensor_changed", Severity.WARNING, f"{recording}, {site}", numbers))
             last[site] = sensor
     return tuple(findings)
+
+
+def _header_cell(name: str) -> str:
+    name = LINE_END.sub(" ", name)
+    return '"' + name.replace('"', '""') + '"' if set(name) & set(',"') else name
 
 
 def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:

@@ -90,8 +90,10 @@ def read_csv(
     columns = {name: arrow.column(i) if arrow is not None else None for i, name in enumerate(wanted)}
 
     def place(row: int) -> str:
-        lines = (line for line, _ in _lines(path, start, header_line))
-        return f"line {next(line for i, line in enumerate(lines) if i == row)}"
+        for i, (line, _) in enumerate(_lines(path, start, header_line)):
+            if i == row:
+                return f"line {line}"
+        return f"row {row + 1}"  # a file whose lines end in ways of their own
 
     numbers = {n: np.array(c.to_numpy()) if c is not None else np.empty(0) for n, c in columns.items() if n in numeric}
     texts = {n: _as_text(c.to_pylist() if c is not None else []) for n, c in columns.items() if n not in numeric}
@@ -156,6 +158,8 @@ def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: st
             text = raw.decode("utf-8-sig" if number == 1 else "utf-8").strip(" \r\n")
         except UnicodeDecodeError as error:
             raise FileRefusedError(f"{where}, line {number}", "this is not UTF-8 text", CORRECT_IT) from error
+        if "\r" in text:
+            raise FileRefusedError(f"{where}, line {number}", "a carriage return stands inside of the line", CORRECT_IT)
         if "\0" in text or len(raw) == LONGEST_HEADER:
             raise FileRefusedError(f"{where}, line {number}", "this is not a table but binary data", CORRECT_IT)
         if not text or (comment is not None and text.startswith(comment)):

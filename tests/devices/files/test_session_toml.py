@@ -1,0 +1,130 @@
+"""Is every key of `session.toml` understood, and a wrong one refused in words?"""
+
+import re
+
+import numpy as np
+import pytest
+
+from core.body import Joint, Site
+from core.samples import Patient, RateKind, SensorInfo
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import default_sensor, parse, render, unknown_keys
+
+TOML = """\
+format = "gaitwright-session/1"
+[[recordings]]
+name = "walk 1"
+kind = "walking"
+folder = "walk_1"
+"""
+
+
+def test_every_key_of_the_format_is_read() -> None:
+    toml = """\
+        format = "gaitwright-session/1"
+        [session]
+        started = 2024-05-01T10:00:00
+        operator = "N. N."
+        surface = "carpet"
+        notes = "none"
+        software = "x 1"
+        simulated = true
+        [patient]
+        code = "P-001"
+        birth_year = 1950
+        sex = "f"
+        height_m = 1.7
+        mass_kg = 70
+        device = "AFO"
+        aids = "stick"
+        affected_side = "left"
+        prosthetic_side = "none"
+        [sensors.left_thigh]
+        serial = "A1"
+        model = "M"
+        firmware = "1.2"
+        rate_hz = 100
+        rate_kind = "averaged"
+        [zero]
+        left_knee = 5
+        [sign]
+        left_knee = -1
+        right_ankle = 1
+        [[recordings]]
+        name = "walk 1"
+        kind = "walking"
+        folder = "walk_1"
+        condition = "alignment A"
+        started = "2024-05-01T10:01:00"
+        kept = false
+        note = "slow"
+        restrapped_before = true
+        """
+    session, plans = parse(toml)
+    assert unknown_keys(session) == ()
+    assert (session.started, session.operator, session.surface) == ("2024-05-01T10:00:00", "N. N.", "carpet")
+    assert (session.notes, session.software, session.is_simulated) == ("none", "x 1", True)
+    assert session.patient == Patient("P-001", 1950, "f", 1.7, 70.0, "AFO", "stick", "left", "none")
+    assert session.sensors == {Site.LEFT_THIGH: SensorInfo("A1", "M", "1.2", 100.0, RateKind.AVERAGED)}
+    assert session.zero_rad == {Joint.LEFT_KNEE: pytest.approx(np.radians(5.0))}
+    assert session.turned_sign == {Joint.LEFT_KNEE: -1, Joint.RIGHT_ANKLE: 1}
+    recording = plans[0].recording
+    assert (recording.condition, recording.started, recording.note) == ("alignment A", "2024-05-01T10:01:00", "slow")
+    assert (recording.is_kept, recording.is_restrapped_before) == (False, True)
+    assert [default_sensor(session, site) for site in (Site.LEFT_THIGH, Site.LEFT_FOOT)] == ["A1", "left_foot"]
+    assert parse(render(session, plans)) == (session, plans)
+
+
+@pytest.mark.parametrize(
+    ("toml", "words"),
+    [
+        ("format = ", "session.toml: this is not TOML"),
+        ("x = " + "[" * 5000, "session.toml: this is not TOML"),
+        ("x = " + "9" * 5000, "session.toml: this is not TOML"),
+        (TOML.replace('format = "gaitwright-session/1"', ""), "the format is not named"),
+        (TOML.replace("gaitwright-session/1", "gaitwright-session/2"), "later version.*Update Gaitwright"),
+        (TOML.replace("gaitwright-session/1", "other/1"), 'format "other/1" is not known'),
+        (TOML.replace('"gaitwright-session/1"', "1"), 'format "1" is not known'),
+        ('format = "gaitwright-session/1"', "no recording at all"),
+        ('format = "gaitwright-session/1"\nrecordings = []', "no recording at all"),
+        ('format = "gaitwright-session/1"\nrecordings = 5', "not a list of tables"),
+        (TOML.replace('name = "walk 1"', ""), "number 1: name is missing"),
+        (TOML.replace('kind = "walking"', ""), '"walk 1": kind is missing'),
+        (TOML.replace('folder = "walk_1"', ""), '"walk 1": folder is missing'),
+        (TOML.replace('"walk 1"', '" "'), "name is"),
+        (TOML.replace('"walking"', '"running"'), 'kind is "running", expected one of standing, free_motion, walking'),
+        (TOML.replace("walk_1", "../session/walk_1"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "/tmp"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "C:/walk"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "a\\\\..\\\\..\\\\b"), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", "."), "expected the name of a folder inside"),
+        (TOML.replace("walk_1", ""), "expected the name of a folder inside"),
+        (TOML.replace('"walk_1"', "1"), "expected the name of a folder inside"),
+        (TOML + TOML.partition("\n")[2].replace("walk_1", "walk_2"), "two recordings have the name"),
+        (TOML + TOML.partition("\n")[2].replace("walk 1", "walk 2"), "two recordings have the folder"),
+        (TOML + '[[recordings]]\nname="b"\nkind="walking"\nfolder="./walk_1/"', "two recordings have the folder"),
+        (TOML + "kept = 1", "kept is"),
+        (TOML + '[zero]\nleft_knee = "5"', r'\[zero\]: left_knee is "5", expected a number of degrees'),
+        (TOML + "[zero]\nleft_knee = nan", "left_knee is"),
+        (TOML + "[zero]\nleft_knee = 200", "left_knee is"),
+        (TOML + "[zero]\nleft_knee = true", "left_knee is"),
+        (TOML + "[sign]\nleft_knee = 0", r"\[sign\]: left_knee is .*expected 1 or -1"),
+        (TOML + "[sign]\nleft_knee = true", "expected 1 or -1"),
+        (TOML + '[patient]\naffected_side = "port"', "expected one of left, right, both, none"),
+        (TOML + '[patient]\nprosthetic_side = ["left"]', "expected one of left, right, both, none"),
+        (TOML + "[patient]\nheight_m = 170", "height_m is .* a number of metres"),
+        (TOML + "[patient]\nmass_kg = -1", "mass_kg is"),
+        (TOML + "[patient]\nbirth_year = 50", "birth_year is"),
+        (TOML + "[patient]\ncode = 5", "code is"),
+        (TOML + "[session]\nsimulated = 1", "simulated is"),
+        (TOML + "[sensors]\nleft_thigh = 5", r"\[sensors.left_thigh\]: this is not a table"),
+        (TOML + "[sensors.left_thigh]\nrate_hz = 0", "rate_hz is"),
+        (TOML + '[sensors.left_thigh]\nrate_kind = "mean"', "rate_kind is"),
+        ("zero = 5\n" + TOML, r"\[zero\]: this is not a table"),
+    ],
+)
+def test_what_is_wrong_is_refused(toml: str, words: str) -> None:
+    with pytest.raises(FileRefusedError) as caught:
+        parse(toml)
+    assert re.search(words, str(caught.value))
+    assert str(caught.value).isprintable()
