@@ -80,6 +80,7 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     joint, names = basis.joint, identifying_recordings(basis)
     found = identify_joint(
         lambda lag_s: _pairs(tracks, joint, names, lag_s),
+        lambda lag_s: _pairs(tracks, joint, tuple(walk for walk in basis.walks if walk not in names), lag_s),
         is_knee=joint.is_knee,
         is_from_walking=basis.free_motion is None,
         down_1=_down(tracks, basis),
@@ -91,9 +92,10 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
         centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
     # a walking person's centre is not in the data; a hinge's is
     is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
+    hinge = found.centre.unknowns if found.is_hinge else None
     return Identified(
         basis=basis,
-        geometry=Geometry(found.axis_1, found.axis_2, centre_1, centre_2, found.lag.lag_s, tau_s),
+        geometry=Geometry(found.axis_1, found.axis_2, centre_1, centre_2, found.lag.lag_s, tau_s, hinge),
         source=_source(basis, found.is_hinge),
         recordings=names,
         is_centre_known=is_centre_known,

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.angles.hinge_angle import hinge_angle
 from core.angles.twist import off_axis_rate, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
@@ -23,7 +24,10 @@ WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 
 @dataclass(frozen=True, slots=True)
 class Geometry:
-    """What measuring needs: axes (3,), centres (3,), the distal clock's lag, the filter's time constant."""
+    """What measuring needs: axes (3,), centres (3,), the distal clock's lag, the time constant of eq 15.
+
+    `hinge` (12,), of a true hinge only: centres and accelerometer biases as fitted.
+    """
 
     axis_1: FloatArray
     axis_2: FloatArray
@@ -31,6 +35,7 @@ class Geometry:
     centre_2_m: FloatArray
     lag_s: float
     tau_s: float
+    hinge: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +89,11 @@ def measure(
         for pair in pairs_of(tracks, recording, joint, block, geometry.lag_s):
             heading = heading_over(pair, j1, j2)
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
-            found = {"twist": twist(pair, j1, j2, heading), "published": -fused}
+            if geometry.hinge is not None:
+                angle = hinge_angle(pair, j1, j2, geometry.hinge)
+            else:
+                angle = twist(pair, j1, j2, heading)
+            found = {"twist": angle, "published": -fused}
             for name, values in found.items():
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]

@@ -77,6 +77,12 @@ def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
     return np.flatnonzero(is_used)
 
 
+def united(parts: list[Datasets]) -> Datasets:
+    """All samples of several data sets."""
+    pairs = tuple(pair for part in parts for pair in part.pairs)
+    return gather(pairs, [part.index[part.stretch == s] for part in parts for s in range(len(part.pairs))])
+
+
 def knot_positions(pair: Pair) -> tuple[int, FloatArray]:
     """Number of intervals between the pair's heading knots, and where each sample (n,) lies, counted in intervals."""
     intervals = max(1, round(pair.duration_s / KNOT_SPACING_S))

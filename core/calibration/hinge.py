@@ -7,7 +7,7 @@ never used there.
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
+from core.calibration.coincidence import BIAS_PRIOR_M_S2, lever_matrix
 from core.calibration.datasets import Datasets
 from core.calibration.joint_axis import moved
 from core.rotations import angle_between, joint_frame
@@ -41,6 +41,8 @@ def hinge_axes(
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Axes (3,) in both sensors by eq 6 and by equal acceleration along the axis; None where it leads elsewhere.
 
+    The accelerometers' biases along the axis, what `unknowns` has not found of them, are estimated beside.
+
     Parameters
     ----------
     unknowns : (12,)
@@ -54,25 +56,32 @@ def hinge_axes(
     shifted_1 = data.a1 - unknowns[6:9] - lever_matrix(data.g1, data.dg1) @ unknowns[0:3]
     shifted_2 = data.a2 - unknowns[9:12] - lever_matrix(data.g2, data.dg2) @ unknowns[3:6]
     j1, j2 = axis_1, axis_2
+    bias = 0.0
     for _ in range(STEPS):
         value, slope = _residuals(data, shifted_1, shifted_2, j1, j2)
+        value[:, 1] -= bias
         scale = np.array([max(robust_sd(value[:, k]), MIN_SCALE_RAD_S) for k in range(2)])
         value, slope = value / scale, slope / scale[:, None]
         weight = 1 / np.sqrt(1 + value**2)
-        information = np.einsum("nr,nri,nrj->ij", weight, slope, slope)
-        step = -np.linalg.solve(information + 1e-9 * np.eye(4), np.einsum("nr,nri->i", weight * value, slope))
-        j1, j2 = moved(j1[None], step[None, :2])[0], moved(j2[None], step[None, 2:])[0]
+        information = np.einsum("nr,nri,nrj->ij", weight, slope, slope) + 1e-9 * np.eye(5)
+        information[4, 4] += (ACCELERATION_WEIGHT_S_M * BIAS_PRIOR_M_S2) ** -2
+        score = np.einsum("nr,nri->i", weight * value, slope)
+        score[4] += bias * (ACCELERATION_WEIGHT_S_M * BIAS_PRIOR_M_S2) ** -2
+        step = -np.linalg.solve(information, score)
+        j1, j2 = moved(j1[None], step[None, :2])[0], moved(j2[None], step[None, 2:4])[0]
+        bias += step[4]
     if max(angle_between(j1, axis_1), angle_between(j2, axis_2)) > MAX_MOVE_RAD:
         return None
-    return j1, j2, np.concatenate([slope, value[..., None]], axis=2)
+    return j1, j2, np.concatenate([slope[..., :4], value[..., None]], axis=2)
 
 
 def _residuals(
     data: Datasets, shifted_1: FloatArray, shifted_2: FloatArray, j1: FloatArray, j2: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     value = np.empty((len(data), 2))
-    slope = np.empty((len(data), 2, 4))
+    slope = np.zeros((len(data), 2, 5))
     value[:, 1] = ACCELERATION_WEIGHT_S_M * (shifted_1 @ j1 - shifted_2 @ j2)
+    slope[:, 1, 4] = -1.0
     value[:, 0] = in_plane_difference(data, j1, j2)
     for sign, rate, shifted, axis, at in ((1, data.g1, shifted_1, j1, 0), (-1, data.g2, shifted_2, j2, 2)):
         length = np.maximum(np.linalg.norm(np.cross(rate, axis), axis=1), 1e-6)

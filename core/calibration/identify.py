@@ -7,7 +7,7 @@ import numpy as np
 
 from core.calibration import certainty
 from core.calibration.coincidence import fit_coincidence, relative_rotation
-from core.calibration.datasets import Datasets, gather, moving_indices
+from core.calibration.datasets import Datasets, gather, moving_indices, united
 from core.calibration.heading import residual_scales
 from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_residual
 from core.calibration.joint_axis import (
@@ -20,6 +20,7 @@ from core.calibration.joint_axis import (
 )
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
 from core.calibration.lag import Lag, find_lag
+from core.calibration.refinement import refine_on_hinge
 from core.pair import FAST_RAD_S, Pair
 from core.rotations import angle_between, wrap
 from core.samples import FloatArray
@@ -70,12 +71,14 @@ def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
 
 
 def identify_joint(
-    pairs_at: PairsAtLag, is_knee: bool, is_from_walking: bool, down_1: FloatArray | None
+    pairs_at: PairsAtLag, others_at: PairsAtLag, is_knee: bool, is_from_walking: bool, down_1: FloatArray | None
 ) -> Identification | None:
     """Identify one joint; None where the recordings hold too little movement.
 
     Parameters
     ----------
+    others_at
+        Pairs that do not identify the axis but must agree when it is called a hinge.
     down_1 : (3,) or None
         Specific force of the proximal sensor in standing.
     """
@@ -87,7 +90,8 @@ def identify_joint(
     if lag.lag_s:
         data = moving_data(pairs_at(lag.lag_s)) or data
         decision = decide(data)
-    return _refined(data, decision, lag, is_knee, is_from_walking, down_1)
+    others = moving_data(others_at(lag.lag_s))
+    return _refined(data, others, decision, lag, is_knee, is_from_walking, down_1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +137,7 @@ def _is_rival(found: Candidates, best: int, k: int) -> bool:
 
 def _refined(
     data: Datasets,
+    others: Datasets | None,
     decision: Decision,
     lag: Lag,
     is_knee: bool,
@@ -142,7 +147,8 @@ def _refined(
     many, start = data.thinned(POLISH_SAMPLES), decision.best
     fit = polish(many, start, POLISH_STEPS, *residual_scales(many, start))
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
-    residual = hinge_residual(many, j1, j2)
+    seen = [many] if others is None else [many, others.thinned(POLISH_SAMPLES)]
+    residual = max(hinge_residual(one, j1, j2) for one in seen)
     is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S
     centre = centre_by_vectors(many, fit.knots_rad[0])
     floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
@@ -163,7 +169,8 @@ def _refined(
                 is_axis_fixed=True,
             )
             centre = centre_by_vectors(many, again.knots_rad[0])
-            residual = hinge_residual(many, j1, j2)
+            centre = refine_on_hinge(united(seen), j1, j2, centre) or centre
+            residual = max(hinge_residual(one, j1, j2) for one in seen)
     else:
         centre = centre_by_lengths(many, centre.unknowns)
     elevation = None

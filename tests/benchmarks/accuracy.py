@@ -115,6 +115,9 @@ def _score_calibration(errors: Errors, kind: str, found: JointCalibration, truth
         for offset, axis in zip(offsets, (truth.axis_proximal, truth.axis_distal), strict=True):
             observable = offset - axis * (axis @ offset) if kind == "knee" else offset
             errors[f"{kind} centre"].append(float(1000 * np.linalg.norm(observable)))
+            errors[f"{kind} centre error/sd"].append(float(np.linalg.norm(observable)) / (found.centre_sd_m or np.nan))
+    else:
+        errors[f"{kind} centre unknown, not a hinge"].append(1.0)
     errors["lag"].append(1000 * abs(found.lag_s - truth.lag_s))
     errors["margin under 1.3"].append(float((found.sign_margin or 0.0) < 1.3))
     errors["sign unsure"].append(float(not found.is_sign_certain))

@@ -1,0 +1,67 @@
+"""The angle of a true hinge: the rates' angle, held in place by the accelerations over the whole recording.
+
+On a hinge the integral of the rates (Seel et al. 2014, doi 10.3390/s140406891, eq 11) is exact but for a slow drift,
+and the direction of the joint's acceleration in both joint planes (eq 14) is free of drift. Where eq 15 filters one
+with the other as samples come in, here the drift is a line between knots, found from all samples at once.
+"""
+
+import numpy as np
+
+from core.calibration.coincidence import lever_matrix
+from core.calibration.datasets import knot_positions
+from core.calibration.hinge import robust_sd
+from core.pair import Pair
+from core.published.angles import angle_from_rates
+from core.published.signs import in_plane
+from core.rotations import wrap
+from core.samples import FloatArray, IntArray
+
+DRIFT_WALK_RAD = np.deg2rad(0.3)  # per square root of a second
+CORRELATION_S = 0.1  # accelerations nearer in time tell the same
+SAMPLES_PER_S = 20.0
+MIN_SCALE_M_S2 = 0.02
+STEPS = 6
+
+
+def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray) -> FloatArray:
+    """Twist (n,) of the distal segment against the proximal one, radians, without jumps.
+
+    Parameters
+    ----------
+    unknowns : (12,)
+        Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2) as `joint_centre` found them.
+    """
+    from_rates = -angle_from_rates(pair.g1, pair.g2, j1, j2, pair.step_s)
+    chosen = np.flatnonzero(pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]
+    if len(chosen) < 2:
+        return from_rates
+    force_1 = pair.a1[chosen] - unknowns[6:9] - lever_matrix(pair.g1[chosen], pair.dg1[chosen]) @ unknowns[0:3]
+    force_2 = pair.a2[chosen] - unknowns[9:12] - lever_matrix(pair.g2[chosen], pair.dg2[chosen]) @ unknowns[3:6]
+    z1, z2 = in_plane(force_1, j1), in_plane(force_2, j2)
+    # the true drift turns z2 exp(i from_rates) into z1; a long z tells its direction better than a short one
+    ahead = z1 * np.conj(z2 * np.exp(1j * from_rates[chosen]))
+    length = np.sqrt(np.abs(ahead))
+    drift = _fit_drift(pair, chosen, np.angle(ahead), length, start=float(np.angle(np.sum(ahead))))
+    return from_rates + drift
+
+
+def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArray, start: float) -> FloatArray:
+    intervals, position = knot_positions(pair)
+    left = np.minimum(position[chosen].astype(int), intervals - 1)
+    share = position[chosen] - left
+    weights_of_knots = np.zeros((len(chosen), intervals + 1))
+    row = np.arange(len(chosen))
+    weights_of_knots[row, left], weights_of_knots[row, left + 1] = 1 - share, share
+    walk = np.diff(np.eye(intervals + 1), axis=0)
+    spacing_s = pair.duration_s / intervals
+    prior = walk.T @ walk / (DRIFT_WALK_RAD**2 * spacing_s)
+    information = min(1.0, pair.step_s * float(np.median(np.diff(chosen))) / CORRELATION_S)
+    knots = np.full(intervals + 1, start)
+    for _ in range(STEPS):
+        error = length * wrap(angle - weights_of_knots @ knots)
+        scale = max(robust_sd(error), MIN_SCALE_M_S2)
+        weight = information * length**2 / (scale**2 * np.sqrt(1 + (error / scale) ** 2))
+        matrix = weights_of_knots.T @ (weights_of_knots * weight[:, None]) + prior
+        step = weights_of_knots.T @ (weight * error / np.maximum(length, 1e-9)) - prior @ knots
+        knots = knots + np.linalg.solve(matrix + 1e-9 * np.eye(len(matrix)), step)
+    return np.interp(position, np.arange(intervals + 1), knots)
