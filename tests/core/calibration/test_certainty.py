@@ -1,0 +1,51 @@
+"""Are the figures of certainty what they are called?"""
+
+import numpy as np
+import pytest
+
+from core.calibration.certainty import (
+    AXIS_FLOOR_HUMAN_RAD,
+    angle_sd_rad,
+    axis_sd_rad,
+    sandwich_covariance,
+)
+from core.samples import FloatArray
+
+
+def line_fit(noise: FloatArray, per_block: int) -> float:
+    """Covariance of one unknown that every sample measures directly, as the sandwich sees it."""
+    slope, weight = np.ones((len(noise), 1, 1)), np.ones((len(noise), 1))
+    return float(sandwich_covariance(slope, noise[:, None], weight, np.arange(len(noise)) // per_block)[0, 0])
+
+
+def test_the_sandwich_is_the_variance_of_the_mean_also_where_neighbours_hang_together() -> None:
+    rng = np.random.default_rng(0)
+    white = rng.normal(size=20000)
+    assert line_fit(white, 100) == pytest.approx(1 / 20000, rel=0.25)
+    together = np.repeat(rng.normal(size=200), 100)
+    assert line_fit(together, 100) == pytest.approx(1 / 200, rel=0.3)
+    assert line_fit(together, 1) < 0.05 / 200
+
+
+def test_the_weaker_axis_and_direction_count_and_the_floor_is_added() -> None:
+    covariance = np.diag([1e-6, 9e-4, 4e-4, 1e-6])
+    assert axis_sd_rad(covariance, 0.04) == pytest.approx(0.05)
+    assert axis_sd_rad(np.zeros((4, 4)), float(AXIS_FLOOR_HUMAN_RAD)) == pytest.approx(np.deg2rad(4.0))
+
+
+@pytest.mark.parametrize(
+    ("rate", "range_deg", "is_knee", "is_hinge", "expected_deg"),
+    [
+        (0.0, 60.0, True, False, 1.5),
+        (0.0, 60.0, False, False, 0.3),
+        (1.0, 60.0, True, False, 4.8),
+        (0.5, 30.0, False, False, 1.95),
+        (0.0, 60.0, True, True, 0.54),
+        (0.1, 100.0, False, True, 1.03),
+    ],
+)
+def test_an_angle_s_spread_is_as_documented(
+    rate: float, range_deg: float, is_knee: bool, is_hinge: bool, expected_deg: float
+) -> None:
+    found = angle_sd_rad(rate, float(np.deg2rad(range_deg)), is_knee, is_hinge)
+    assert np.rad2deg(found) == pytest.approx(expected_deg)

@@ -1,0 +1,110 @@
+"""Do both sensors feel the joint's own acceleration, and does the fit find centres, biases and lags from it?"""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from core.body import Joint
+from core.calibration.coincidence import fit_coincidence, lever_matrix, relative_rotation
+from core.calibration.datasets import Datasets, gather, moving_indices
+from core.calibration.heading import heading_over
+from core.calibration.lag import find_lag
+from core.pair import Pair
+from core.rotations import joint_frame, wrap
+
+if TYPE_CHECKING:
+    from tests.core.conftest import Person
+
+KNEE = Joint.LEFT_KNEE
+
+
+@pytest.fixture(scope="module")
+def person_5(make_person: "Callable[..., Person]") -> "Person":
+    return make_person(seed=5)
+
+
+@pytest.fixture(scope="module")
+def pair(person_5: "Person") -> Pair:
+    return person_5.exact_pair(KNEE, heading_rad=-0.7)
+
+
+@pytest.fixture(scope="module")
+def data(pair: Pair) -> Datasets:
+    return gather((pair,), [np.arange(5, len(pair) - 5, 2)])
+
+
+def test_the_lever_s_acceleration_is_that_of_eq_7() -> None:
+    rng = np.random.default_rng(0)
+    g, dg, o = rng.normal(size=(3, 3))
+    expected = np.cross(g, np.cross(g, o)) + np.cross(dg, o)
+    np.testing.assert_allclose(lever_matrix(g, dg) @ o, expected, atol=1e-12)
+
+
+def test_at_the_truth_both_sensors_agree_on_the_joint_s_acceleration(person_5: "Person", data: Datasets) -> None:
+    o1, o2 = (person_5.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
+    one = data.a1 - lever_matrix(data.g1, data.dg1) @ o1
+    two = data.a2 - lever_matrix(data.g2, data.dg2) @ o2
+    rotation = relative_rotation(data, np.full((1, len(data)), -0.7))[0]
+    np.testing.assert_allclose(one, np.einsum("nij,nj->ni", rotation, two), atol=2e-3)
+
+
+def test_the_fit_finds_centres_and_the_relative_bias(person_5: "Person", data: Datasets) -> None:
+    bias = np.array([0.05, -0.03, 0.04])
+    biased = replace(data, a1=data.a1 + bias)
+    rotation = relative_rotation(biased, np.full((1, len(data)), -0.7))
+    found = fit_coincidence(biased, rotation).unknowns[0]
+    for site, o in ((KNEE.proximal, found[:3]), (KNEE.distal, found[3:6])):
+        plane = np.stack(joint_frame(person_5.axis(site, KNEE)))
+        np.testing.assert_allclose(plane @ (o - person_5.centre_m(site, KNEE)), 0.0, atol=0.003)
+
+
+def test_a_false_heading_is_dear(data: Datasets) -> None:
+    heading = np.stack([np.full(len(data), -0.7 + off) for off in (0.0, 0.5, np.pi)])
+    cost = fit_coincidence(data, relative_rotation(data, heading)).cost
+    assert cost[0] < 1e-3 * cost[1]
+    assert cost[0] < 1e-3 * cost[2]
+
+
+def late(pair: Pair, lag_s: float, person: "Person") -> Pair:
+    """The pair as it would be if the distal sensor's stamps were late by `lag_s`: everything of it is read earlier."""
+    shift = round(lag_s / pair.step_s)
+    roll = {name: np.roll(getattr(pair, name), shift, axis=0) for name in ("g2", "a2", "dg2", "earth_from_2")}
+    known = pair.is_known.copy()
+    known[: abs(shift) + 2] = known[len(pair) - abs(shift) - 2 :] = False
+    return replace(pair, is_known=known, **roll)
+
+
+@pytest.mark.parametrize("lag_s", [0.03, -0.05, 0.06])
+def test_a_late_clock_is_found_with_the_sign_that_corrects_it(person_5: "Person", pair: Pair, lag_s: float) -> None:
+    shifted = late(pair, lag_s, person_5)
+    sets = gather((shifted,), [moving_indices(shifted)])
+    found = find_lag(sets.thinned(400), np.full(sets.knots, -0.7))
+    # what is added to the distal stamps: a late clock needs a negative correction
+    assert found.lag_s == pytest.approx(-lag_s, abs=0.001)
+    assert not found.is_at_border
+
+
+def test_no_lag_is_invented(pair: Pair) -> None:
+    sets = gather((pair,), [moving_indices(pair)])
+    found = find_lag(sets.thinned(400), np.full(sets.knots, -0.7))
+    assert found.lag_s == 0.0
+    assert not found.is_at_border
+
+
+def test_a_lag_beyond_the_search_is_not_called_a_lag(person_5: "Person", pair: Pair) -> None:
+    shifted = late(pair, 0.2, person_5)
+    sets = gather((shifted,), [moving_indices(shifted)])
+    found = find_lag(sets.thinned(400), np.full(sets.knots, -0.7))
+    assert found.lag_s == 0.0
+
+
+@pytest.mark.parametrize("heading", [-0.7, 3.1, -3.1])
+def test_the_heading_of_a_recording_is_found_from_the_axes(person_5: "Person", heading: float) -> None:
+    pair = person_5.exact_pair(KNEE, duration_s=21.0, rate_hz=50.0, heading_rad=heading)
+    j1, j2 = (person_5.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
+    found = heading_over(pair, j1, j2)
+    assert found.shape == (len(pair),)
+    np.testing.assert_allclose(wrap(found - heading), 0.0, atol=1e-4)

@@ -1,0 +1,125 @@
+"""Are the slopes of the centre's residual right, and does it lie where it was put?"""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from core.body import Joint
+from core.calibration import joint_centre
+from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M
+from core.calibration.datasets import Datasets, gather
+from core.calibration.hinge import robust_sd
+from core.calibration.joint_centre import (
+    MIN_SD_HINGE_M,
+    MIN_SD_HUMAN_M,
+    JointCentre,
+    centre_by_lengths,
+    centre_by_vectors,
+    centre_sd_m,
+    nearest_to_sensors,
+)
+from core.rotations import joint_frame
+from core.samples import FloatArray
+
+if TYPE_CHECKING:
+    from tests.core.conftest import Person
+
+KNEE = Joint.LEFT_KNEE
+STEP = 1e-5
+
+
+@pytest.fixture(scope="module")
+def person_3(make_person: "Callable[..., Person]") -> "Person":
+    return make_person(seed=3)
+
+
+@pytest.fixture(scope="module")
+def data(person_3: "Person") -> Datasets:
+    pair = person_3.exact_pair(KNEE, heading_rad=0.5)
+    return gather((pair,), [np.arange(5, 590, 3)])
+
+
+def in_plane_error_m(found: FloatArray, truth: FloatArray, axis: FloatArray) -> float:
+    return float(np.linalg.norm(np.stack(joint_frame(axis)) @ (found - truth)))
+
+
+def lengths_apart(data: Datasets, x: FloatArray) -> FloatArray:
+    """Eq 8 written out sample by sample, as the paper has it."""
+    rows = []
+    for k in range(len(data)):
+        parts = []
+        for a, g, dg, o, b in (
+            (data.a1[k], data.g1[k], data.dg1[k], x[0:3], x[6:9]),
+            (data.a2[k], data.g2[k], data.dg2[k], x[3:6], x[9:12]),
+        ):
+            parts.append(np.linalg.norm(a - b - np.cross(g, np.cross(g, o)) - np.cross(dg, o)))
+        rows.append(parts[0] - parts[1])
+    return np.array(rows)
+
+
+@settings(max_examples=8)
+@given(seed=st.integers(0, 2**31))
+def test_the_first_step_uses_slopes_that_are_central_differences(data: Datasets, seed: int) -> None:
+    x = np.random.default_rng(seed).normal(scale=0.1, size=12)
+    seen: list[tuple[FloatArray, FloatArray]] = []
+    solve = np.linalg.solve
+
+    def watched(a: Any, b: Any) -> Any:
+        seen.append((a.copy(), b.copy()))
+        return solve(a, b)
+
+    few = data.only(np.arange(len(data)) % 20 == 0)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(np.linalg, "solve", watched)
+        centre_by_lengths(few, x)
+    information, gradient = seen[0]
+    error = lengths_apart(few, x)
+    slope = np.stack(
+        [(lengths_apart(few, x + STEP * e) - lengths_apart(few, x - STEP * e)) / (2 * STEP) for e in np.eye(12)], axis=1
+    )
+    scale = max(joint_centre.MIN_SCALE_M_S2, robust_sd(error))
+    weight = 1 / np.sqrt(1 + (error / scale) ** 2) / scale**2
+    prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6)
+    expected = slope.T @ (weight * error) + prior @ x
+    np.testing.assert_allclose(gradient, expected, atol=1e-5 * np.abs(expected).max())
+    wanted = (slope * weight[:, None]).T @ slope + prior
+    np.testing.assert_allclose(information, wanted, atol=1e-5 * np.abs(wanted).max())
+
+
+def test_both_forms_find_a_hinge_s_centre_in_the_plane_normal_to_its_axis(person_3: "Person", data: Datasets) -> None:
+    by_vectors = centre_by_vectors(data, np.full(data.knots, 0.5))
+    for found in (by_vectors, centre_by_lengths(data, by_vectors.unknowns), centre_by_lengths(data, np.zeros(12))):
+        for site, o in ((KNEE.proximal, found.proximal_m), (KNEE.distal, found.distal_m)):
+            assert in_plane_error_m(o, person_3.centre_m(site, KNEE), person_3.axis(site, KNEE)) < 0.001
+
+
+def test_eq_9_takes_the_point_of_the_axis_nearest_to_both_sensors() -> None:
+    rng = np.random.default_rng(4)
+    for _ in range(20):
+        j1, j2 = (v / np.linalg.norm(v) for v in rng.normal(size=(2, 3)))
+        o1, o2 = rng.normal(size=(2, 3))
+        one, two = nearest_to_sensors(JointCentre(np.concatenate([o1, o2, np.zeros(6)]), np.eye(12)), j1, j2)
+        assert one @ j1 + two @ j2 == pytest.approx(0.0, abs=1e-12)
+        np.testing.assert_allclose(np.cross(one - o1, j1), 0.0, atol=1e-12)
+        # the same point: both move by the same length along the axis, and any other point is farther
+        along = float((o1 - one) @ j1)
+        assert float((o2 - two) @ j2) == pytest.approx(along, abs=1e-12)
+        least = one @ one + two @ two
+        for shift in (-0.01, 0.01):
+            assert np.sum((one + shift * j1) ** 2) + np.sum((two + shift * j2) ** 2) > least
+
+
+def test_the_spread_of_a_centre_is_that_of_its_weakest_observable_direction() -> None:
+    z = np.array([0.0, 0.0, 1.0])
+    covariance = np.diag([1e-4, 4e-4, 1.0] * 2 + [1.0] * 6)
+    centre = JointCentre(np.zeros(12), covariance)
+    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=True) == pytest.approx(3 * 0.02)
+    assert centre_sd_m(centre, z, z, is_hinge=True, is_knee=False) == pytest.approx(3 * 0.02)
+    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=False) == pytest.approx(3.0)
+    sure = JointCentre(np.zeros(12), 1e-12 * np.eye(12))
+    assert centre_sd_m(sure, z, z, is_hinge=True, is_knee=True) == MIN_SD_HINGE_M
+    assert centre_sd_m(sure, z, z, is_hinge=False, is_knee=True) == MIN_SD_HUMAN_M
