@@ -76,6 +76,8 @@ class SensorTracks:
             bias = self.gyro_bias(recording, site).rad_s
             info = self.session.sensors.get(site)
             kind = (info.rate_kind if info else None) or self.rate_kind
+            if recording.imu[site].is_rate_derived:
+                kind = RateKind.INSTANTANEOUS
             tracks = even_tracks(recording.imu[site], block.from_s, block.to_s)
             self._tracks[key] = [oriented(track, kind, bias) for track in tracks]
         return self._tracks[key]

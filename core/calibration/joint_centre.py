@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.calibration.certainty import sandwich_covariance, time_blocks
 from core.calibration.coincidence import (
     BIAS_PRIOR_M_S2,
     CENTRE_PRIOR_M,
@@ -18,7 +19,10 @@ from core.samples import FloatArray
 
 MIN_SCALE_M_S2 = 0.02
 NORM_STEPS = 10
-SD_FACTOR = 3.0  # errors are this much larger than the residuals' covariance says
+# Errors are this much larger than the residuals say: scale errors of the sensors on a hinge; on a human, tissue that
+# moves in step with the limb, which no residual shows.
+SD_FACTOR_HINGE = 3.0
+SD_FACTOR_HUMAN = 6.0
 MIN_SD_HINGE_M = 0.002
 MIN_SD_HUMAN_M = 0.010
 MAX_SD_M = 0.040  # less certain than this is unknown
@@ -87,7 +91,8 @@ def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
         x = x + step
         if np.max(np.abs(step[:6])) < 1e-6:
             break
-    return JointCentre(x, np.linalg.inv(information))
+    covariance = sandwich_covariance(slope[:, None, :], error[:, None], weight[:, None], time_blocks(data))
+    return JointCentre(x, covariance)
 
 
 def centre_sd_m(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray, is_hinge: bool, is_knee: bool) -> float:
@@ -99,7 +104,9 @@ def centre_sd_m(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray, is_
             plane = np.stack(joint_frame(axis), axis=1)
             covariance = plane.T @ covariance @ plane
         worst = max(worst, float(np.linalg.eigvalsh(covariance)[-1]))
-    return float(max(SD_FACTOR * np.sqrt(worst), MIN_SD_HINGE_M if is_hinge else MIN_SD_HUMAN_M))
+    if is_hinge:
+        return float(max(SD_FACTOR_HINGE * np.sqrt(worst), MIN_SD_HINGE_M))
+    return float(max(SD_FACTOR_HUMAN * np.sqrt(worst), MIN_SD_HUMAN_M))
 
 
 def nearest_to_sensors(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray) -> tuple[FloatArray, FloatArray]:
