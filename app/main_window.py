@@ -2,6 +2,7 @@
 
 import logging
 import sys
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -246,6 +247,9 @@ class MainWindow(QWidget):
 
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)
+            order = [*self._results.tab_order, self.bar.open_folder, self.bar.open_demonstration]
+            for before, after in pairwise(order):
+                self.setTabOrder(before, after)
         session = opened.session
         self._results.show_analysis(opened.analysis)
         self.header.show_session(session.patient.code or "No code", _in_words(session.patient), session.is_simulated)
@@ -296,7 +300,7 @@ class _ActionBar(QWidget):
 
     def __init__(self, look: Look) -> None:
         super().__init__()
-        self._look = look
+        self._look, self._is_narrow = look, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.open_folder = Button(look, "Open a session folder", Kind.SECONDARY, Icon.FOLDER, "Ctrl O")
         self.open_demonstration = Button(look, "Open the demonstration", Kind.QUIET, Icon.PLAY, "Ctrl D")
@@ -310,7 +314,9 @@ class _ActionBar(QWidget):
         self._on_look_changed()
 
     def set_narrow(self, is_narrow: bool) -> None:
+        self._is_narrow = is_narrow
         self._purpose.setVisible(not is_narrow)
+        self._on_look_changed()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -321,8 +327,9 @@ class _ActionBar(QWidget):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._row.setContentsMargins(px(24), 0, px(24), 0)
-        self._row.setSpacing(px(16))
+        side = px(16 if self._is_narrow else 24)
+        self._row.setContentsMargins(side, 0, side, 0)
+        self._row.setSpacing(px(8 if self._is_narrow else 16))
         self.setFixedHeight(px(BAR))
         self.update()
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
@@ -33,22 +33,33 @@ class Curve:
     second_deg: FloatArray | None = None
 
 
-class AngleChart(pg.PlotWidget):  # type: ignore[misc]  # pyqtgraph has no types
-    """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them."""
+class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them.
+
+    It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
+    """
+
+    view_moved = Signal()
 
     def __init__(self, look: Look, lowest_deg: float, highest_deg: float) -> None:
-        super().__init__(axisItems={"bottom": _TimeAxis("bottom"), "left": _AngleAxis("left")})
+        super().__init__(useOpenGL=False)
         self._look = look
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
         self.curves: Mapping[Side, Curve] = {}
         self._time_s: FloatArray = np.zeros(0)
-        self.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self.setFrameShape(pg.PlotWidget.Shape.NoFrame)
-        plot = self.getPlotItem()
-        plot.hideButtons()
-        plot.setMenuEnabled(False)
-        self._view = plot.getViewBox()
+        for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
+            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._view = pg.ViewBox(enableMenu=False)
+        self._angle_axis, self._time_axis = _AngleAxis("left"), _TimeAxis("bottom")
+        self._layout = pg.GraphicsLayout()
+        self._layout.setSpacing(0)
+        self._layout.addItem(self._angle_axis, 0, 0)
+        self._layout.addItem(self._view, 0, 1)
+        self._layout.addItem(self._time_axis, 1, 1)
+        self._angle_axis.linkToView(self._view)
+        self._time_axis.linkToView(self._view)
+        self.setCentralItem(self._layout)
         self._view.setMouseEnabled(x=True, y=False)
         self._view.setDefaultPadding(0.0)
         self._view.disableAutoRange()
@@ -58,7 +69,7 @@ class AngleChart(pg.PlotWidget):  # type: ignore[misc]  # pyqtgraph has no types
         self._cursor.hide()
         self._items = {side: _CurveItem(look, side) for side in Side}
         for item in (self._zero, *self._items.values(), self._cursor):
-            self.addItem(item, ignoreBounds=True)
+            self._view.addItem(item, ignoreBounds=True)
         self._view.sigXRangeChanged.connect(self._on_x_range_changed)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
@@ -96,12 +107,15 @@ class AngleChart(pg.PlotWidget):  # type: ignore[misc]  # pyqtgraph has no types
         self._view.setLimits(xMin=first, xMax=last, minXRange=SHORTEST_VIEW_S)
         span = self.range_deg[1] - self.range_deg[0]
         step = TICK_DEG if span <= 8 * TICK_DEG else None
-        axis = self.getPlotItem().getAxis("left")
-        axis.setTickSpacing(levels=[(step, 0)] if step else None)
+        self._angle_axis.setTickSpacing(levels=[(step, 0)] if step else None)
         self._redraw()
 
     def see(self, first_s: float, last_s: float) -> None:
         self._view.setXRange(first_s, last_s, padding=0)
+
+    def link_time(self, other: "AngleChart") -> None:
+        """Show the same stretch of time as `other` from now on."""
+        self._view.setXLink(other._view)
 
     def set_cursor(self, time_s: float | None) -> None:
         self._cursor.setVisible(time_s is not None)
@@ -138,20 +152,19 @@ class AngleChart(pg.PlotWidget):  # type: ignore[misc]  # pyqtgraph has no types
 
     def _on_x_range_changed(self) -> None:
         self._redraw()
+        self.view_moved.emit()
 
     def _on_look_changed(self) -> None:
         theme = self._look.theme
         c = theme.colours
         self.setBackground(c.surface)
-        plot = self.getPlotItem()
-        plot.getAxis("left").setWidth(theme.px(AXIS_WIDTH))
-        plot.getAxis("bottom").setHeight(theme.px(AXIS_HEIGHT))
-        for name in ("left", "bottom"):
-            axis = plot.getAxis(name)
+        self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
+        self._time_axis.setHeight(theme.px(AXIS_HEIGHT))
+        for axis in (self._angle_axis, self._time_axis):
             axis.setPen(theme.pen(c.control, 1))
             axis.setTextPen(QColor(c.ink2))
             axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        plot.layout.setContentsMargins(0, theme.px(6), theme.px(16), 0)
+        self._layout.setContentsMargins(0, theme.px(6), theme.px(16), 0)
         self._zero.setPen(pg.mkPen(c.control, width=1))
         self._cursor.setPen(pg.mkPen(c.ink, width=1))
         for item in self._items.values():

@@ -44,8 +44,8 @@ class JointCharts(QWidget):
         for frame in self._frames:
             self._column.addWidget(frame, 1)
             frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
-        self.ankle.chart.setXLink(self.knee.chart)
-        self.knee.chart.getPlotItem().getViewBox().sigXRangeChanged.connect(self._on_x_range_changed)
+        self.ankle.chart.link_time(self.knee.chart)
+        self.knee.chart.view_moved.connect(self._on_view_moved)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
@@ -153,7 +153,7 @@ class JointCharts(QWidget):
                 if time_s is not None:
                     self._read_at(time_s)
 
-    def _on_x_range_changed(self) -> None:
+    def _on_view_moved(self) -> None:
         first, last = self.visible_s
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
         shown = f"{first:.1f} to {last:.1f} s of {length:.1f} s".replace("-", "\N{MINUS SIGN}")
@@ -173,7 +173,6 @@ class ChartFrame(Card):
         self._sign = Text(look, sign, size=12, tone="ink2")
         self._simulated = Text(look, "SIMULATED", size=12, weight=SEMIBOLD)
         self._moment = Text(look, size=14, tone="ink2")
-        self._moment.setVisible(tells_time)
         self._keys = {side: SideKey(look, side) for side in Side}
         self._values = {side: Text(look, size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
         self._wide_mark = IconMark(look, Icon.WARNING, size=18)
@@ -200,6 +199,7 @@ class ChartFrame(Card):
         self._place(is_narrow=False)
         self.column.addLayout(head)
         self.column.addWidget(chart, 1)
+        self._moment.setVisible(tells_time)
         self._set_widened()
         self._on_look_changed()
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
     QHeaderView,
@@ -163,18 +163,8 @@ class FactsTable(QTableView):
         self._on_look_changed()
 
     def minimumSizeHint(self) -> QSize:
-        delegate = self.itemDelegate()
-        option = QStyleOptionViewItem()
-        rows = range(self.facts.rowCount())
-        columns = [
-            max(
-                [self.horizontalHeader().sectionSizeFromContents(column).width()]
-                + [delegate.sizeHint(option, self.facts.index(row, column)).width() for row in rows]
-            )
-            for column in range(self.facts.columnCount())
-        ]
-        height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in rows)
-        return QSize(self.verticalHeader().width() + sum(columns), height)
+        height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.facts.rowCount()))
+        return QSize(self.verticalHeader().width() + sum(self._needed_widths()), height)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
@@ -184,6 +174,10 @@ class FactsTable(QTableView):
             QApplication.clipboard().setText(self.as_text())
             return
         super().keyPressEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._share_width()
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
@@ -208,7 +202,29 @@ class FactsTable(QTableView):
             self.setRowHeight(row, max(delegate.sizeHint(option, cell).height() for cell in cells))
         self.setFixedHeight(self.minimumSizeHint().height())
         self.setMinimumWidth(self.minimumSizeHint().width())
+        self._share_width()
         self.viewport().update()
+
+    def _needed_widths(self) -> list[int]:
+        """Give what each column needs for its widest cell."""
+        delegate, option = self.itemDelegate(), QStyleOptionViewItem()
+        return [
+            max(
+                [self.horizontalHeader().sectionSizeFromContents(column).width()]
+                + [
+                    delegate.sizeHint(option, self.facts.index(row, column)).width()
+                    for row in range(self.facts.rowCount())
+                ]
+            )
+            for column in range(self.facts.columnCount())
+        ]
+
+    def _share_width(self) -> None:
+        """Give every column what it needs and an equal share of the rest."""
+        needed = self._needed_widths()
+        spare = max(0, self.width() - self.verticalHeader().width() - sum(needed))
+        for column, width in enumerate(needed):
+            self.setColumnWidth(column, width + spare // len(needed))
 
 
 class _CellDelegate(QStyledItemDelegate):
@@ -260,7 +276,8 @@ class _JointHeader(QHeaderView):
     def __init__(self, look: Look, parent: QWidget) -> None:
         super().__init__(Qt.Orientation.Horizontal, parent)
         self._look = look
-        self.setSectionResizeMode(QHeaderView.ResizeMode.Stretch)
+        self.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
+        self.setMinimumSectionSize(1)
         self.setSectionsClickable(False)
 
     def sectionSizeFromContents(self, section: int) -> QSize:

@@ -95,6 +95,12 @@ class ResultPage(QWidget):
             return None
         return self._analysis.recordings[self.recordings.currentIndex()]
 
+    @property
+    def tab_order(self) -> list[QWidget]:
+        """What takes the focus, in the order of reading."""
+        beside = [self.charts, self.whole, self.facts, self.findings]
+        return [*self.methods.segments, self.recordings, *self.part.segments, *beside]
+
     def _build(self) -> None:
         self._controls = QGridLayout()
         self._curves = QWidget()

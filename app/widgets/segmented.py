@@ -36,6 +36,11 @@ class Segmented(QWidget):
         look.changed.connect(self.update)
 
     @property
+    def segments(self) -> list[QAbstractButton]:
+        """The choices in the order of reading."""
+        return list(self._segments.values())
+
+    @property
     def choice(self) -> str:
         return next(key for key, segment in self._segments.items() if segment.isChecked())
 

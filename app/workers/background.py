@@ -2,8 +2,11 @@
 
 import logging
 from collections.abc import Callable
+from time import monotonic
 
 from PySide6.QtCore import QObject, QThread, Signal
+
+PROGRESS_EVERY_S = 0.05  # faster than anybody reads; more would keep the screen from anything else
 
 _log = logging.getLogger(__name__)
 
@@ -93,6 +96,7 @@ class _WorkThread(QThread):
     def __init__(self, work: Work, parent: QObject) -> None:
         super().__init__(parent)
         self._work = work
+        self._told_s, self._told = 0.0, ""
 
     def run(self) -> None:
         try:
@@ -109,4 +113,6 @@ class _WorkThread(QThread):
     def _report(self, share: float, what: str) -> None:
         if self.isInterruptionRequested():
             raise Stopped
-        self.progressed.emit(self, share, what)
+        if what != self._told or monotonic() - self._told_s >= PROGRESS_EVERY_S:
+            self._told_s, self._told = monotonic(), what
+            self.progressed.emit(self, share, what)

@@ -1,0 +1,46 @@
+"""Fewer points than samples, and nothing lost that can be seen."""
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.plots.thinning import thin
+from core.samples import FloatArray
+
+
+def ramp(n: int) -> tuple[FloatArray, FloatArray]:
+    time_s = np.arange(n) / 100
+    return time_s, np.sin(time_s)
+
+
+def test_few_samples_stay_as_they_are() -> None:
+    time_s, values = ramp(400)
+    kept_s, kept = thin(time_s, values, columns=100)
+    assert kept_s is time_s
+    assert kept is values
+
+
+@given(st.integers(2_000, 50_000), st.integers(0, 49_999))
+def test_a_single_peak_is_kept(n: int, at: int) -> None:
+    time_s, values = ramp(n)
+    values[at % n] = 90.0
+    kept_s, kept = thin(time_s, values, columns=200)
+    assert len(kept) <= 2 * 200 + n // 200 + 200
+    assert time_s[at % n] in kept_s[kept == 90.0]
+    assert np.all(np.diff(kept_s) >= 0)
+
+
+def test_a_long_gap_stays_a_gap() -> None:
+    time_s, values = ramp(20_000)
+    values[8_000:12_000] = np.nan
+    kept_s, kept = thin(time_s, values, columns=200)
+    inside = (kept_s > 81) & (kept_s < 119)
+    assert inside.any()
+    assert np.isnan(kept[inside]).all()
+    assert np.isfinite(kept[(kept_s < 79) | (kept_s > 121)]).all()
+
+
+def test_single_missing_samples_do_not_widen_into_gaps() -> None:
+    time_s, values = ramp(20_000)
+    values[::50] = np.nan
+    assert np.isfinite(thin(time_s, values, columns=200)[1]).all()
