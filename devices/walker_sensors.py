@@ -170,12 +170,14 @@ def interpolate(signal: FloatArray, at: FloatArray) -> FloatArray:
     )
 
 
-def _integral(signal: FloatArray) -> FloatArray:
-    """Running integral (n, 3) per step, exact for cubics inside."""
+def _mean_before(signal: FloatArray, at: FloatArray, width: float) -> FloatArray:
+    """Means (m, 3) of `signal` (n, 3) over `width` steps that end at fractional indices (m,)."""
+    # the running integral, exact for cubics inside
     inner = (-signal[:-3] + 13.0 * signal[1:-2] + 13.0 * signal[2:-1] - signal[3:]) / 24.0
     ends = 0.5 * (signal[:-1] + signal[1:])
     steps = np.concatenate([ends[:1], inner, ends[-1:]])
-    return np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    total = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
+    return np.asarray((interpolate(total, at) - interpolate(total, at - width)) / width, dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,9 +225,7 @@ def record(
     at = (clock.true_s - fine_s[0]) / step_s
     rate = angular_rate(rotations, step_s)
     if settings.rate_kind is RateKind.AVERAGED:
-        total = _integral(rate)
-        before = at - 1.0 / (rate_hz * step_s)
-        gyr = np.asarray((interpolate(total, at) - interpolate(total, before)) * step_s * rate_hz)
+        gyr = _mean_before(rate, at, 1.0 / (rate_hz * step_s))
     else:
         gyr = interpolate(rate, at)
     without_gravity = acceleration(place, step_s) - GRAVITY_M_S2
