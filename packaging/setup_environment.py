@@ -14,10 +14,10 @@ import hashlib
 import importlib.util
 import os
 import shutil
-import signal
 import subprocess
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NoReturn
 
 ROOT = Path(__file__).resolve().parents[1]
 VENV = ROOT / ".venv"
@@ -150,12 +150,11 @@ def how_to_install(packages: Sequence[str]) -> str:
     )
 
 
-def run(command: Sequence[str]) -> int:
-    """Run `command` where the user stands and return its exit code."""
-    # Ctrl-C reaches the command too: its own last words and exit code are the ones that count
-    signal.signal(signal.SIGINT, lambda *_: None)
-    code = subprocess.call(command)
-    return code if code >= 0 else 128 - code
+def hand_over(command: list[str]) -> NoReturn:
+    """Become `command`: signals reach it and its exit code is ours. Windows knows no such thing and waits for it."""
+    if os.name == "nt":
+        sys.exit(subprocess.call(command))
+    os.execv(command[0], command)
 
 
 def say(sentence: str) -> None:

@@ -8,7 +8,7 @@ import os
 import sys
 from pathlib import Path
 
-from setup_environment import SetUpError, prepare, run, say
+from setup_environment import SetUpError, hand_over, prepare, say
 
 
 def has_screen() -> bool:
@@ -17,23 +17,19 @@ def has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def main(arguments: list[str]) -> int:
-    is_demonstration = not arguments and not has_screen()
+def main(arguments: list[str]) -> None:
+    is_window = not arguments and has_screen()
     try:
-        python = prepare(is_screen_needed=not arguments and has_screen())
+        python = prepare(is_screen_needed=is_window)
     except SetUpError as missing:
-        say(str(missing))
-        return 1
+        sys.exit(str(missing))
+    if not arguments and not is_window:
+        say("There is no screen here, so the demonstration is computed instead of opening the window.")
+        say(f"Its result goes to {Path('gaitwright-demo').resolve()}.")
+        arguments = ["demo"]
     # -P: a folder named `app` where the user stands is not ours
-    application = [str(python), "-P", "-m", "app"]
-    if not is_demonstration:
-        return run([*application, *arguments])
-    say("There is no screen here, so the demonstration is computed instead of opening the window.")
-    code = run([*application, "demo"])
-    if code == 0:
-        say(f"The result is in {Path('gaitwright-demo').resolve()}.")
-    return code
+    hand_over([str(python), "-P", "-m", "app", *arguments])
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    main(sys.argv[1:])

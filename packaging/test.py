@@ -5,9 +5,10 @@ Without arguments every check runs, and the tests but the long ones. With argume
 """
 
 import os
+import subprocess
 import sys
 
-from setup_environment import ROOT, SetUpError, prepare, run, say
+from setup_environment import ROOT, SetUpError, hand_over, prepare, say
 
 CHECKS = (
     ("ruff", "check"),
@@ -18,25 +19,28 @@ CHECKS = (
 )
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments: list[str]) -> None:
     try:
         python = prepare(is_screen_needed=True)
     except SetUpError as missing:
-        say(str(missing))
-        return 1
+        sys.exit(str(missing))
     os.chdir(ROOT)
     os.environ["QT_QPA_PLATFORM"] = "offscreen"
     if arguments:
-        return run([str(python.with_name("pytest")), *arguments])
+        hand_over([str(python.with_name("pytest")), *arguments])
     failed = []
     for command, *options in CHECKS:
         name = " ".join((command, *options))
         say(f"\n== {name}")
-        if run([str(python.with_name(command)), *options]) != 0:
+        if subprocess.call([python.with_name(command), *options]) != 0:
             failed.append(name)
-    say(f"\nFailed: {', '.join(failed)}." if failed else "\nEvery check passed.")
-    return 1 if failed else 0
+    if failed:
+        sys.exit(f"\nFailed: {', '.join(failed)}.")
+    say("\nEvery check passed.")
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    try:
+        main(sys.argv[1:])
+    except KeyboardInterrupt:
+        sys.exit("Stopped.")

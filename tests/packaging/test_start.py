@@ -166,11 +166,7 @@ def test_with_a_screen_the_window_opens(set_up: ModuleType, monkeypatch: pytest.
     module = importlib.import_module("start")
     called: list[list[str]] = []
 
-    def run(command: list[str]) -> int:
-        called.append(command)
-        return 0
-
     monkeypatch.setenv("DISPLAY", ":0")
-    monkeypatch.setattr(module, "run", run)
-    assert module.main([]) == 0
+    monkeypatch.setattr(module, "hand_over", called.append)
+    module.main([])
     assert called == [[str(set_up.python()), "-P", "-m", "app"]]
