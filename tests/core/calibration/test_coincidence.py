@@ -102,9 +102,10 @@ def test_a_lag_beyond_the_search_is_not_called_a_lag(person_5: "Person", pair: P
 
 
 @pytest.mark.parametrize("heading", [-0.7, 3.1, -3.1])
-def test_the_heading_of_a_recording_is_found_from_the_axes(person_5: "Person", heading: float) -> None:
+def test_the_heading_of_a_recording_is_found_from_axes_and_centres(person_5: "Person", heading: float) -> None:
     pair = person_5.exact_pair(KNEE, duration_s=21.0, rate_hz=50.0, heading_rad=heading)
     j1, j2 = (person_5.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal))
-    found = heading_over(pair, j1, j2)
+    centres = [person_5.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    found = heading_over(pair, j1, j2, np.concatenate([*centres, np.zeros(6)]))
     assert found.shape == (len(pair),)
     np.testing.assert_allclose(wrap(found - heading), 0.0, atol=1e-4)

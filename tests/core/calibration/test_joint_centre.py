@@ -16,6 +16,8 @@ from core.calibration.hinge import robust_sd
 from core.calibration.joint_centre import (
     MIN_SD_HINGE_M,
     MIN_SD_HUMAN_M,
+    SD_FACTOR_HINGE,
+    SD_FACTOR_HUMAN,
     JointCentre,
     centre_by_lengths,
     centre_by_vectors,
@@ -117,9 +119,9 @@ def test_the_spread_of_a_centre_is_that_of_its_weakest_observable_direction() ->
     z = np.array([0.0, 0.0, 1.0])
     covariance = np.diag([1e-4, 4e-4, 1.0] * 2 + [1.0] * 6)
     centre = JointCentre(np.zeros(12), covariance)
-    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=True) == pytest.approx(3 * 0.02)
-    assert centre_sd_m(centre, z, z, is_hinge=True, is_knee=False) == pytest.approx(3 * 0.02)
-    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=False) == pytest.approx(3.0)
+    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=True) == pytest.approx(SD_FACTOR_HUMAN * 0.02)
+    assert centre_sd_m(centre, z, z, is_hinge=True, is_knee=False) == pytest.approx(SD_FACTOR_HINGE * 0.02)
+    assert centre_sd_m(centre, z, z, is_hinge=False, is_knee=False) == pytest.approx(SD_FACTOR_HUMAN * 1.0)
     sure = JointCentre(np.zeros(12), 1e-12 * np.eye(12))
     assert centre_sd_m(sure, z, z, is_hinge=True, is_knee=True) == MIN_SD_HINGE_M
     assert centre_sd_m(sure, z, z, is_hinge=False, is_knee=True) == MIN_SD_HUMAN_M
