@@ -238,8 +238,9 @@ def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
             if rests[0] is None or rests[1] is None:
                 return None
             geometry = found.geometry
-            biases = np.zeros((2, 3)) if geometry.hinge is None else geometry.hinge[6:12].reshape(2, 3)
-            down_1, down_2 = rests[0].acc_m_s2 - biases[0], rests[1].acc_m_s2 - biases[1]
+            down_1, down_2 = rests[0].acc_m_s2, rests[1].acc_m_s2
+            if geometry.is_hinge:  # its angle is free of the biases, so its zero has to be
+                down_1, down_2 = down_1 - geometry.unknowns[6:9], down_2 - geometry.unknowns[9:12]
             return standing_twist(down_1, down_2, geometry.axis_1, geometry.axis_2)
     return None
 

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from core.body import Joint
 from core.calibration.identify import Identification, identify_joint, moving_data
 from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
@@ -92,10 +94,18 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
         centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
     # a walking person's centre is not in the data; a hinge's is
     is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
-    hinge = found.centre.unknowns if found.is_hinge else None
     return Identified(
         basis=basis,
-        geometry=Geometry(found.axis_1, found.axis_2, centre_1, centre_2, found.lag.lag_s, tau_s, hinge),
+        geometry=Geometry(
+            found.axis_1,
+            found.axis_2,
+            centre_1,
+            centre_2,
+            found.lag.lag_s,
+            tau_s,
+            found.centre.unknowns,
+            found.is_hinge,
+        ),
         source=_source(basis, found.is_hinge),
         recordings=names,
         is_centre_known=is_centre_known,
@@ -128,7 +138,7 @@ def _as_published(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identifie
         o1, o2 = shifted_to_sensors(o1, o2, found.axis_1, found.axis_2)
     return Identified(
         basis=basis,
-        geometry=Geometry(found.axis_1, found.axis_2, o1, o2, 0.0, tau_s),
+        geometry=Geometry(found.axis_1, found.axis_2, o1, o2, 0.0, tau_s, np.concatenate([o1, o2, np.zeros(6)]), False),
         source=AxisSource.WALKING if axis_names == basis.walks else AxisSource.FREE_MOTION,
         recordings=tuple(dict.fromkeys((*axis_names, *free))),
         is_centre_known=True,

@@ -26,7 +26,7 @@ WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 class Geometry:
     """What measuring needs: axes (3,), centres (3,), the distal clock's lag, the time constant of eq 15.
 
-    `hinge` (12,), of a true hinge only: centres and accelerometer biases as fitted.
+    `unknowns` (12,): centres o1, o2 and accelerometer biases b1, b2 as they were fitted together.
     """
 
     axis_1: FloatArray
@@ -35,7 +35,8 @@ class Geometry:
     centre_2_m: FloatArray
     lag_s: float
     tau_s: float
-    hinge: FloatArray | None = None
+    unknowns: FloatArray
+    is_hinge: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,12 +88,9 @@ def measure(
     j1, j2 = geometry.axis_1, geometry.axis_2
     for block in tracks.blocks(recording):
         for pair in pairs_of(tracks, recording, joint, block, geometry.lag_s):
-            heading = heading_over(pair, j1, j2)
+            heading = heading_over(pair, j1, j2, geometry.unknowns)
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
-            if geometry.hinge is not None:
-                angle = hinge_angle(pair, j1, j2, geometry.hinge)
-            else:
-                angle = twist(pair, j1, j2, heading)
+            angle = hinge_angle(pair, j1, j2, geometry.unknowns) if geometry.is_hinge else twist(pair, j1, j2, heading)
             found = {"twist": angle, "published": -fused}
             for name, values in found.items():
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)

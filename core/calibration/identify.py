@@ -1,7 +1,7 @@
 """How do two sensors sit on their joint? The robust identification, step by step."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,13 +13,14 @@ from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_r
 from core.calibration.joint_axis import (
     Candidates,
     candidates,
+    heading_from_axes,
     joined,
     loss_and_weights,
     polish,
     residuals,
 )
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
-from core.calibration.lag import Lag, find_lag
+from core.calibration.lag import Lag, find_lag, lowest_cost
 from core.calibration.refinement import refine_on_hinge
 from core.pair import FAST_RAD_S, Pair
 from core.rotations import angle_between, wrap
@@ -34,6 +35,7 @@ MIN_MOVING_S = 2.0  # less movement than this identifies nothing
 DISTINCT_RAD = np.deg2rad(14.0)
 RIVAL_HEADING_RAD = np.deg2rad(45.0)
 ACCELERATION_COST_FLOOR = 0.05
+MAX_REST_S = 0.01  # after the first correction
 ELEVATION_SD_RAD = np.deg2rad(25.0)
 MAX_ELEVATION_RAD = np.deg2rad(40.0)
 
@@ -87,10 +89,14 @@ def identify_joint(
         return None
     decision = decide(data)
     lag = find_lag(data.thinned(DECISION_SAMPLES), decision.best.knots_rad[0])
+    others = moving_data(others_at(lag.lag_s))
     if lag.lag_s:
         data = moving_data(pairs_at(lag.lag_s)) or data
         decision = decide(data)
-    others = moving_data(others_at(lag.lag_s))
+        rest_s = _rest_of_lag(data, others, decision)
+        if abs(rest_s) < MAX_REST_S:
+            lag = replace(lag, lag_s=lag.lag_s + rest_s)
+            data, others = moving_data(pairs_at(lag.lag_s)) or data, moving_data(others_at(lag.lag_s))
     return _refined(data, others, decision, lag, is_knee, is_from_walking, down_1)
 
 
@@ -119,6 +125,16 @@ def decide(data: Datasets) -> Decision:
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
     margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
     return Decision(found.pick(best), float(cost[best]), margin)
+
+
+def _rest_of_lag(data: Datasets, others: Datasets | None, decision: Decision) -> float:
+    """What a first correction has left. On a hinge walks tell it as well; on a human tissue rings there."""
+    some, best = data.thinned(DECISION_SAMPLES), decision.best
+    if others is None or hinge_residual(some, best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
+        return lowest_cost(some, best.knots_rad[0]).best_s
+    more = others.thinned(DECISION_SAMPLES)
+    knots = np.concatenate([best.knots_rad, heading_from_axes(more, best.axis_1, best.axis_2)], axis=1)
+    return lowest_cost(united([some, more]), knots[0]).best_s
 
 
 def _richest_stretches(data: Datasets) -> list[int]:

@@ -16,19 +16,46 @@ COARSE_S = 0.02
 MAX_LAG_S = 0.075  # nearer to the border of the search it is not a lag but not the same joint
 MIN_LAG_S = 0.001
 MIN_COST_RATIO = 1.15
+MAX_DISAGREEMENT_S = 0.005  # between the halves of a recording
+MIN_SIGMAS = 4.0  # tissue alone shows lags of up to three and a half
 
 
 @dataclass(frozen=True, slots=True)
 class Lag:
-    """`lag_s` is to be added to the distal sensor's stamps (0: none found); `is_at_border`: not the same joint."""
+    """`lag_s` is to be added to the distal sensor's stamps (0: none found); `is_at_border`: not the same joint.
+
+    `best_s` is where the cost is lowest, found or not.
+    """
 
     lag_s: float
+    best_s: float
     sd_s: float | None
     cost_ratio: float
     is_at_border: bool
 
 
 def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
+    """The lag that both halves of the data agree on.
+
+    A clock is late all the time; tissue and a motion that shows little look late in one half and not in the other.
+
+    Parameters
+    ----------
+    knots_rad : (k,)
+        Relative heading, decided before.
+    """
+    lag = lowest_cost(data, knots_rad)
+    if not lag.lag_s:
+        return lag
+    is_first = np.arange(len(data)) < len(data) // 2
+    halves = [lowest_cost(data.only(half), knots_rad) for half in (is_first, ~is_first)]
+    apart_s = max(abs(half.best_s - lag.best_s) for half in halves)
+    if apart_s > max(MAX_DISAGREEMENT_S, MIN_SIGMAS * (lag.sd_s or 0.0)):
+        return replace(lag, lag_s=0.0)
+    return lag
+
+
+def lowest_cost(data: Datasets, knots_rad: FloatArray) -> Lag:
     """Shift the distal sensor by up to 80 ms and see where the accelerations of the joint coincide best.
 
     Parameters
@@ -40,7 +67,7 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     reach = int(np.ceil(SEARCH_S / step_s))
     inner = _with_room(data, reach)
     if len(inner) < 50:
-        return Lag(0.0, None, 1.0, False)
+        return Lag(0.0, 0.0, None, 1.0, False)
     coarse = max(1, round(COARSE_S / step_s))
     costs: dict[int, float] = {}
 
@@ -54,7 +81,7 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     best = min(range(-(reach // coarse) * coarse, reach + 1, coarse), key=cost)
     best = min(range(max(-reach, best - coarse + 1), min(reach, best + coarse - 1) + 1), key=cost)
     if abs(best) >= reach:
-        return Lag(0.0, None, cost(0) / cost(best), cost(0) / cost(best) > MIN_COST_RATIO)
+        return Lag(0.0, 0.0, None, cost(0) / cost(best), cost(0) / cost(best) > MIN_COST_RATIO)
     before, here, after = cost(best - 1), cost(best), cost(best + 1)
     bend = before - 2 * here + after
     offset = 0.5 * (before - after) / bend if bend > 0 else 0.0
@@ -64,9 +91,10 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     independent = max(1.0, len(inner) * min(1.0, _spacing_s(inner) / 0.1))
     sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * independent))) if bend > 0 else None
     if abs(lag_s) > MAX_LAG_S:
-        return Lag(0.0, None, ratio, ratio > MIN_COST_RATIO)
-    is_found = ratio > MIN_COST_RATIO and abs(lag_s) > MIN_LAG_S
-    return Lag(lag_s if is_found else 0.0, sd_s, ratio, False)
+        return Lag(0.0, 0.0, None, ratio, ratio > MIN_COST_RATIO)
+    is_clear = sd_s is not None and abs(lag_s) > MIN_SIGMAS * sd_s
+    is_found = is_clear and ratio > MIN_COST_RATIO and abs(lag_s) > MIN_LAG_S
+    return Lag(lag_s if is_found else 0.0, lag_s, sd_s, ratio, False)
 
 
 def _spacing_s(data: Datasets) -> float:
