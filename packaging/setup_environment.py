@@ -103,7 +103,8 @@ def make_environment() -> None:
         )
     STAMP.write_text(UNFINISHED, encoding="utf-8")
     say("Installing the parts Gaitwright is made of. This happens once and takes a minute or two.")
-    pip = [str(python()), "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps"]
+    # nothing is compiled in advance: most of it is never imported
+    pip = [str(python()), "-m", "pip", "--disable-pip-version-check", "install", "--quiet", "--no-deps", "--no-compile"]
     advice = "The parts could not be installed. Check the connection to the internet, then start again."
     lock = str(ROOT / "packaging" / "requirements.lock")
     _run_quietly([*pip, "--only-binary", ":all:", "--require-hashes", "--requirement", lock], advice)
