@@ -148,7 +148,7 @@ def plan_walk(
         )
         for k, side in enumerate((first, other))
     }
-    return WalkPlan(gait, float(stopped + walk.standing_after_s + 0.2 * stride_s), hip_path, plans)
+    return WalkPlan(gait, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans)
 
 
 def _plan_foot(gait: Gait, is_prosthetic: bool, contact_s: FloatArray, ankle_m: FloatArray) -> StepPlan:
@@ -299,12 +299,12 @@ def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
 
 
 def _shock(steps: StepPlan, time_s: FloatArray) -> FloatArray:
-    """A decaying 25 Hz oscillation (n,) of about unit size after each initial contact, over before full contact."""
+    """A decaying 25 Hz oscillation (n,) of some 0.6 after each initial contact, over before full contact."""
     total = np.zeros_like(time_s)
     for on, full in zip(steps.contact_s[1:], steps.full_contact_s[1:], strict=True):
         t = np.maximum(time_s - on - 0.005, 0.0)  # swing is bridged to a contact without it
         fade = np.maximum(1.0 - t / (full - on), 0.0) ** 3
-        total += 5.0 * (1.0 - np.exp(-t / 0.012)) ** 2 * np.exp(-t / 0.02) * np.sin(2.0 * np.pi * 25.0 * t) * fade
+        total += 4.7 * (1.0 - np.exp(-t / 0.008)) ** 4 * np.exp(-t / 0.02) * np.sin(2.0 * np.pi * 25.0 * t) * fade
     return total
 
 
@@ -360,7 +360,7 @@ def _curve(rows_deg: tuple[tuple[float, float], ...], steps: StepPlan, time_s: F
                 (on + p * (off - on) if p <= 1.0 else off + (p - 1.0) * (following - off), deg) for p, deg in rows_deg
             ]
         else:
-            rows += [(on, rows_deg[0][1]), (on + 0.8, 0.0)]
+            rows += [(on, rows_deg[0][1]), (on + 0.4, 0.0)]
     return smooth(np.deg2rad(_knots(time_s, rows, 0.0)), step_s, 0.05)
 
 

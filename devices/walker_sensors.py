@@ -93,10 +93,9 @@ def _tissue_motion(
     drives.append(2.0 * ring)
     turn = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
     shift = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
-    wobble, wobble_shift = _wobble(t, rng), _wobble(t, rng)
     if tissue is Tissue.REAL:
         size = (REAL_WALK_WOBBLE if ring.any() else REAL_FREE_WOBBLE) * _is_moving(leg)[:, None]
-        turn, shift = turn + size * wobble, shift + size * wobble_shift
+        turn, shift = turn + size * _wobble(t, rng), shift + size * _wobble(t, rng)
     return share * TISSUE_RAD * turn, share * TISSUE_M * shift
 
 
@@ -107,7 +106,7 @@ def _direction(rng: np.random.Generator) -> FloatArray:
 
 def _wobble(t: FloatArray, rng: np.random.Generator) -> FloatArray:
     """Band noise (n, 3) of unit standard deviation: a few sines each between 1.5 and 6 Hz."""
-    count = 8
+    count = 5
     frequency, phase = rng.uniform(1.5, 6.0, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
     waves = [np.sin(2.0 * np.pi * np.outer(t, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
     return np.stack(waves, axis=-1) * np.sqrt(2.0 / count)

@@ -1,0 +1,292 @@
+"""Is the truth that the simulated session tells the truth of its samples?"""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.ndimage import correlate1d
+
+from core.body import Joint, Segment, Side, Site
+from core.samples import FloatArray, ImuBlock, RecordingKind
+from devices.walker import (
+    NO_ERRORS,
+    FreeMotion,
+    JointTruth,
+    Motion,
+    SimulatedSession,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+    truth_table,
+)
+
+CLEAN = WalkerSettings(seed=2, errors=NO_ERRORS)
+DENSE_HZ = 2000.0
+
+
+@pytest.fixture(scope="module")
+def dense() -> SimulatedSession:
+    """Short recordings on the fine clock, for tests that differentiate or integrate."""
+    return simulate(replace(CLEAN, rate_hz=DENSE_HZ, recordings=(FreeMotion(duration_s=4.0), Walk(strides=2))))
+
+
+def pair(simulated: SimulatedSession, name: str, joint: Joint) -> tuple[ImuBlock, ImuBlock, JointTruth]:
+    recording = next(r for r in simulated.session.recordings if r.name == name)
+    return recording.imu[joint.proximal], recording.imu[joint.distal], simulated.truth.recordings[name].joints[joint]
+
+
+def across(axis: FloatArray, v: FloatArray) -> FloatArray:
+    """Size of what of v (n, 3) is normal to a unit axis, (n,)."""
+    return np.asarray(np.linalg.norm(np.cross(v, axis), axis=1))
+
+
+def off_axis_rate(proximal: ImuBlock, distal: ImuBlock, truth: JointTruth) -> float:
+    """MAD per axis of the relative rate normal to the functional axis, while moving, rad/s."""
+
+    def in_plane(block: ImuBlock, axis: FloatArray) -> FloatArray:
+        x = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        x /= np.linalg.norm(x)
+        return np.asarray(block.gyr_rad_s @ (x + 1j * np.cross(axis, x)))
+
+    z1, z2 = in_plane(proximal, truth.functional_proximal), in_plane(distal, truth.functional_distal)
+    z2 = z2 * np.exp(1j * truth.angle_rad)
+    z2 = z2 * np.exp(1j * np.angle(np.sum(z1 * np.conj(z2))))  # the two frames' unknown constant angle
+    speed = np.hypot(np.linalg.norm(proximal.gyr_rad_s, axis=1), np.linalg.norm(distal.gyr_rad_s, axis=1))
+    moving = np.convolve(speed, np.ones(50) / 50, "same") > 0.3
+    difference = (z2 - z1)[moving]
+    return float(1.4826 * np.median(np.abs(np.concatenate([difference.real, difference.imag]))))
+
+
+def test_the_same_settings_give_the_same_samples() -> None:
+    settings = WalkerSettings(seed=7, tissue=Tissue.REAL, loss_fraction=0.05, stamp_jitter_s=0.001)
+    for a, b in zip(simulate(settings).session.recordings, simulate(settings).session.recordings, strict=True):
+        for site in Site:
+            np.testing.assert_array_equal(a.imu[site].time_s, b.imu[site].time_s)
+            np.testing.assert_array_equal(a.imu[site].gyr_rad_s, b.imu[site].gyr_rad_s)
+            np.testing.assert_array_equal(a.imu[site].acc_m_s2, b.imu[site].acc_m_s2)
+
+
+def test_another_seed_gives_another_patient() -> None:
+    axes = [simulate(replace(CLEAN, seed=s)).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE] for s in (1, 2)]
+    assert np.abs(axes[0].axis_proximal - axes[1].axis_proximal).max() > 0.05
+    assert axes[0].standing_rad != axes[1].standing_rad
+
+
+def test_faults_and_losses_leave_body_and_mounting_alone() -> None:
+    plain = simulate(CLEAN)
+    other = simulate(WalkerSettings(seed=2, loss_fraction=0.2, tissue=Tissue.SOFT, clock_late_s={Site.LEFT_FOOT: 0.02}))
+    for joint in Joint:
+        a, b = (s.truth.recordings["walk 1"].joints[joint] for s in (plain, other))
+        np.testing.assert_array_equal(a.axis_distal, b.axis_distal)
+        np.testing.assert_array_equal(a.centre_proximal_m, b.centre_proximal_m)
+
+
+@pytest.mark.parametrize("name", ["free motion", "walk 1"])
+@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_KNEE])
+def test_a_rigid_knee_turns_about_its_axis_only_and_by_the_true_angle(
+    dense: SimulatedSession, name: str, joint: Joint
+) -> None:
+    proximal, distal, truth = pair(dense, name, joint)
+    j1, j2 = truth.axis_proximal, truth.axis_distal
+    np.testing.assert_allclose(across(j1, proximal.gyr_rad_s), across(j2, distal.gyr_rad_s), atol=1e-6)
+    rate = distal.gyr_rad_s @ j2 - proximal.gyr_rad_s @ j1
+    turned = np.cumsum(0.5 * (rate[1:] + rate[:-1])) / DENSE_HZ
+    np.testing.assert_allclose(turned, truth.angle_rad[1:] - truth.angle_rad[0], atol=1e-4)
+    assert np.ptp(truth.angle_rad) > 0.8
+
+
+@pytest.mark.parametrize("name", ["free motion", "walk 1"])
+@pytest.mark.parametrize("joint", list(Joint))
+def test_both_sensors_see_the_same_joint_centre(dense: SimulatedSession, name: str, joint: Joint) -> None:
+    proximal, distal, truth = pair(dense, name, joint)
+
+    def at_joint(block: ImuBlock, centre_m: FloatArray) -> FloatArray:
+        """Size of the specific force where the joint is, at -o of the sensor."""
+        g = block.gyr_rad_s
+        turning = correlate1d(g, np.array([1.0, -8.0, 0.0, 8.0, -1.0]) * DENSE_HZ / 12.0, axis=0)
+        lever = np.broadcast_to(-centre_m, g.shape)
+        force = block.acc_m_s2 + np.cross(g, np.cross(g, lever)) + np.cross(turning, lever)
+        return np.asarray(np.linalg.norm(force, axis=1))[5:-5]
+
+    one, other = at_joint(proximal, truth.centre_proximal_m), at_joint(distal, truth.centre_distal_m)
+    assert np.sqrt(np.mean((one - other) ** 2)) < 0.005  # half a sensor's noise
+    wrong = at_joint(distal, truth.centre_distal_m + 0.02 * np.cross(truth.axis_distal, [0.6, 0.0, 0.8]))
+    assert np.sqrt(np.mean((one - wrong) ** 2)) > 0.05
+
+
+@pytest.mark.parametrize("side", list(Side))
+def test_the_clinical_sign_holds_on_both_legs(side: Side) -> None:
+    """The shank turns forward when the knee extends in late swing: independent of any angle curve."""
+    simulated = simulate(CLEAN)
+    knee, ankle = Joint(f"{side}_knee"), Joint(f"{side}_ankle")
+    _, distal, truth = pair(simulated, "walk 1", knee)
+    rate = np.sort(distal.gyr_rad_s @ truth.axis_distal)
+    assert -rate[5] > 1.2 * rate[-5]
+    of_ankle = simulated.truth.recordings["walk 1"].joints[ankle].axis_proximal
+    assert of_ankle @ truth.axis_distal < -0.9
+    assert np.rad2deg(truth.angle_rad).max() > 50.0
+
+
+def test_the_ankle_is_no_hinge_and_a_prosthetic_one_is() -> None:
+    simulated = simulate(replace(CLEAN, tissue=Tissue.SOFT, prosthetic_side=Side.LEFT))
+    for name in ("free motion", "walk 1"):
+        sound = off_axis_rate(*pair(simulated, name, Joint.RIGHT_ANKLE))
+        prosthetic = off_axis_rate(*pair(simulated, name, Joint.LEFT_ANKLE))
+        assert sound > 0.1
+        assert prosthetic < 1e-6
+    assert simulated.session.patient.prosthetic_side == "left"
+
+
+def test_a_socket_keeps_the_thigh_soft() -> None:
+    simulated = simulate(replace(CLEAN, tissue=Tissue.SOFT, prosthetic_side=Side.LEFT))
+    assert off_axis_rate(*pair(simulated, "walk 1", Joint.LEFT_KNEE)) > 0.05
+
+
+@pytest.mark.parametrize(("tissue", "low", "high"), [(Tissue.SOFT, 0.12, 0.42), (Tissue.REAL, 0.5, 1.1)])
+def test_soft_tissue_turns_sensors_off_the_axis_as_much_as_it_should(tissue: Tissue, low: float, high: float) -> None:
+    found = [
+        off_axis_rate(*pair(walk, "walk 1", joint))
+        for walk in (simulate(replace(CLEAN, seed=s, tissue=tissue, recordings=(Walk(strides=5),))) for s in range(4))
+        for joint in Joint
+    ]
+    assert low < np.quantile(found, 0.1)
+    assert np.quantile(found, 0.9) < high
+
+
+def test_the_functional_axis_leans_with_the_knees_own_rotation() -> None:
+    rigid = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
+    soft = simulate(replace(CLEAN, tissue=Tissue.SOFT)).truth.recordings["walk 1"].joints[Joint.LEFT_KNEE]
+    np.testing.assert_allclose(rigid.functional_distal, rigid.axis_distal, atol=1e-6)
+    for own, axis in ((soft.functional_proximal, soft.axis_proximal), (soft.functional_distal, soft.axis_distal)):
+        # 6 deg per 60 deg about the long axis: atan(0.1)
+        assert 4.0 < np.rad2deg(np.arccos(own @ axis)) < 7.0
+
+
+def test_lag_is_what_brings_the_distal_clock_to_the_proximal_one() -> None:
+    late = {Site.LEFT_SHANK: 0.03}
+    joints = simulate(replace(CLEAN, clock_late_s=late)).truth.recordings["walk 1"].joints
+    assert joints[Joint.LEFT_KNEE].lag_s == -0.03
+    assert joints[Joint.LEFT_ANKLE].lag_s == 0.03
+    assert joints[Joint.RIGHT_KNEE].lag_s == 0.0
+
+
+def test_angles_are_told_at_the_proximal_sensors_stamps() -> None:
+    plain = simulate(CLEAN).truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE]
+    late = simulate(replace(CLEAN, clock_late_s={Site.LEFT_SHANK: 0.03})).truth.recordings["walk 1"]
+    np.testing.assert_allclose(late.joints[Joint.LEFT_ANKLE].angle_rad[3:], plain.angle_rad[:-3], atol=1e-12)
+    lossy = simulate(replace(CLEAN, loss_fraction=0.2))
+    block, _, truth = pair(lossy, "walk 1", Joint.LEFT_ANKLE)
+    np.testing.assert_array_equal(truth.time_s, block.time_s)
+    np.testing.assert_allclose(truth.angle_rad, np.interp(truth.time_s, plain.time_s, plain.angle_rad), atol=1e-9)
+
+
+def test_standing_is_quiet_and_its_angle_is_told() -> None:
+    proximal, _, truth = pair(simulate(CLEAN), "standing", Joint.LEFT_KNEE)
+    assert abs(truth.angle_rad.mean() - truth.standing_rad) < 1e-3
+    assert np.deg2rad(0.3) < truth.standing_rad < np.deg2rad(10.0)
+    size = np.linalg.norm(proximal.gyr_rad_s, axis=1)
+    assert 1e-4 < size.max() < 0.05
+    walk_only = simulate(replace(CLEAN, recordings=(Walk(),))).truth.recordings["walk 1"]
+    assert np.isnan(walk_only.joints[Joint.LEFT_KNEE].standing_rad)
+
+
+def free(motion: Motion, seed: int = 2, **settings: object) -> SimulatedSession:
+    recordings = (FreeMotion("free", motion=motion),)
+    return simulate(replace(CLEAN, seed=seed, recordings=recordings, **settings))  # type: ignore[arg-type]
+
+
+def spread(block: ImuBlock) -> FloatArray:
+    """Root mean square rates along the principal directions (3,), ascending."""
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(block.gyr_rad_s.T @ block.gyr_rad_s / len(block)), 0.0)))
+
+
+def test_full_circling_turns_every_segment_about_several_axes() -> None:
+    for seed in range(4):
+        imu = free(Motion.FULL, seed).session.recordings[0].imu
+        for site in Site:
+            assert spread(imu[site])[1] > 0.3, site
+            assert 1.0 < np.linalg.norm(imu[site].gyr_rad_s, axis=1).max() < 8.0
+
+
+def test_weak_circling_is_slower() -> None:
+    full, weak = (free(m).session.recordings[0].imu for m in (Motion.FULL, Motion.WEAK))
+    for site in Site:
+        assert spread(weak[site])[-1] < 0.5 * spread(full[site])[-1]
+
+
+def test_sagittal_motion_turns_about_one_axis() -> None:
+    imu = free(Motion.SAGITTAL).session.recordings[0].imu
+    for site in Site:
+        assert spread(imu[site])[1] < 0.15 * spread(imu[site])[2]
+
+
+def test_knee_only_leaves_the_thigh_still() -> None:
+    simulated = free(Motion.KNEE_ONLY)
+    imu = simulated.session.recordings[0].imu
+    assert spread(imu[Site.LEFT_THIGH])[-1] < 0.1 < 1.0 < spread(imu[Site.LEFT_SHANK])[-1]
+    assert np.ptp(simulated.truth.recordings["free"].joints[Joint.LEFT_ANKLE].angle_rad) < 1e-9
+
+
+@pytest.mark.parametrize("joint", [Joint.LEFT_KNEE, Joint.RIGHT_KNEE])
+def test_lying_on_the_side_the_knee_axis_stands_ten_degrees_from_vertical(joint: Joint) -> None:
+    proximal, _, truth = pair(free(Motion.SIDE_LYING), "free", joint)
+    up = proximal.acc_m_s2 / np.linalg.norm(proximal.acc_m_s2, axis=1, keepdims=True)
+    from_vertical = np.rad2deg(np.arccos(np.abs(up @ truth.axis_proximal)))
+    assert abs(from_vertical[:5].mean() - 10.0) < 0.5
+    assert abs(np.median(from_vertical) - 10.0) < 4.0
+    assert np.ptp(truth.angle_rad) > 0.8
+
+
+def test_legs_in_turn_move_one_after_the_other() -> None:
+    settings = replace(CLEAN, recordings=(FreeMotion("free", duration_s=6.0, is_in_turn=True),))
+    imu = simulate(settings).session.recordings[0].imu
+    left, right = imu[Site.LEFT_SHANK], imu[Site.RIGHT_SHANK]
+    first = left.time_s < 6.0
+    assert np.abs(right.gyr_rad_s[first]).max() < 1e-6 < 1.0 < np.abs(right.gyr_rad_s[~first]).max()
+    assert np.abs(left.gyr_rad_s[~first]).max() < 0.01 < 1.0 < np.abs(left.gyr_rad_s[first]).max()
+
+
+def test_restrapping_mounts_every_sensor_anew_and_only_from_then_on() -> None:
+    again = Walk("walk 2", strides=3, is_restrapped_before=True)
+    recordings = (Standing(), Walk("walk 1", strides=3), again, Walk("walk 3", strides=3))
+    simulated = simulate(replace(CLEAN, recordings=recordings))
+    axes = {n: r.joints[Joint.LEFT_KNEE].axis_proximal for n, r in simulated.truth.recordings.items()}
+    np.testing.assert_array_equal(axes["standing"], axes["walk 1"])
+    np.testing.assert_array_equal(axes["walk 2"], axes["walk 3"])
+    assert np.abs(axes["walk 1"] - axes["walk 2"]).max() > 0.05
+    assert [r.is_restrapped_before for r in simulated.session.recordings] == [False, False, True, False]
+
+
+def test_a_session_says_that_it_is_simulated_and_holds_what_was_asked() -> None:
+    sites = (Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_FOOT)
+    simulated = simulate(replace(CLEAN, sites=sites))
+    session = simulated.session
+    assert session.is_simulated
+    assert session.patient.code == "DEMO-1"
+    assert [r.kind for r in session.recordings] == list(RecordingKind)
+    assert all(set(r.imu) == set(sites) for r in session.recordings)
+    assert set(simulated.truth.recordings["walk 1"].joints) == {Joint.LEFT_ANKLE}
+    assert {s.segment for s in session.sensors} == {Segment.SHANK, Segment.FOOT}
+
+
+def test_what_cannot_be_simulated_is_refused() -> None:
+    with pytest.raises(ValueError, match="names of their own"):
+        simulate(replace(CLEAN, recordings=(Walk(), Walk())))
+    with pytest.raises(ValueError, match="at most"):
+        simulate(replace(CLEAN, clock_late_s={Site.LEFT_FOOT: 1.0}))
+
+
+def test_the_truth_table_holds_every_angle_and_every_event() -> None:
+    simulated = simulate(replace(CLEAN, recordings=(Standing(), Walk(strides=3))))
+    header, rows = truth_table(simulated.truth)
+    assert header[:2] == ["recording", "time_s"]
+    assert {len(row) for row in rows} == {len(header)}
+    walk = simulated.truth.recordings["walk 1"]
+    events = [row for row in rows if row[-1]]
+    assert len(events) == 2 * 3 * 4
+    assert {row[0] for row in events} == {"walk 1"}
+    column = header.index("right_ankle_deg")
+    told = np.array([float(row[column]) for row in rows if row[0] == "walk 1" and row[column]])
+    np.testing.assert_allclose(told, np.rad2deg(walk.joints[Joint.RIGHT_ANKLE].angle_rad), atol=1e-5)
