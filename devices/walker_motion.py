@@ -9,7 +9,6 @@ from core.samples import FloatArray
 from devices.walker_body import FreeMotion, Leg, Motion
 
 X_AXIS, Y_AXIS, Z_AXIS = np.eye(3)
-KNEE_ROTATION_AXIS = Z_AXIS
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +64,7 @@ def knee_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
     flexion = rotation_about(leg.knee_axis, angles.knee)
     if leg.knee_rotation_per_flexion == 0.0:
         return flexion
-    return flexion @ rotation_about(KNEE_ROTATION_AXIS, leg.knee_rotation_per_flexion * angles.knee)
+    return flexion @ rotation_about(_normal_to(leg.knee_axis, Z_AXIS), leg.knee_rotation_per_flexion * angles.knee)
 
 
 def ankle_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
@@ -74,8 +73,16 @@ def ankle_rotation(leg: Leg, angles: JointAngles) -> FloatArray:
     if leg.is_prosthetic:
         return dorsiflexion
     # inversion lifts the inner edge: about -x on the left foot, +x on the right
-    beside = rotation_about(X_AXIS, -leg.outward * angles.inversion)
-    return dorsiflexion @ beside @ rotation_about(Z_AXIS, leg.outward * angles.rotation)
+    forward = _normal_to(leg.ankle_axis, X_AXIS)
+    upward = np.cross(leg.ankle_axis, forward)
+    beside = rotation_about(forward, -leg.outward * angles.inversion)
+    return dorsiflexion @ beside @ rotation_about(upward, leg.outward * angles.rotation)
+
+
+def _normal_to(axis: FloatArray, direction: FloatArray) -> FloatArray:
+    """The unit vector (3,) nearest to `direction` about which turning is no flexion at all."""
+    normal = direction - axis * (axis @ direction)
+    return np.asarray(normal / np.linalg.norm(normal))
 
 
 def hang_from_hip(leg: Leg, thigh: FloatArray, hip_m: FloatArray, angles: JointAngles) -> tuple[FloatArray, FloatArray]:
