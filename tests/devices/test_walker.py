@@ -194,7 +194,7 @@ def test_standing_is_quiet_and_its_angle_is_told() -> None:
 
 def free(motion: Motion, seed: int = 2, **settings: object) -> SimulatedSession:
     recordings = (FreeMotion("free", motion=motion),)
-    return simulate(replace(CLEAN, seed=seed, recordings=recordings, **settings))  # type: ignore[arg-type]
+    return simulate(replace(CLEAN, seed=seed, recordings=recordings, **settings))  # type: ignore[arg-type]  # fields of mixed types pass through by name
 
 
 def spread(block: ImuBlock) -> FloatArray:

@@ -16,7 +16,7 @@ SPEEDS = [0.3, 0.6, 1.19, 1.6, 2.0]
 
 def walked(speed_m_s: float = 1.19, seed: int = 0, strides: int = 6, **settings: object) -> SimulatedSession:
     walk = Walk(speed_m_s=speed_m_s, strides=strides)
-    return simulate(WalkerSettings(seed=seed, errors=NO_ERRORS, recordings=(walk,), **settings))  # type: ignore[arg-type]
+    return simulate(WalkerSettings(seed=seed, errors=NO_ERRORS, recordings=(walk,), **settings))  # type: ignore[arg-type]  # fields of mixed types pass through by name
 
 
 def mean_cycle(simulated: SimulatedSession, joint: Joint) -> FloatArray:
