@@ -53,6 +53,7 @@ if TYPE_CHECKING:  # their imports take a second; the window must not wait for t
 _log = logging.getLogger(__name__)
 
 FIRST_SIZE = (1280, 800)
+FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
 COMPACT_BELOW = (1180, 720)
 NARROW_BELOW = 800
@@ -68,14 +69,13 @@ class MainWindow(QWidget):
         super().__init__()
         self._look = look
         self._background = Background(self)
-        self._is_closing = False
         self._is_drop_welcome = False
         self._results: ResultPage | None = None
         self._dialog: QFileDialog | None = None
         self.setWindowTitle("Gaitwright")
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
-        self.resize(*FIRST_SIZE)
+        self.resize(QSize(*FIRST_SIZE).boundedTo(self.screen().availableSize() - QSize(*FRAME)))
         self.header = Header(look)
         self.banner = Banner(look)
         self.empty = EmptyPage(look)
@@ -113,13 +113,12 @@ class MainWindow(QWidget):
             self.banner.tell(*STOPPED)
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        if self._background.is_idle:
-            event.accept()
-            return
         self._background.stop()
-        self._is_closing = True
-        self.hide()  # gone at once for the user; the thread ends at its next report
-        event.ignore()
+        event.accept()
+
+    def finish(self) -> None:
+        """Wait for the thread of an analysis that was running when the window was closed."""
+        self._background.finish()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if event.mimeData().hasUrls():
@@ -172,7 +171,6 @@ class MainWindow(QWidget):
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
-        self._background.idle.connect(self._on_idle)
         self._look.changed.connect(self._on_look_changed)
         for keys, slot in (
             (QKeySequence.StandardKey.Open, self._on_open_folder),
@@ -262,10 +260,6 @@ class MainWindow(QWidget):
         else:
             _log.error("the analysis ended early", exc_info=error)
             self.banner.tell(*ENDED_EARLY)
-
-    def _on_idle(self) -> None:
-        if self._is_closing:
-            self.close()
 
     def _on_larger(self) -> None:
         self._look.grow(1)
@@ -365,4 +359,6 @@ def open_window(argv: list[str]) -> int:
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
         window.open_folder(Path(folders[0]))
-    return app.exec()
+    code = app.exec()
+    window.finish()
+    return code

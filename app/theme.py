@@ -253,7 +253,7 @@ def _style_sheet(theme: Theme) -> str:
     c, px = theme.colours, theme.px
     return f"""
     QTableView {{ background: transparent; border: none; color: {c.ink}; outline: none; }}
-    QTableView QTableCornerButton::section, QHeaderView {{ background: transparent; border: none; }}
+    QTableView QTableCornerButton::section, QTableView QHeaderView {{ background: transparent; border: none; }}
     QTableView::item:selected {{ background: {c.sunken}; color: {c.ink}; }}
     QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border: none; }}
     QComboBox QAbstractItemView {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control};

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
-from app.plots.thinning import thin
+from app.plots.thinning import envelope, thin
 from app.theme import Look
 from core.body import Side
 from core.samples import FloatArray
@@ -18,6 +18,8 @@ LEAST_SIZE = (320, 100)  # what can just be read; the page gives more where it h
 AXIS_WIDTH = 40  # fixed, so that charts above one another align
 AXIS_HEIGHT = 24
 CURVE_PX = 2.0
+HAIR_PX = 1.0
+DENSE_FROM = 3.0  # samples per column from which on wide, smooth lines take seconds and show no more than hairlines
 SECOND_PX = 1.0  # the thin curve of another method beside the result
 TICK_DEG = 20
 SHORTEST_VIEW_S = 0.2
@@ -198,6 +200,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self._second = QPainterPath()
         self._band = QPainterPath()
         self._bounds = QRectF()
+        self._is_dense = False
         # moving the cursor over it must not paint thousands of dashes again
         self.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)
 
@@ -205,15 +208,15 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self.prepareGeometryChange()
         self._line, self._second, self._band = QPainterPath(), QPainterPath(), QPainterPath()
         self.time_s, self.angle_deg = np.zeros(0), np.zeros(0)
+        self._is_dense = len(time_s) > DENSE_FROM * columns
         if curve is not None:
             self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], columns)
             self._line = _line_path(self.time_s, self.angle_deg)
             if curve.second_deg is not None:
                 self._second = _line_path(*thin(time_s, curve.second_deg[part], columns))
             if curve.sd_deg is not None:
-                low = thin(time_s, curve.angle_deg[part] - 2 * curve.sd_deg[part], columns)
-                high = thin(time_s, curve.angle_deg[part] + 2 * curve.sd_deg[part], columns)
-                self._band = _band_path(low, high)
+                angle_deg, reach_deg = curve.angle_deg[part], 2 * curve.sd_deg[part]
+                self._band = _band_path(*envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, columns))
         paths = (self._line, self._second, self._band)
         self._bounds = paths[0].boundingRect().united(paths[1].boundingRect()).united(paths[2].boundingRect())
         self.update()
@@ -229,10 +232,10 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
 
     def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, _widget: QWidget | None = None) -> None:
         theme = self._look.theme
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_dense)
         painter.fillPath(self._band, theme.band(self._side))
         painter.strokePath(self._second, theme.side_pen(self._side, SECOND_PX))
-        painter.strokePath(self._line, theme.side_pen(self._side, CURVE_PX))
+        painter.strokePath(self._line, theme.side_pen(self._side, CURVE_PX if not self._is_dense else HAIR_PX))
 
 
 def _runs(values: FloatArray) -> list[slice]:
@@ -253,12 +256,10 @@ def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
     return path
 
 
-def _band_path(low: tuple[FloatArray, FloatArray], high: tuple[FloatArray, FloatArray]) -> QPainterPath:
-    """Give the area between two curves that have the same gaps."""
+def _band_path(time_s: FloatArray, low: FloatArray, high: FloatArray) -> QPainterPath:
     path = QPainterPath()
-    for below, above in zip(_runs(low[1]), _runs(high[1]), strict=False):
-        x = np.concatenate([low[0][below], high[0][above][::-1]])
-        y = np.concatenate([low[1][below], high[1][above][::-1]])
-        path.addPolygon(_polygon(x, y))
+    for run in _runs(low):
+        x = np.concatenate([time_s[run], time_s[run][::-1]])
+        path.addPolygon(_polygon(x, np.concatenate([low[run], high[run][::-1]])))
         path.closeSubpath()
     return path

@@ -65,6 +65,13 @@ class Background(QObject):
             self._current.requestInterruption()
             self._current = None
 
+    def finish(self) -> None:
+        """Stop, and wait until no thread is left: for the end of the program, when there is no screen to hold up."""
+        self.stop()
+        for thread in self._threads:
+            thread.wait()
+        self._threads.clear()
+
     def _on_progressed(self, thread: "_WorkThread", share: float, what: str) -> None:
         if thread is self._current:
             self.progressed.emit(share, what)

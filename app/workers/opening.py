@@ -30,9 +30,9 @@ def opening_folder(folder: Path) -> Work:
     """Give the work that reads and analyses a session folder. It raises `FileRefusedError` as the reader does."""
 
     def work(report: Report) -> Opened:
+        report(0.0, f"reading {folder.name}")
         from devices.files.session_folder import read_session
 
-        report(0.0, f"reading {folder.name}")
         return _analysed(read_session(folder), report)
 
     return work
@@ -42,9 +42,9 @@ def opening_demonstration() -> Work:
     """Give the work that lets the simulated patient walk and analyses it."""
 
     def work(report: Report) -> Opened:
+        report(0.0, "simulating a patient")
         from devices.walker import WalkerSettings, simulate
 
-        report(0.0, "simulating a patient")
         return _analysed(simulate(WalkerSettings(seed=DEMONSTRATION_SEED)).session, report)
 
     return work

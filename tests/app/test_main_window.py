@@ -115,6 +115,7 @@ def window(qtbot: QtBot, look: Look) -> MainWindow:
         qtbot.waitUntil(lambda: window._background.is_idle)
 
     window = MainWindow(look)
+    window.resize(1280, 800)
     qtbot.addWidget(window, before_close_func=end_work)
     with qtbot.waitActive(window):  # only then a widget can have the focus
         window.show()
@@ -218,8 +219,9 @@ def test_closing_during_an_analysis_ends_it(qtbot: QtBot, window: MainWindow, op
     qtbot.waitUntil(lambda: window.working.progress[0] > 0)
     window.close()
     assert not window.isVisible()
-    qtbot.waitUntil(lambda: window._background.is_idle)
+    window.finish()
     assert ended.is_set()
+    assert window._background.is_idle
 
 
 def test_a_folder_that_is_no_session_is_refused_in_the_page(qtbot: QtBot, window: MainWindow, tmp_path: Path) -> None:
@@ -290,6 +292,17 @@ def test_the_method_changes_what_is_drawn(results: ResultPage) -> None:
     np.testing.assert_allclose(curve.angle_deg, np.rad2deg(knee.angle_rad))
     assert curve.second_deg is not None
     np.testing.assert_allclose(curve.second_deg, np.rad2deg(knee.published_rad))
+
+
+def test_enter_presses_the_button_in_focus(window: MainWindow) -> None:
+    pressed: list[None] = []
+    window.empty.open_demonstration.clicked.disconnect()
+    window.empty.open_demonstration.clicked.connect(lambda: pressed.append(None))
+    QTest.keyClick(window.empty.open_folder, Qt.Key.Key_Tab)
+    focused = QApplication.focusWidget()
+    assert focused is window.empty.open_demonstration
+    QTest.keyClick(focused, Qt.Key.Key_Return)
+    assert pressed == [None]
 
 
 def test_arrows_change_the_method(qtbot: QtBot, results: ResultPage) -> None:

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.plots.thinning import thin
+from app.plots.thinning import envelope, thin
 from core.samples import FloatArray
 
 
@@ -44,3 +44,15 @@ def test_single_missing_samples_do_not_widen_into_gaps() -> None:
     time_s, values = ramp(20_000)
     values[::50] = np.nan
     assert np.isfinite(thin(time_s, values, columns=200)[1]).all()
+
+
+def test_a_band_keeps_its_reach_and_its_gap() -> None:
+    time_s, values = ramp(20_000)
+    values[8_000:12_000] = np.nan
+    values[3_000] = 90.0
+    kept_s, low, high = envelope(time_s, values - 1, values + 2, columns=200)
+    assert len(kept_s) == len(low) == len(high) == 200
+    assert np.nanmax(high) == 92.0
+    assert np.nanmin(low) == np.nanmin(values) - 1
+    np.testing.assert_array_equal(np.isnan(low), (kept_s > 80) & (kept_s < 120))
+    np.testing.assert_array_equal(np.isnan(low), np.isnan(high))
