@@ -64,6 +64,17 @@ SENTENCES = {
         "the clock is {offset_s:.1f} s away from the others', more than can be mended. Use one receiver for all "
         "sensors, then record again."
     ),
+    "impossible_values": (
+        "{count} samples are larger than any sensor measures and count as missing. Check the sensor and its file."
+    ),
+    "stuck": (
+        "the sensor repeated the same values for {percent:.1f} % of the time; they count as missing. Restart it before "
+        "the next recording."
+    ),
+    "stuck_throughout": "the sensor repeated the same values all the time. Restart it; its joints are left out.",
+    "low_rate": (
+        "only {rate_hz:.0f} samples per second. Angles are uncertain by several degrees; 60 or more are wanted."
+    ),
     "clipped": (
         "{percent:.1f} % of the samples are at the end of the sensor's range. Peaks are cut off; choose a wider range."
     ),
@@ -72,7 +83,7 @@ SENTENCES = {
         "the sensors were never still, so their rates at rest are unknown. Angles may drift; let the patient "
         "stand for three seconds before the next walk."
     ),
-    "moved_while_standing": "the patient moved while standing. The zero is less certain; repeat standing still.",
+    "moved_while_standing": "the patient moved while standing, so this gives no zero. Repeat standing still.",
     "rate_kind_found": (
         "the file does not say what an angular rate stands for; the data fit {kind} rates best. Note it as "
         "rate_kind in session.toml."
@@ -109,6 +120,15 @@ SENTENCES = {
     "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
     "axis_from_walking": (
         "the joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
+    ),
+    "zero_unknown": (
+        "has no zero, since no standing was recorded for it. Its range and shape hold, absolute angles do not."
+    ),
+    "goniometer_without_standing": (
+        "the goniometer value was not used, since no standing was recorded. Let the patient stand for three seconds."
+    ),
+    "joint_left_out": (
+        "was left out, because a sensor gave nothing usable. What is wrong with it is said beside its name."
     ),
     "no_standing": "no standing recording, so there is no zero. Range and shape hold, absolute angles do not.",
     "zero_from_goniometer": (

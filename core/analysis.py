@@ -11,7 +11,7 @@ from core.body import Joint, Segment, Site, knee_of
 from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.hinge import robust_sd
-from core.calibration.zero import standing_twist, wrapped_to_zero
+from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.identified import Identified, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
@@ -19,6 +19,7 @@ from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at
 from core.rate_kind import find_rate_kind
 from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
+from core.rotations import wrap
 from core.samples import FloatArray, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.validity import Basis, basis_of, spans_of_validity
@@ -73,13 +74,15 @@ def analyse(
         measured = _measure(tracks, bases, identified, steps)
         calibrated = _calibrate(tracks, bases, identified, measured, method)
         for basis, calibration in calibrated.items():
-            findings += about_joint(calibration, identified[basis], session.turned_sign.get(basis.joint))
+            joint = basis.joint
+            turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
+            findings += about_joint(calibration, identified[basis], turned, is_zero_typed)
         calibrations += _by_walk(span, bases, calibrated)
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured)
             recordings.append(found)
             findings += about_angles(found)
-    findings += about_missing_joints(session, recordings)
+    findings += about_missing_joints(session, quality.unusable, recordings)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
     return Analysis(method, session.is_simulated, tuple(calibrations), tuple(recordings), tuple(unique.values()))
 
@@ -106,7 +109,7 @@ def _moving(span: tuple[Recording, ...]) -> list[Recording]:
 
 def _bases(tracks: SensorTracks) -> Bases:
     return {
-        (recording.name, joint): basis_of(tracks.span, recording, joint)
+        (recording.name, joint): basis_of(tracks.span, recording, joint, tracks.is_usable)
         for recording in _moving(tracks.span)
         for joint in Joint
         if tracks.is_usable(recording, joint.proximal, joint.distal)
@@ -191,9 +194,9 @@ def _calibration(
     session, basis = tracks.session, found.basis
     joint = basis.joint
     standing = _standing_twist(tracks, found)
-    moving = np.concatenate([t.moving_twist for t in twists]) if twists else np.empty(0)
+    moving = within_half_a_turn(np.concatenate([t.moving_twist for t in twists])) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
-    sign = _clinical_sign(found, twists, is_walking, standing, knee)
+    sign = _clinical_sign(found, twists, is_walking, wrap(moving - zero_rad), standing is not None, knee)
     turn = session.turned_sign.get(joint, 1)
     zero = (
         ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
@@ -246,15 +249,18 @@ def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
 
 
 def _clinical_sign(
-    found: Identified, twists: list[Twist], is_walking: bool, standing: float | None, knee: JointCalibration | None
+    found: Identified,
+    twists: list[Twist],
+    is_walking: bool,
+    bend_rad: FloatArray,
+    has_standing: bool,
+    knee: JointCalibration | None,
 ) -> ClinicalSign:
-    if not twists:
+    if not bend_rad.size:
         return ClinicalSign(1, 0.0, False)
     if found.basis.joint.is_knee:
-        zero_rad = float(np.median(np.concatenate([t.moving_twist for t in twists]))) if standing is None else standing
-        bend = np.concatenate([wrapped_to_zero(t.moving_twist - zero_rad) for t in twists])
         shank_rate = -np.concatenate([t.moving_rate_2 for t in twists])
-        return knee_sign(bend, shank_rate, is_walking, standing is not None)
+        return knee_sign(bend_rad, shank_rate, is_walking, has_standing)
     shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
     if knee is None:
         return ankle_sign(None, 0.0, shank_rate, is_walking)
@@ -306,4 +312,5 @@ def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:
         calibration.is_hinge,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
-    return JointAngle(angle, np.where(np.isfinite(angle), sd, np.nan), published, orientation)
+    sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.broken_sd_rad), np.nan)
+    return JointAngle(angle, sd_rad, published, orientation)

@@ -85,7 +85,7 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
         lambda lag_s: _pairs(tracks, joint, tuple(walk for walk in basis.walks if walk not in names), lag_s),
         is_knee=joint.is_knee,
         is_from_walking=basis.free_motion is None,
-        down_1=_down(tracks, basis),
+        downs=_downs(tracks, basis),
     )
     if found is None:
         return None
@@ -117,10 +117,11 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     )
 
 
-def _down(tracks: SensorTracks, basis: Basis) -> FloatArray | None:
+def _downs(tracks: SensorTracks, basis: Basis) -> tuple[FloatArray, FloatArray] | None:
     for recording in _by_name(tracks, (basis.standing,) if basis.standing else ()):
-        rest = tracks.rest(recording, basis.joint.proximal)
-        return rest.acc_m_s2 if rest else None
+        rests = [tracks.rest(recording, site) for site in (basis.joint.proximal, basis.joint.distal)]
+        if rests[0] is not None and rests[1] is not None:
+            return rests[0].acc_m_s2, rests[1].acc_m_s2
     return None
 
 

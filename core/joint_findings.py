@@ -4,8 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.body import Joint
-from core.calibration.identify import MAX_ELEVATION_RAD
+from core.body import Joint, Site
 from core.findings import Finding, Severity
 from core.identified import Identified
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
@@ -18,6 +17,9 @@ class Say(Protocol):
 
 
 MIN_SIGN_MARGIN = 1.3  # of the best hypothesis against its best rival; below, the data hardly tell them apart
+# Two sensors with no joint between them leave 0.6 and more of their accelerations unexplained, and hypotheses that
+# hardly differ; neighbours under loose tissue leave up to 0.6, but their hypotheses differ.
+MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.55, 3.0
 MAX_AXIS_SD_RAD = np.deg2rad(10.0)
 MAX_DIFFERENCE_RAD = np.deg2rad(5.0)  # between the result and the published angle, about their means
 
@@ -39,7 +41,9 @@ def about_session(session: Session) -> list[Finding]:
     return findings
 
 
-def about_joint(calibration: JointCalibration, found: Identified, turned: int | None) -> list[Finding]:
+def about_joint(
+    calibration: JointCalibration, found: Identified, turned: int | None, is_zero_typed: bool
+) -> list[Finding]:
     """What one joint's identification says of itself."""
     where, findings = str(calibration.joint), []
 
@@ -57,6 +61,10 @@ def about_joint(calibration: JointCalibration, found: Identified, turned: int | 
         say("gyro_bias_unknown", Severity.WARNING)
     if calibration.zero is ZeroKind.GONIOMETER:
         say("zero_from_goniometer", Severity.INFO, value_deg=round(float(np.rad2deg(calibration.offset_rad)), 1))
+    if calibration.zero is ZeroKind.NONE:
+        say("zero_unknown", Severity.WARNING)
+        if is_zero_typed:
+            say("goniometer_without_standing", Severity.WARNING)
     if found.basis.is_from_after:
         say("calibration_after_walk", Severity.INFO)
     if found.robust is not None:
@@ -69,12 +77,13 @@ def _about_robust(calibration: JointCalibration, found: Identified, say: Say) ->
     assert robust is not None
     residual = round(calibration.hinge_residual_rad_s or 0.0, 3)
     say("is_a_hinge" if found.is_hinge else "not_a_hinge", Severity.INFO, hinge_residual_rad_s=residual)
-    if robust.lag.is_at_border:
-        say("not_the_same_joint", Severity.WARNING, margin=round(robust.lag.cost_ratio, 2))
+    is_apart = robust.disagreement > MAX_DISAGREEMENT and robust.sign_margin < STRANGERS_MARGIN
+    if robust.lag.is_at_border or is_apart:
+        say("not_the_same_joint", Severity.WARNING, margin=round(robust.sign_margin, 2))
     elif calibration.lag_s:
         say("lag_corrected", Severity.INFO, lag_ms=round(1000 * calibration.lag_s, 1))
-    if robust.elevation_rad is not None and robust.elevation_rad > MAX_ELEVATION_RAD and not found.is_hinge:
-        elevation = round(float(np.rad2deg(robust.elevation_rad)))
+    if not robust.did_flexion_dominate:
+        elevation = round(float(np.rad2deg(robust.elevation_rad or 0.0)))
         say("flexion_did_not_dominate", Severity.WARNING, elevation_deg=elevation)
     if calibration.axis_sd_rad is not None and calibration.axis_sd_rad > MAX_AXIS_SD_RAD:
         say("axis_uncertain", Severity.WARNING, axis_sd_deg=round(float(np.rad2deg(calibration.axis_sd_rad)), 1))
@@ -97,14 +106,18 @@ def about_angles(recording: RecordingAnalysis) -> list[Finding]:
     return findings
 
 
-def about_missing_joints(session: Session, recordings: list[RecordingAnalysis]) -> list[Finding]:
+def about_missing_joints(
+    session: Session, unusable: frozenset[tuple[str, Site]], recordings: list[RecordingAnalysis]
+) -> list[Finding]:
     """Joints whose two sensors were worn but that have no angle, and sessions without any joint."""
     findings = []
     kept = [r for r in session.recordings if r.is_kept and r.kind is not RecordingKind.STANDING]
     for joint in Joint:
         worn = [r.name for r in kept if r.holds(joint.proximal, joint.distal)]
         if worn and not any(joint in found.joints for found in recordings):
-            findings.append(Finding("too_little_motion", Severity.GRAVE, str(joint)))
+            spoilt = all(unusable & {(name, joint.proximal), (name, joint.distal)} for name in worn)
+            key = "joint_left_out" if spoilt else "too_little_motion"
+            findings.append(Finding(key, Severity.GRAVE, str(joint)))
     if not any(found.joints for found in recordings):
         findings.append(Finding("no_joint", Severity.GRAVE, "session"))
     return findings

@@ -12,6 +12,7 @@ from core.angles.hinge_angle import hinge_angle
 from core.angles.twist import off_axis_rate, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
+from core.calibration.zero import within_half_a_turn
 from core.orientation import oriented_to_north
 from core.pair import OrientedTrack, Pair, pair_up
 from core.published.angles import angle_from_orientations, published_angle
@@ -19,6 +20,9 @@ from core.samples import FloatArray, Recording
 from core.sensors import SensorTracks
 from core.tracks import Block, at_positions
 
+MIN_KNOWN_S = 0.5
+BROKEN_SD_RAD = np.deg2rad(3.0)  # measured on simulated walks with lost samples, in stretches of up to
+SETTLED_S = 3.0
 WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 
 
@@ -43,13 +47,15 @@ class Geometry:
 class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
-    `moving_twist` (m,), `moving_off_axis` (m, 2) rad/s and `moving_rate_1`, `moving_rate_2` (m,) rad/s (each sensor's
-    own rate about its own axis) are thinned samples while the joint's segments move.
+    `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
+    find the vertical first. `moving_twist` (m,), `moving_off_axis` (m, 2) rad/s and `moving_rate_1`, `moving_rate_2`
+    (m,) rad/s (each sensor's own rate about its own axis) are thinned samples while the joint's segments move.
     """
 
     twist_rad: FloatArray
     published_rad: FloatArray
     orientation_rad: FloatArray | None
+    broken_sd_rad: FloatArray
     moving_twist: FloatArray
     moving_off_axis: FloatArray
     moving_rate_1: FloatArray
@@ -83,15 +89,19 @@ def measure(
     clock_offset_s
         What brings the proximal sensor's clock to the clock of `time_s`.
     """
-    angles = {name: np.full(len(time_s), np.nan) for name in ("twist", "published", "orientation")}
+    angles = {name: np.full(len(time_s), np.nan) for name in ("twist", "published", "orientation", "broken_sd")}
     witnesses: list[tuple[FloatArray, ...]] = []
     j1, j2 = geometry.axis_1, geometry.axis_2
     for block in tracks.blocks(recording):
-        for pair in pairs_of(tracks, recording, joint, block, geometry.lag_s):
+        pairs = [p for p in pairs_of(tracks, recording, joint, block, geometry.lag_s) if _is_anchored(p)]
+        for pair in pairs:
             heading = heading_over(pair, j1, j2, geometry.unknowns)
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
             angle = hinge_angle(pair, j1, j2, geometry.unknowns) if geometry.is_hinge else twist(pair, j1, j2, heading)
             found = {"twist": angle, "published": -fused}
+            if len(pairs) > 1:
+                share = min(1.0, (SETTLED_S / pair.duration_s) ** 2)
+                found["broken_sd"] = np.full(len(pair), share * BROKEN_SD_RAD)
             for name, values in found.items():
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
@@ -101,17 +111,23 @@ def measure(
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
             _place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
     joined = [np.concatenate(parts) for parts in zip(*witnesses, strict=True)] if witnesses else []
-    for values in angles.values():
-        unwrap_over_gaps(values)
+    for name in ("twist", "published", "orientation"):
+        unwrap_over_gaps(angles[name])
     return Twist(
         twist_rad=angles["twist"],
         published_rad=angles["published"],
         orientation_rad=angles["orientation"] if np.isfinite(angles["orientation"]).any() else None,
-        moving_twist=joined[0] if joined else np.empty(0),
+        broken_sd_rad=np.nan_to_num(angles["broken_sd"]),
+        moving_twist=within_half_a_turn(joined[0]) if joined else np.empty(0),
         moving_off_axis=joined[1] if joined else np.empty((0, 2)),
         moving_rate_1=joined[2] if joined else np.empty(0),
         moving_rate_2=joined[3] if joined else np.empty(0),
     )
+
+
+def _is_anchored(pair: Pair) -> bool:
+    """Whether enough of a stretch is known to say where its angle stands."""
+    return int(np.count_nonzero(pair.is_known)) * pair.step_s >= MIN_KNOWN_S
 
 
 def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:

@@ -7,14 +7,26 @@ import numpy as np
 from core.body import Joint, Site
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
-from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
-from core.tracks import MAX_REPORTED_GAP_S, MIN_STRETCH_S, MIN_STRETCH_SAMPLES, nominal_step_s
+from core.samples import BoolArray, FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.tracks import (
+    MAX_FORCE_M_S2,
+    MAX_RATE_RAD_S,
+    MAX_REPORTED_GAP_S,
+    MIN_STRETCH_S,
+    MIN_STRETCH_SAMPLES,
+    is_heard,
+    is_stuck,
+    nominal_step_s,
+)
 
 MIN_LOSS_PERCENT = 0.5  # told from here on
 GRAVE_LOSS_PERCENT = 20.0
 GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
 PLAUSIBLE_M_S2 = (5.0, 20.0)
-MAX_RATE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
+PLAUSIBLE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
+LARGE = 1e6
+MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
+COMPARED_ROWS = 2000
 CLIPPED_RUN = 3  # equal extreme values in a row
 MIN_CLIPPED_PERCENT = 0.05
 CLOCK_OFFSET_S = 5.0
@@ -62,13 +74,41 @@ About = tuple[str, Severity, dict[str, float | int | str]]
 
 def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
     is_there = np.isfinite(block.gyr_rad_s).all(axis=1) & np.isfinite(block.acc_m_s2).all(axis=1)
-    heard = int(np.count_nonzero(is_there))
-    time_s = block.time_s[is_there]
-    if heard < MIN_STRETCH_SAMPLES or time_s[-1] - time_s[0] < MIN_STRETCH_S:
-        return [("too_few_samples", Severity.GRAVE, {"samples": heard})]
-    about: list[About] = list(_about_gaps(block, time_s))
-    force = np.linalg.norm(block.acc_m_s2[is_there], axis=1)
-    rate = np.linalg.norm(block.gyr_rad_s[is_there], axis=1)
+    there = int(np.count_nonzero(is_there))
+    if there < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[is_there]) < MIN_STRETCH_S:
+        return [("too_few_samples", Severity.GRAVE, {"samples": there})]
+    wrong = _about_units(block, np.asarray(is_there), kind)
+    if wrong:
+        return wrong
+    heard = is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)
+    about: list[About] = []
+    impossible = np.abs(block.gyr_rad_s[is_there]).max(axis=1) > MAX_RATE_RAD_S
+    impossible |= np.abs(block.acc_m_s2[is_there]).max(axis=1) > MAX_FORCE_M_S2
+    if impossible.any():
+        about.append(("impossible_values", Severity.WARNING, {"count": int(np.count_nonzero(impossible))}))
+    stuck = 100 * float(np.mean(is_stuck(block.time_s, block.gyr_rad_s, block.acc_m_s2)))
+    if np.count_nonzero(heard) < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[heard]) < MIN_STRETCH_S:
+        return [*about, ("stuck_throughout", Severity.GRAVE, {})]
+    if stuck > 0.0:
+        about.append(("stuck", Severity.WARNING, {"percent": round(stuck, 1)}))
+    about += _about_gaps(block, block.time_s[heard])
+    rate_hz = 1 / nominal_step_s(block.time_s[heard])
+    if rate_hz < MIN_RATE_HZ:
+        about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
+    clipped = max(_clipped_percent(block.acc_m_s2[heard]), _clipped_percent(block.gyr_rad_s[heard]))
+    if clipped > MIN_CLIPPED_PERCENT:
+        about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
+    if kind is RecordingKind.STANDING and rest_of(block) is None:
+        about.append(("moved_while_standing", Severity.WARNING, {}))
+    return about
+
+
+def _about_units(block: ImuBlock, is_there: BoolArray, kind: RecordingKind) -> list[About]:
+    """What makes a sensor unusable as a whole: no signal, or units that its magnitudes betray."""
+    about: list[About] = []
+    # no figure that a sensor could mean is cut off here, and none is so large that its square overflows
+    force = np.linalg.norm(np.clip(block.acc_m_s2[is_there], -LARGE, LARGE), axis=1)
+    rate = np.linalg.norm(np.clip(block.gyr_rad_s[is_there], -LARGE, LARGE), axis=1)
     median_force, high_rate = float(np.median(force)), float(np.quantile(rate, 0.99))
     if not np.any(force) or (not np.any(rate) and kind is not RecordingKind.STANDING):
         about.append(("all_zero", Severity.GRAVE, {}))
@@ -76,13 +116,8 @@ def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
         about.append(("acc_in_g", Severity.GRAVE, {"median_m_s2": round(median_force, 2)}))
     elif not PLAUSIBLE_M_S2[0] < median_force < PLAUSIBLE_M_S2[1]:
         about.append(("acc_implausible", Severity.GRAVE, {"median_m_s2": round(median_force, 2)}))
-    if high_rate > MAX_RATE_RAD_S:
+    if high_rate > PLAUSIBLE_RAD_S:
         about.append(("rate_in_deg_s", Severity.GRAVE, {"p99_rad_s": round(high_rate, 1)}))
-    clipped = max(_clipped_percent(block.acc_m_s2[is_there]), _clipped_percent(block.gyr_rad_s[is_there]))
-    if clipped > MIN_CLIPPED_PERCENT:
-        about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
-    if kind is RecordingKind.STANDING and rest_of(block) is None:
-        about.append(("moved_while_standing", Severity.WARNING, {}))
     return about
 
 
@@ -122,18 +157,18 @@ def _clipped_percent(values: FloatArray) -> float:
 
 
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
+    """Two sensors never agree to the last digit, row for row, unless one is a copy of the other."""
     found: list[tuple[tuple[Site, ...], Finding]] = []
-    prints: dict[bytes, Site] = {}
+    rows: dict[Site, set[bytes]] = {}
     for site, block in recording.imu.items():
-        if len(block) < MIN_STRETCH_SAMPLES or not np.any(np.nan_to_num(block.gyr_rad_s)):
-            continue
-        head = slice(0, 2000)  # two sensors never agree to the last digit for so long
-        key = block.gyr_rad_s[head].tobytes() + block.acc_m_s2[head].tobytes()
-        if key in prints:
-            pair = (prints[key], site)
-            where = f"{recording.name}, {pair[0]}, {pair[1]}"
-            found.append((pair, Finding("same_data", Severity.GRAVE, where)))
-        prints.setdefault(key, site)
+        first = slice(0, COMPARED_ROWS)
+        signals = np.concatenate([block.gyr_rad_s[first], block.acc_m_s2[first]], axis=1).astype(np.float64)
+        mine = {row.tobytes() for row in signals[np.isfinite(signals).all(axis=1) & np.any(signals, axis=1)]}
+        for other, theirs in rows.items():
+            if len(mine & theirs) > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
+                where = f"{recording.name}, {other}, {site}"
+                found.append(((other, site), Finding("same_data", Severity.GRAVE, where)))
+        rows[site] = mine
     return found
 
 
@@ -161,6 +196,6 @@ def _missing_sites(session: Session) -> list[Finding]:
     findings = []
     for joint in Joint:
         missing = {joint.proximal, joint.distal} - worn
-        if len(missing) == 1 and {joint.proximal.segment, joint.distal.segment} - {s.segment for s in missing}:
+        if len(missing) == 1:
             findings.append(Finding("missing_site", Severity.INFO, str(missing.pop()), {"joint": str(joint)}))
     return findings

@@ -155,3 +155,8 @@ class Session:
     is_simulated: bool = False
     findings: tuple[Finding, ...] = ()
     unknown: Mapping[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        names = [recording.name for recording in self.recordings]
+        if len(set(names)) < len(names):
+            raise ValueError(f"recordings need names of their own, got {names}")

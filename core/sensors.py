@@ -47,7 +47,7 @@ class SensorTracks:
 
     def gyro_bias(self, recording: Recording, site: Site) -> GyroBias:
         """From standing, else from still moments of the recording itself, else of any other."""
-        standing = in_force(self.span, recording, RecordingKind.STANDING, [site])
+        standing = in_force(self.span, recording, RecordingKind.STANDING, (site,), self.is_usable)
         others = [r for r in self.span if r is not recording and r is not standing]
         for source in [standing, recording, *others]:
             if source is not None and source.holds(site):

@@ -9,7 +9,12 @@ import numpy as np
 from core.samples import BoolArray, FloatArray, ImuBlock
 
 MAX_REPORTED_GAP_S = 0.05  # longer gaps stay empty in every output (FORMATS, section 3)
-MAX_BRIDGED_GAP_S = 0.25  # orientation survives this long on interpolated rates; after longer gaps it starts anew
+MAX_BRIDGED_GAP_S = 0.12  # a swinging leg's rates can be interpolated this long; after more, orientation starts anew
+MAX_STILL_GAP_S = 0.25  # and this long where the sensor hardly turns
+STILL_RAD_S = 0.5
+MAX_RATE_RAD_S, MAX_FORCE_M_S2 = 100.0, 1000.0  # no sensor worn by a patient measures more
+MAX_HELD_S = 0.25  # a sensor that repeats itself for longer is stuck
+QUATERNION_TOLERANCE = 0.1  # of its length
 MIN_STRETCH_SAMPLES = 10
 MIN_STRETCH_S = 1.0  # below, an orientation filter has not found the vertical
 EVEN_CLOCK_TOLERANCE = 0.02  # of a step: closer to an even grid than this, samples are used as they are
@@ -21,7 +26,7 @@ OVERLAP_S = 30.0  # which overlap so far that the filters at a seam have settled
 class Track:
     """A stretch of one sensor's samples on an even clock.
 
-    `gyr_rad_s` and `acc_m_s2` (n, 3) hold interpolated values in gaps of up to MAX_BRIDGED_GAP_S; `is_measured` (n,)
+    `gyr_rad_s` and `acc_m_s2` (n, 3) hold interpolated values in gaps that are bridged; `is_measured` (n,)
     is False inside those longer than MAX_REPORTED_GAP_S. `mag` (n, 3) and `q_device` (n, 4), the device's own
     orientation, where it sends them.
     """
@@ -47,11 +52,11 @@ class Track:
 
 
 def nominal_step_s(time_s: FloatArray) -> float:
-    """The sensor's sampling interval: the median step, refined over the stretches without gaps."""
+    """The sensor's sampling interval, from the steps without gaps."""
     steps = np.diff(time_s)
-    median = float(np.median(steps))
-    regular = steps[np.abs(steps - median) < 0.5 * median]
-    return float(np.mean(regular)) if len(regular) else median
+    usual = float(np.quantile(steps, 0.25))  # not the median, which half of the rows missing would double
+    regular = steps[np.abs(steps - usual) < 0.5 * usual]
+    return float(np.mean(regular)) if len(regular) else usual
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,22 +83,55 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
     """Cut a sensor's samples between two instants into stretches without long gaps, each on an even clock."""
     first, last = np.searchsorted(block.time_s, [from_s, to_s])
     part = slice(int(first), int(last))
-    is_there = np.isfinite(block.gyr_rad_s[part]).all(axis=1) & np.isfinite(block.acc_m_s2[part]).all(axis=1)
+    gyr, acc = block.gyr_rad_s[part], block.acc_m_s2[part]
+    is_there = is_heard(block.time_s[part], gyr, acc)
     time_s = block.time_s[part][is_there]
     if len(time_s) < 2:
         return []
-    signals = {"gyr_rad_s": block.gyr_rad_s[part][is_there], "acc_m_s2": block.acc_m_s2[part][is_there]}
-    if block.mag is not None:
-        signals["mag"] = _without_gaps(block.mag[part][is_there])
+    gyr = gyr[is_there].astype(np.float64)  # the filter takes no other precision
+    signals = {"gyr_rad_s": gyr, "acc_m_s2": acc[is_there].astype(np.float64)}
+    if block.mag is not None and np.any(np.nan_to_num(block.mag[part])):
+        signals["mag"] = _without_gaps(block.mag[part][is_there].astype(np.float64))
     if block.q_earth_from_sensor is not None:
-        signals["q_device"] = continuous(_without_gaps(block.q_earth_from_sensor[part][is_there]))
+        signals["q_device"] = continuous(_without_gaps(_unit(block.q_earth_from_sensor[part][is_there])))
     step_s = nominal_step_s(time_s)
-    cuts = np.flatnonzero(np.diff(time_s) > max(MAX_BRIDGED_GAP_S, 1.5 * step_s)) + 1
+    gap_s = np.diff(time_s)
+    speed = np.linalg.norm(gyr, axis=1)
+    is_still = np.maximum(speed[:-1], speed[1:]) < STILL_RAD_S
+    allowed_s = np.maximum(np.where(is_still, MAX_STILL_GAP_S, MAX_BRIDGED_GAP_S), 1.5 * step_s)
+    cuts = np.flatnonzero(gap_s > allowed_s) + 1
     tracks = []
     for a, b in pairwise([0, *cuts.tolist(), len(time_s)]):
         if b - a >= MIN_STRETCH_SAMPLES and time_s[b - 1] - time_s[a] >= MIN_STRETCH_S:
             tracks.append(_even(time_s[a:b], {name: values[a:b] for name, values in signals.items()}, step_s))
     return tracks
+
+
+def is_heard(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
+    """Which samples (n,) are measurements: finite, possible, later than the one before, and not of a stuck sensor."""
+    limits = ((gyr, MAX_RATE_RAD_S), (acc, MAX_FORCE_M_S2))
+    with np.errstate(invalid="ignore"):
+        is_there = np.logical_and.reduce([(np.abs(values) <= limit).all(axis=1) for values, limit in limits])
+    is_there[1:] &= np.diff(time_s) > 0
+    return is_there & ~is_stuck(time_s, gyr, acc)
+
+
+def is_stuck(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
+    """Samples (n,) of a run of equal rows that lasts longer than a sensor holds a value."""
+    stuck = np.zeros(len(time_s), dtype=bool)
+    is_same = np.concatenate([[False], (gyr[1:] == gyr[:-1]).all(axis=1) & (acc[1:] == acc[:-1]).all(axis=1)])
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], is_same.astype(np.int8), [0]])))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        if time_s[last - 1] - time_s[first - 1] > MAX_HELD_S:
+            stuck[first:last] = True
+    return stuck
+
+
+def _unit(q: FloatArray) -> FloatArray:
+    """Quaternions (n, 4) of unit length; NaN where a row is none."""
+    with np.errstate(invalid="ignore"):
+        length = np.linalg.norm(np.where(np.abs(q) < 2.0, q, np.nan), axis=1)
+        return np.where((np.abs(length - 1.0) < QUATERNION_TOLERANCE)[:, None], q / length[:, None], np.nan)
 
 
 def continuous(q: FloatArray) -> FloatArray:
@@ -117,6 +155,9 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
     intervals = max(1.0, float(np.round((time_s[-1] - time_s[0]) / step_s)))
     step_s = float((time_s[-1] - time_s[0]) / intervals)
     ticks = (time_s - time_s[0]) / step_s
+    if np.max(np.abs(ticks - np.round(ticks))) >= EVEN_CLOCK_TOLERANCE:
+        time_s, step_s = _without_stamp_noise(time_s, step_s, signals["gyr_rad_s"])
+        ticks = (time_s - time_s[0]) / step_s
     whole = np.round(ticks).astype(int)
     n = int(whole[-1]) + 1
     is_on_grid = bool(np.max(np.abs(ticks - whole)) < EVEN_CLOCK_TOLERANCE) and bool(np.all(np.diff(whole) > 0))
@@ -143,6 +184,35 @@ def _even(time_s: FloatArray, signals: dict[str, FloatArray], step_s: float) -> 
         q_device=even.get("q_device"),
         is_measured=is_measured,
     )
+
+
+def _without_stamp_noise(time_s: FloatArray, step_s: float, gyr: FloatArray) -> tuple[FloatArray, float]:
+    """Stamps (n,) on the even clock that made them, and its step, where the noise is the stamps' own.
+
+    Sensors sample evenly; their stamps often say when a sample arrived. Where each sample follows better from its
+    neighbours by number than by stamp, the numbers are believed.
+    """
+    number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(time_s) / step_s), 1.0))])
+    slope, start = np.polyfit(number, time_s, 1)
+    even_s = start + slope * number
+    if len(time_s) < 2 * MIN_STRETCH_SAMPLES or np.max(np.abs(even_s - time_s)) > step_s:
+        return time_s, step_s
+    if _misfit(number, gyr) < _misfit(time_s, gyr):
+        return even_s, float(slope)
+    return time_s, step_s
+
+
+def _misfit(at: FloatArray, values: FloatArray) -> float:
+    """How far samples (n, k) lie from the cubic through their four neighbours, placed at `at` (n,): a median."""
+    centre = at[2:-2]
+    nodes = np.stack([at[:-4], at[1:-3], at[3:-1], at[4:]])
+    neighbours = np.stack([values[:-4], values[1:-3], values[3:-1], values[4:]])
+    weight = np.ones_like(nodes)
+    for j in range(4):
+        for m in range(4):
+            if m != j:
+                weight[j] *= (centre - nodes[m]) / (nodes[j] - nodes[m])
+    return float(np.median(np.linalg.norm(values[2:-2] - np.sum(weight[..., None] * neighbours, axis=0), axis=1)))
 
 
 def at_positions(values: FloatArray, position: FloatArray) -> FloatArray:

@@ -4,7 +4,7 @@ A joint takes the latest kept standing and the latest kept free motion before th
 the first after. Re-strapping ends validity: a calibration never reaches across it. (FORMATS, section 1.)
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable
 from dataclasses import dataclass
 
 from core.body import Joint, Site
@@ -33,25 +33,28 @@ def spans_of_validity(session: Session) -> list[tuple[Recording, ...]]:
     return [tuple(span) for span in spans if span]
 
 
+Holds = Callable[..., bool]
+"""Whether a recording holds usable samples of all the sites that follow it: `Recording.holds`, or stricter."""
+
+
 def in_force(
-    span: tuple[Recording, ...], recording: Recording, kind: RecordingKind, sites: Iterable[Site]
+    span: tuple[Recording, ...], recording: Recording, kind: RecordingKind, sites: tuple[Site, ...], holds: Holds
 ) -> Recording | None:
     """The latest recording of a kind up to and including `recording` that holds all sites, else the first after."""
     position = span.index(recording)
-    wanted = tuple(sites)
-    fitting = [k for k, other in enumerate(span) if other.kind is kind and other.holds(*wanted)]
+    fitting = [k for k, other in enumerate(span) if other.kind is kind and holds(other, *sites)]
     before = [k for k in fitting if k <= position]
     if before:
         return span[before[-1]]
     return span[fitting[0]] if fitting else None
 
 
-def basis_of(span: tuple[Recording, ...], recording: Recording, joint: Joint) -> Basis:
+def basis_of(span: tuple[Recording, ...], recording: Recording, joint: Joint, holds: Holds = Recording.holds) -> Basis:
     """What calibrates `joint` in `recording`."""
     sites = (joint.proximal, joint.distal)
-    standing = in_force(span, recording, RecordingKind.STANDING, sites)
-    free = in_force(span, recording, RecordingKind.FREE_MOTION, sites)
-    walks = tuple(r.name for r in span if r.kind is RecordingKind.WALKING and r.holds(*sites))
+    standing = in_force(span, recording, RecordingKind.STANDING, sites, holds)
+    free = in_force(span, recording, RecordingKind.FREE_MOTION, sites, holds)
+    walks = tuple(r.name for r in span if r.kind is RecordingKind.WALKING and holds(r, *sites))
     position = span.index(recording)
     later = [r for r in (standing, free) if r is not None and span.index(r) > position]
     return Basis(

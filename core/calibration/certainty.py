@@ -8,7 +8,7 @@ from core.samples import FloatArray, IntArray
 BLOCK_S = 1.0  # residuals nearer in time than this are not independent
 # What no recording shows of itself: scale and misalignment of the sensors on a hinge; functional against anatomical
 # axis on a human; and walking, whose segments all turn about parallel axes.
-AXIS_FLOOR_HINGE_RAD = np.deg2rad(0.15)
+AXIS_FLOOR_HINGE_RAD = np.deg2rad(0.3)
 AXIS_FLOOR_HUMAN_RAD = np.deg2rad(4.0)
 AXIS_FLOOR_WALKING_RAD = np.deg2rad(6.0)
 

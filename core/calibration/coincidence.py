@@ -16,6 +16,7 @@ CENTRE_PRIOR_M = 0.3  # a sensor sits within a segment's length of the joint
 BIAS_PRIOR_M_S2 = 0.05
 SCALE_M_S2 = 0.5
 STEPS = 3
+GRAVITY_M_S2 = 9.81
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +53,27 @@ def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float =
     design[..., 9:12] = -rotation_12
     target = data.a1 - np.einsum("cnij,nj->cni", rotation_12, data.a2)
     return solve_robustly(design, target, scale_m_s2)
+
+
+def disagreement(data: Datasets, rotation_12: FloatArray, unknowns: FloatArray) -> float:
+    """What the best coincidence leaves, against all that both sensors feel beside gravity: 0 one joint, 1 none.
+
+    Parameters
+    ----------
+    rotation_12 : (n, 3, 3)
+    unknowns : (12,)
+    """
+    one = data.a1 - unknowns[6:9] - lever_matrix(data.g1, data.dg1) @ unknowns[0:3]
+    two = data.a2 - unknowns[9:12] - lever_matrix(data.g2, data.dg2) @ unknowns[3:6]
+    left = _loss(one - np.einsum("nij,nj->ni", rotation_12, two))
+    felt = 0.0
+    for earth_from, force in ((data.earth_from_1, data.a1), (data.earth_from_2, data.a2)):
+        felt += _loss(np.einsum("nij,nj->ni", earth_from, force) - [0.0, 0.0, GRAVITY_M_S2])
+    return left / max(felt, 1e-12)
+
+
+def _loss(error: FloatArray) -> float:
+    return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=1) / SCALE_M_S2**2) - 1))
 
 
 def solve_robustly(design: FloatArray, target: FloatArray, scale_m_s2: float) -> Coincidence:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibration import certainty
-from core.calibration.coincidence import fit_coincidence, relative_rotation
+from core.calibration.coincidence import disagreement, fit_coincidence, relative_rotation
 from core.calibration.datasets import Datasets, gather, moving_indices, united
 from core.calibration.heading import residual_scales
 from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_residual
@@ -23,7 +23,7 @@ from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre
 from core.calibration.lag import Lag, find_lag, lowest_cost
 from core.calibration.refinement import refine_on_hinge
 from core.pair import FAST_RAD_S, Pair
-from core.rotations import angle_between, wrap
+from core.rotations import wrap
 from core.samples import FloatArray
 
 CANDIDATE_SAMPLES = 200
@@ -54,8 +54,11 @@ class Identification:
     hinge_residual_rad_s: float
     is_hinge: bool
     elevation_rad: float | None
+    did_flexion_dominate: bool
+    disagreement: float
 
 
+Downs = tuple[FloatArray, FloatArray]
 PairsAtLag = Callable[[float], tuple[Pair, ...]]
 """The pairs that identify the joint, with a lag applied to the distal sensor."""
 
@@ -73,7 +76,7 @@ def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
 
 
 def identify_joint(
-    pairs_at: PairsAtLag, others_at: PairsAtLag, is_knee: bool, is_from_walking: bool, down_1: FloatArray | None
+    pairs_at: PairsAtLag, others_at: PairsAtLag, is_knee: bool, is_from_walking: bool, downs: Downs | None
 ) -> Identification | None:
     """Identify one joint; None where the recordings hold too little movement.
 
@@ -81,23 +84,23 @@ def identify_joint(
     ----------
     others_at
         Pairs that do not identify the axis but must agree when it is called a hinge.
-    down_1 : (3,) or None
-        Specific force of the proximal sensor in standing.
+    downs
+        Specific forces (3,) of both sensors in standing.
     """
     data = moving_data(pairs_at(0.0))
     if data is None:
         return None
-    decision = decide(data)
+    decision = decide(data, downs)
     lag = find_lag(data.thinned(DECISION_SAMPLES), decision.best.knots_rad[0])
     others = moving_data(others_at(lag.lag_s))
     if lag.lag_s:
         data = moving_data(pairs_at(lag.lag_s)) or data
-        decision = decide(data)
+        decision = decide(data, downs)
         rest_s = _rest_of_lag(data, others, decision)
         if abs(rest_s) < MAX_REST_S:
             lag = replace(lag, lag_s=lag.lag_s + rest_s)
             data, others = moving_data(pairs_at(lag.lag_s)) or data, moving_data(others_at(lag.lag_s))
-    return _refined(data, others, decision, lag, is_knee, is_from_walking, down_1)
+    return _refined(data, others, decision, lag, is_knee, is_from_walking, downs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,10 +110,14 @@ class Decision:
     best: Candidates
     log_cost: float
     margin: float
+    did_flexion_dominate: bool = True
 
 
-def decide(data: Datasets) -> Decision:
+def decide(data: Datasets, downs: Downs | None = None) -> Decision:
     """The best hypothesis about axes and heading, and how much better it is than its best rival.
+
+    Where the axis stands steep in standing, something else than flexion dominated; of the hypotheses with the same
+    heading the one that lies flatter is then taken, which is a better guess and is told.
 
     Rates propose, accelerations decide: in straight walking a heading half a turn away is almost as good by rates
     alone.
@@ -124,7 +131,20 @@ def decide(data: Datasets) -> Decision:
     best = int(np.argmin(cost))
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
     margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
+    if downs is not None:
+        elevation = _elevations(found.axis_1, found.axis_2, downs)
+        if elevation[best].max() > MAX_ELEVATION_RAD:
+            prior = np.sum(elevation**2, axis=1) / (2 * ELEVATION_SD_RAD**2)
+            alike = [k for k in range(len(found)) if not _is_rival(found, best, k)]
+            level = min(alike, key=lambda k: np.log(found.cost[k]) + prior[k])
+            return Decision(found.pick(level), float(cost[level]), margin, did_flexion_dominate=False)
     return Decision(found.pick(best), float(cost[best]), margin)
+
+
+def _elevations(axis_1: FloatArray, axis_2: FloatArray, downs: Downs) -> FloatArray:
+    """How far the axes (c, 3) of both sensors stand from horizontal in standing, (c, 2) radians."""
+    along = [axis @ (down / np.linalg.norm(down)) for axis, down in zip((axis_1, axis_2), downs, strict=True)]
+    return np.arcsin(np.clip(np.abs(np.stack(along, axis=1)), 0.0, 1.0))
 
 
 def _rest_of_lag(data: Datasets, others: Datasets | None, decision: Decision) -> float:
@@ -158,10 +178,12 @@ def _refined(
     lag: Lag,
     is_knee: bool,
     is_from_walking: bool,
-    down_1: FloatArray | None,
+    downs: Downs | None,
 ) -> Identification:
     many, start = data.thinned(POLISH_SAMPLES), decision.best
-    fit = polish(many, start, POLISH_STEPS, *residual_scales(many, start))
+    scales = residual_scales(many, start)
+    # what dominates the motion would pull a flatter axis back
+    fit = polish(many, start, POLISH_STEPS if decision.did_flexion_dominate else 0, *scales)
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
     seen = [many] if others is None else [many, others.thinned(POLISH_SAMPLES)]
     residual = max(hinge_residual(one, j1, j2) for one in seen)
@@ -189,9 +211,6 @@ def _refined(
             residual = max(hinge_residual(one, j1, j2) for one in seen)
     else:
         centre = centre_by_lengths(many, centre.unknowns)
-    elevation = None
-    if down_1 is not None:
-        elevation = abs(np.pi / 2 - angle_between(j1, down_1))
     return Identification(
         axis_1=j1,
         axis_2=j2,
@@ -202,8 +221,17 @@ def _refined(
         lag=lag,
         hinge_residual_rad_s=residual,
         is_hinge=is_hinge,
-        elevation_rad=elevation,
+        elevation_rad=float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None,
+        did_flexion_dominate=decision.did_flexion_dominate or is_hinge,
+        disagreement=max(_disagreement(one, j1, j2) for one in seen),
     )
+
+
+def _disagreement(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    some = data.thinned(DECISION_SAMPLES)
+    knots = heading_from_axes(some, axis_1[None], axis_2[None])
+    rotation = relative_rotation(some, some.heading(knots))
+    return disagreement(some, rotation[0], fit_coincidence(some, rotation).unknowns[0])
 
 
 def _axis_covariance(data: Datasets, fit: Candidates) -> FloatArray:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.rotations import joint_frame
+from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
 
 
@@ -16,6 +16,13 @@ def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, a
         for down, (x, y) in zip((down_1, down_2), map(joint_frame, (axis_1, axis_2)), strict=True)
     )
     return float(np.angle(z1 * np.conj(z2)))
+
+
+def within_half_a_turn(samples_rad: FloatArray, of_rad: float | None = None) -> FloatArray:
+    """Scattered samples (n,) of an angle brought within half a turn of `of_rad`, or of their mean direction."""
+    if of_rad is None:
+        of_rad = float(np.angle(np.mean(np.exp(1j * samples_rad)))) if samples_rad.size else 0.0
+    return of_rad + wrap(samples_rad - of_rad)
 
 
 def wrapped_to_zero(angle_rad: FloatArray) -> FloatArray:

@@ -103,7 +103,7 @@ def test_a_gap_of_up_to_50_ms_is_filled(rate_hz: float) -> None:
 
 @pytest.mark.parametrize("rate_hz", RATES_HZ)
 def test_a_gap_over_50_ms_is_bridged_but_not_called_measured(rate_hz: float) -> None:
-    t = with_hole(stamps(rate_hz), 5.0, 0.15)
+    t = with_hole(stamps(rate_hz), 5.0, 0.09)
     (track,) = even_tracks(block_at(t))
     (here,) = np.flatnonzero(np.diff(t) > MAX_REPORTED_GAP_S)
     inside = (track.time_s > t[here] + 1e-6) & (track.time_s < t[here + 1] - 1e-6)

@@ -139,7 +139,7 @@ def test_a_free_motion_calibrates_itself() -> None:
     assert basis(visit, "f1").free_motion == "f1"
     assert basis(visit, "f2").free_motion == "f2"
     (span,) = spans_of_validity(visit)
-    assert in_force(span, span[0], S, KNEE) is None
+    assert in_force(span, span[0], S, KNEE, Recording.holds) is None
 
 
 def visit_of(person: "Person", *plan: tuple[str, RecordingKind, bool, bool], sites: tuple[Site, ...] = KNEE) -> Session:
