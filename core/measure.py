@@ -22,7 +22,7 @@ from core.tracks import Block, at_positions
 
 MIN_KNOWN_S = 0.5
 BROKEN_SD_RAD = np.deg2rad(3.0)  # measured on simulated walks with lost samples, in stretches of up to
-SETTLED_S = 3.0
+SETTLED_S = 5.0
 WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 
 

@@ -17,6 +17,7 @@ from core.rotations import wrap
 from core.samples import FloatArray, IntArray
 
 DRIFT_WALK_RAD = np.deg2rad(0.3)  # per square root of a second
+GAP_RAD = np.deg2rad(5.0)  # how far interpolated rates may be off after a gap
 CORRELATION_S = 0.1  # accelerations nearer in time tell the same
 SAMPLES_PER_S = 20.0
 MIN_SCALE_M_S2 = 0.02
@@ -47,21 +48,26 @@ def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
 
 def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArray, start: float) -> FloatArray:
     intervals, position = knot_positions(pair)
-    left = np.minimum(position[chosen].astype(int), intervals - 1)
-    share = position[chosen] - left
-    weights_of_knots = np.zeros((len(chosen), intervals + 1))
-    row = np.arange(len(chosen))
-    weights_of_knots[row, left], weights_of_knots[row, left + 1] = 1 - share, share
-    walk = np.diff(np.eye(intervals + 1), axis=0)
-    spacing_s = pair.duration_s / intervals
-    prior = walk.T @ walk / (DRIFT_WALK_RAD**2 * spacing_s)
+    over = np.flatnonzero(pair.is_measured[1:] & ~pair.is_measured[:-1])  # what a gap hid turns all that follows
+    terms = intervals + 1 + len(over)
+    shape = np.zeros((len(pair), terms))
+    left = np.minimum(position.astype(int), intervals - 1)
+    row = np.arange(len(pair))
+    shape[row, left], shape[row, left + 1] = 1 - (position - left), position - left
+    for k, index in enumerate(over):
+        shape[index + 1 :, intervals + 1 + k] = 1.0
+    walk = np.diff(np.eye(terms)[: intervals + 1], axis=0)
+    prior = walk.T @ walk / (DRIFT_WALK_RAD**2 * pair.duration_s / intervals)
+    prior[range(intervals + 1, terms), range(intervals + 1, terms)] = GAP_RAD**-2
+    at = shape[chosen]
     information = min(1.0, pair.step_s * float(np.median(np.diff(chosen))) / CORRELATION_S)
-    knots = np.full(intervals + 1, start)
+    knots = np.zeros(terms)
+    knots[: intervals + 1] = start
     for _ in range(STEPS):
-        error = length * wrap(angle - weights_of_knots @ knots)
+        error = length * wrap(angle - at @ knots)
         scale = max(robust_sd(error), MIN_SCALE_M_S2)
         weight = information * length**2 / (scale**2 * np.sqrt(1 + (error / scale) ** 2))
-        matrix = weights_of_knots.T @ (weights_of_knots * weight[:, None]) + prior
-        step = weights_of_knots.T @ (weight * error / np.maximum(length, 1e-9)) - prior @ knots
+        matrix = at.T @ (at * weight[:, None]) + prior
+        step = at.T @ (weight * error / np.maximum(length, 1e-9)) - prior @ knots
         knots = knots + np.linalg.solve(matrix + 1e-9 * np.eye(len(matrix)), step)
-    return np.interp(position, np.arange(intervals + 1), knots)
+    return shape @ knots

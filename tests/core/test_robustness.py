@@ -1,0 +1,254 @@
+"""Samples that no sensor should send, and gaps: what was once believed in silence is now left out, or told."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from core.analysis import analyse
+from core.body import Joint, Site
+from core.findings import Severity
+from core.results import Analysis, Method, ZeroKind
+from core.rotations import angle_between
+from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+
+if TYPE_CHECKING:
+    from tests.core.conftest import Person
+
+S, F, W = RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING
+THIGH, SHANK, FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
+KNEE = Joint.LEFT_KNEE
+Change = Callable[[ImuBlock], ImuBlock]
+methods = pytest.mark.parametrize("method", list(Method))
+
+
+def changed(session: Session, change: Change, sites: tuple[Site, ...] = tuple(Site), *names: str) -> Session:
+    recordings = []
+    for r in session.recordings:
+        imu = {s: change(b) if s in sites and (not names or r.name in names) else b for s, b in r.imu.items()}
+        recordings.append(replace(r, imu=imu))
+    return replace(session, recordings=tuple(recordings))
+
+
+def with_value(value: float, signal: str = "gyr_rad_s", at: int = 150) -> Change:
+    def spoil(b: ImuBlock) -> ImuBlock:
+        values = getattr(b, signal).copy()
+        values[at] = value
+        return replace(b, **{signal: values})
+
+    return spoil
+
+
+def worst_deg(person: "Person", found: Analysis, joint: Joint = KNEE) -> float:
+    """Worst RMSE after removing the mean over the recordings that have this joint; 0 where none has."""
+    worst = 0.0
+    for r in found.recordings:
+        if joint in r.joints and np.isfinite(r.joints[joint].angle_rad).any():
+            error = r.joints[joint].angle_rad - person.truth(r.kind, joint, r.time_s - r.time_s[0])
+            worst = max(worst, float(np.rad2deg(np.nanstd(error))))
+    return worst
+
+
+def is_warned(found: Analysis) -> bool:
+    return any(f.severity is not Severity.INFO for f in found.findings)
+
+
+def assert_right_or_said(person: "Person", found: Analysis, joint: Joint = KNEE) -> None:
+    worst = worst_deg(person, found, joint)
+    assert worst < 3.0 or is_warned(found), f"{worst:.0f} deg wrong, told only {[f.key for f in found.findings]}"
+
+
+@methods
+@pytest.mark.parametrize(("signal", "value"), [("acc_m_s2", 1e300), ("gyr_rad_s", 1e200)])
+def test_a_huge_value_does_not_overflow(knee_visit: Session, signal: str, value: float, method: Method) -> None:
+    """RuntimeWarning in quality._about_block (np.linalg.norm). Mend: beyond any sensor's range counts as missing."""
+    analyse(changed(knee_visit, with_value(value, signal)), method)
+
+
+@methods
+def test_one_impossible_sample_counts_as_missing(person: "Person", knee_visit: Session, method: Method) -> None:
+    """One gyr sample of 1e6 rad/s. Same mend: > 100 rad/s or > 1000 m/s2 is a missing sample, with a finding."""
+    assert_right_or_said(person, analyse(changed(knee_visit, with_value(1e6)), method))
+
+
+@methods
+def test_a_sensor_that_repeats_one_sample_for_seconds_is_told(
+    person: "Person", knee_visit: Session, method: Method
+) -> None:
+    """From mid-walk on the shank repeats its last sample. Mend: runs of equal rows over 0.25 s are missing, told."""
+
+    def stuck(b: ImuBlock) -> ImuBlock:
+        index = np.minimum(np.arange(len(b)), len(b) // 2)
+        return replace(b, gyr_rad_s=b.gyr_rad_s[index], acc_m_s2=b.acc_m_s2[index])
+
+    assert_right_or_said(person, analyse(changed(knee_visit, stuck, (SHANK,), "walk"), method))
+
+
+@methods
+def test_a_sensor_that_is_constant_throughout_is_left_out(knee_visit: Session, method: Method) -> None:
+    """The same for a whole recording: wants a grave finding of its own and no angle."""
+
+    def constant(b: ImuBlock) -> ImuBlock:
+        rate, force = np.tile([0.1, 0.2, -0.1], (len(b), 1)), np.tile([0.0, 0.0, 9.81], (len(b), 1))
+        return replace(b, gyr_rad_s=rate, acc_m_s2=force)
+
+    found = analyse(changed(knee_visit, constant, (SHANK,)), method)
+    assert any(f.severity is Severity.GRAVE for f in found.findings)
+
+
+@methods
+def test_the_same_data_in_two_sensors_is_seen_though_one_lost_its_last_samples(
+    person: "Person", knee_visit: Session, method: Method
+) -> None:
+    """quality._same_data compares whole heads of 2000. Mend: compare the rows of common stamps."""
+
+    def shorter(b: ImuBlock) -> ImuBlock:
+        return replace(b, sensor="two", time_s=b.time_s[:-5], gyr_rad_s=b.gyr_rad_s[:-5], acc_m_s2=b.acc_m_s2[:-5])
+
+    twice = [replace(r, imu={THIGH: r.imu[THIGH], SHANK: shorter(r.imu[THIGH])}) for r in knee_visit.recordings]
+    found = analyse(replace(knee_visit, recordings=tuple(twice)), method)
+    assert "same_data" in {f.key for f in found.findings}
+
+
+@methods
+def test_a_joint_without_zero_says_so_though_another_leg_stood(person: "Person", method: Method) -> None:
+    """`no_standing` looks at the session only. Mend: one finding per joint whose zero is NONE."""
+    stood = person.recording("standing", S, 3.0, (Site.RIGHT_THIGH, Site.RIGHT_SHANK))
+    found = analyse(Session((stood, *person.visit(kinds=(F, W)).recordings)), method)
+    assert found.calibrations[0].joints[KNEE].zero is ZeroKind.NONE
+    assert any("zero" in f.key or "standing" in f.key for f in found.findings)
+
+
+@methods
+def test_a_typed_goniometer_value_that_cannot_be_used_is_told(person: "Person", method: Method) -> None:
+    """Without standing the value cannot be used; `no_standing` does not tell that it was not."""
+    found = analyse(replace(person.visit(kinds=(F, W)), zero_rad={KNEE: 0.2}), method)
+    assert any("goniometer" in f.key for f in found.findings)
+
+
+@methods
+def test_a_broken_free_motion_leaves_the_walk_s_angles(person: "Person", knee_visit: Session, method: Method) -> None:
+    """basis_of asks holds(), not is_usable(): a free motion of five samples is in force. Mend: pass what is usable."""
+
+    def first(b: ImuBlock) -> ImuBlock:
+        return replace(b, time_s=b.time_s[:5], gyr_rad_s=b.gyr_rad_s[:5], acc_m_s2=b.acc_m_s2[:5])
+
+    found = analyse(changed(knee_visit, first, tuple(Site), "free motion"), method)
+    assert any(KNEE in r.joints for r in found.recordings if r.name == "walk")
+
+
+@methods
+@pytest.mark.parametrize("value", [0.0, 1e300])
+def test_a_quaternion_that_is_none_counts_as_missing(knee_visit: Session, value: float, method: Method) -> None:
+    """One row of zeros: SciPy raises. One of 1e300: overflow in `continuous`. Mend: |q| far from 1 is missing."""
+
+    def with_q(b: ImuBlock) -> ImuBlock:
+        q = np.tile([1.0, 0.0, 0.0, 0.0], (len(b), 1))
+        q[100:102] = [value, 0.0, 0.0, 0.0]
+        return replace(b, q_earth_from_sensor=q)
+
+    analyse(changed(knee_visit, with_q), method)
+
+
+def test_a_magnetometer_of_zeros_gives_no_angle(knee_visit: Session) -> None:
+    """Eq 10 from a field of zero length is a number from nothing. Mend: no field, no orientation to north."""
+    found = analyse(changed(knee_visit, lambda b: replace(b, mag=np.zeros((len(b), 3)))))
+    assert all(r.joints[KNEE].orientation_rad is None for r in found.recordings)
+
+
+@methods
+def test_samples_in_single_precision_are_taken(knee_visit: Session, method: Method) -> None:
+    """`FloatArray` allows any precision, VQF takes float64 only. Mend: cast in core.orientation, or in ImuBlock."""
+
+    def single(b: ImuBlock) -> ImuBlock:
+        return replace(b, gyr_rad_s=b.gyr_rad_s.astype(np.float32), acc_m_s2=b.acc_m_s2.astype(np.float32))
+
+    analyse(changed(knee_visit, single), method)
+
+
+@methods
+def test_a_repeated_stamp_counts_as_missing(knee_visit: Session, method: Method) -> None:
+    """The reader drops them, other sources may not: Akima raises. Mend: keep the first of equal stamps."""
+
+    def twice(b: ImuBlock) -> ImuBlock:
+        time_s = b.time_s.copy()
+        time_s[120] = time_s[119]
+        return replace(b, time_s=time_s)
+
+    analyse(changed(knee_visit, twice), method)
+
+
+@methods
+@pytest.mark.parametrize("rate_hz", [5.0])
+def test_far_too_slow_a_rate_is_told(person: "Person", rate_hz: float, method: Method) -> None:
+    """Mend: a finding under 25 Hz, grave under 10."""
+    assert_right_or_said(person, analyse(person.visit(rate_hz=rate_hz, duration_s=60.0), method))
+
+
+def optics(test_data: Callable[[str], Path], name: str) -> dict[str, FloatArray]:
+    with np.load(test_data(f"hinge_mechanical/{name}.npz")) as archive:
+        return {key: np.asarray(archive[key], dtype=float) for key in archive.files}
+
+
+@pytest.mark.parametrize("name", ["1D_02", "1D_03"])
+def test_the_axis_of_a_real_hinge_lies_within_two_deviations(test_data: Callable[[str], Path], name: str) -> None:
+    """0.54 deg off with a claimed sd of 0.15. Mend: a floor of 0.3 deg or more ("the real hinge needs 0.5")."""
+    data = optics(test_data, name)
+    time_s = np.arange(len(data["acc1"])) / float(data["fs"])
+    imu = {site: ImuBlock("", time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k, site in ((1, THIGH), (2, SHANK))}
+    found = analyse(Session((Recording("hinge", F, "hinge", imu),))).calibrations[0].joints[KNEE]
+    sign = np.sign(found.axis_proximal @ data["j1_ref"])
+    worst = max(
+        angle_between(sign * axis, data[key])
+        for axis, key in ((found.axis_proximal, "j1_ref"), (found.axis_distal, "j2_ref"))
+    )
+    assert found.axis_sd_rad is not None
+    assert worst < 2 * found.axis_sd_rad
+
+
+@pytest.mark.parametrize("rows", [9, 14, 23])
+def test_one_gap_does_not_spoil_the_rest_of_a_walk(rows: int) -> None:
+    """A gap of 240 ms in one sensor, once: up to 12 deg wrong for the rest of the walk, claimed sd 0.6 deg, nothing
+    said but `gaps`. 50 ms: 0.1 deg; 310 ms, where a new stretch begins: 0.1 deg. Interpolated rates across a step turn
+    the sensor by what they miss, and headings and drift, linear between knots 10 s apart, cannot step. Mend: let them
+    step at every gap over 50 ms (knots of its own for each side), or bridge no more than 50 to 60 ms."""
+    walked = simulate(
+        WalkerSettings(seed=1, recordings=(Standing(), FreeMotion(), Walk(strides=5)), sites=(THIGH, SHANK))
+    )
+    (truth,) = walked.truth.recordings["walk 1"].joints.values()
+    worst_m, least = 0.0, 1.0
+    for at in (265, 280, 295, 310, 325):
+
+        def cut(b: ImuBlock, at: int = at) -> ImuBlock:
+            keep = np.ones(len(b), dtype=bool)
+            keep[at : at + rows] = False
+            return replace(b, time_s=b.time_s[keep], gyr_rad_s=b.gyr_rad_s[keep], acc_m_s2=b.acc_m_s2[keep])
+
+        angle = analyse(changed(walked.session, cut, (SHANK,), "walk 1")).recordings[-1].joints[KNEE]
+        error = angle.angle_rad - (truth.angle_rad - truth.standing_rad)
+        there = np.isfinite(error)
+        worst_m = max(worst_m, float(np.rad2deg(np.std(error[there]))))
+        least = min(least, float(np.mean(np.abs(error[there]) < 2 * angle.sd_rad[there])))
+    assert least > 0.9, f"two sd hold {100 * least:.0f} % of the samples; {worst_m:.1f} deg wrong"
+
+
+@pytest.mark.parametrize("seed", [1, 3, 11])
+def test_what_lost_samples_cost_is_within_two_deviations(seed: int) -> None:
+    """The same by the walker's own loss; in free motion it turns the axis, in the walk the angle."""
+    settings = WalkerSettings(
+        seed=seed,
+        recordings=(Standing(), FreeMotion(), Walk(strides=5)),
+        sites=(THIGH, SHANK, FOOT),
+        loss_fraction=0.02,
+    )
+    walked = simulate(settings)
+    found = analyse(walked.session).recordings[-1]
+    for joint, truth in walked.truth.recordings["walk 1"].joints.items():
+        expected = np.interp(found.time_s, truth.time_s, truth.angle_rad - truth.standing_rad)
+        error = found.joints[joint].angle_rad - expected
+        there = np.isfinite(error)
+        assert np.mean(np.abs(error[there]) < 2 * found.joints[joint].sd_rad[there]) > 0.9
