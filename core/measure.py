@@ -16,12 +16,13 @@ from core.calibration.zero import within_half_a_turn
 from core.orientation import oriented_to_north
 from core.pair import OrientedTrack, Pair, pair_up
 from core.published.angles import angle_from_orientations, published_angle
+from core.rotations import wrap
 from core.samples import FloatArray, Recording
 from core.sensors import SensorTracks
 from core.tracks import Block, at_positions
 
 MIN_KNOWN_S = 0.5
-BROKEN_SD_RAD = np.deg2rad(3.0)  # measured on simulated walks with lost samples, in stretches of up to
+BROKEN_SD_RAD = np.deg2rad(2.0)  # measured on simulated walks with lost samples, in stretches of up to
 SETTLED_S = 5.0
 WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
 
@@ -102,6 +103,8 @@ def measure(
             if len(pairs) > 1:
                 share = min(1.0, (SETTLED_S / pair.duration_s) ** 2)
                 found["broken_sd"] = np.full(len(pair), share * BROKEN_SD_RAD)
+                if not geometry.is_hinge:  # the joint's accelerations know better than two filters that have just begun
+                    angle += share * float(np.median(wrap(hinge_angle(pair, j1, j2, geometry.unknowns) - angle)))
             for name, values in found.items():
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
