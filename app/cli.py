@@ -38,6 +38,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     SystemExit
         After `--help` (0) and on bad usage (2).
     """
+    # numpy is not imported yet: many small matrices are slower on many threads, and another program may want the cores
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without a degree sign is no reason to stop
@@ -163,12 +165,12 @@ def _demo(wanted: argparse.Namespace) -> None:
     from app.reports.csv_report import write_table
     from app.reports.result_folder import OWN_SESSION, check_demonstration_place, written_beside
     from devices.files.session_folder import read_session, write_session
-    from devices.walker import WalkerSettings, simulate, truth_table
+    from devices.walker import DEMONSTRATION, simulate, truth_table
 
     check_demonstration_place(wanted.out)
     with _Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
         progress(0.0, "simulated patient")
-        simulated = simulate(WalkerSettings())
+        simulated = simulate(DEMONSTRATION)
         write_session(simulated.session, folder / OWN_SESSION)
         write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes

@@ -1,6 +1,7 @@
 """The window: a header, a page, an action bar. It opens sessions and knows nothing of gait."""
 
 import logging
+import signal
 import sys
 from itertools import pairwise
 from pathlib import Path
@@ -347,6 +348,7 @@ def open_window(argv: list[str]) -> int:
     argv
         What stood behind the program's name.
     """
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     app = QApplication([sys.argv[0], *argv])
     app.setApplicationName("Gaitwright")

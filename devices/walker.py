@@ -39,6 +39,7 @@ from devices.walker_sensors import (
 from devices.walker_truth import FootTruth, JointTruth, RecordingTruth, SessionTruth, Take, tell_truth, truth_table
 
 __all__ = [
+    "DEMONSTRATION",
     "NO_ERRORS",
     "FootTruth",
     "FreeMotion",
@@ -55,6 +56,8 @@ __all__ = [
     "simulate",
     "truth_table",
 ]
+
+DEMONSTRATION = WalkerSettings(seed=1, tissue=Tissue.SOFT)  # the patient that the application shows
 
 FINE_HZ = 1000.0  # least rate of the fine clock: differences of fourth order are then far below the sensors' noise
 MARGIN_S = 0.25  # the fine clock runs on by this at both ends, for lags, averaging and differences

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 os.environ["QT_QPA_PLATFORM"] = "offscreen"  # before anything imports Qt
+os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before anything imports numpy: small matrices, two cores
 
 import pytest
 from hypothesis import settings

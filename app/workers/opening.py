@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from core.results import Analysis
     from core.samples import Session
 
-DEMONSTRATION_SEED = 1
 READING_SHARE = 0.1  # of the progress; the analysis takes the rest
 
 
@@ -43,9 +42,9 @@ def opening_demonstration() -> Work:
 
     def work(report: Report) -> Opened:
         report(0.0, "simulating a patient")
-        from devices.walker import WalkerSettings, simulate
+        from devices.walker import DEMONSTRATION, simulate
 
-        return _analysed(simulate(WalkerSettings(seed=DEMONSTRATION_SEED)).session, report)
+        return _analysed(simulate(DEMONSTRATION).session, report)
 
     return work
 

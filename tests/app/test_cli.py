@@ -245,7 +245,7 @@ def test_a_demonstration_is_a_session_with_its_truth_and_the_analysis_of_it(
         [float(row["time_s"]) for row in angles if row["left_knee_deg"]],
         [float(row["left_knee_deg"]) for row in angles if row["left_knee_deg"]],
     )
-    assert np.std(found_deg - [float(row["left_knee_deg"]) for row in truth]) < 1.0
+    assert np.std(found_deg - [float(row["left_knee_deg"]) for row in truth]) < 2.0  # soft tissue
 
     assert main(["demo"]) == 0
     assert files_in(out) == files

@@ -24,7 +24,6 @@ from devices.walker import (
     JointTruth,
     Motion,
     SensorErrors,
-    SimulatedSession,
     Standing,
     Tissue,
     Walk,
