@@ -229,7 +229,8 @@ def _tell(analysis: "Analysis", out: Path) -> None:
 
     joints = [joint for span in analysis.calibrations for joint in span.joints]
     names = ", ".join(name_of(joint) for joint in dict.fromkeys(joints)) or "no joint"
-    print(f"{out}: {names}; {len(analysis.recordings)} recordings.")
+    count = len(analysis.recordings)
+    print(f"{out}: {names}; {count} {'recording' if count == 1 else 'recordings'}.")
     _tell_findings(analysis.findings, lowest="warning")
 
 

@@ -63,6 +63,7 @@ def analyse(
     calibrations: list[Calibration] = []
     recordings: list[RecordingAnalysis] = []
     spans = spans_of_validity(session)
+    has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
         rate_kind, told = find_rate_kind(session, span, quality.unusable)
@@ -76,7 +77,7 @@ def analyse(
         for basis, calibration in calibrated.items():
             joint = basis.joint
             turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
-            findings += about_joint(calibration, identified[basis], turned, is_zero_typed)
+            findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
         calibrations += _by_walk(span, bases, calibrated)
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured)

@@ -42,7 +42,7 @@ def about_session(session: Session) -> list[Finding]:
 
 
 def about_joint(
-    calibration: JointCalibration, found: Identified, turned: int | None, is_zero_typed: bool
+    calibration: JointCalibration, found: Identified, turned: int | None, is_zero_typed: bool, has_stood: bool
 ) -> list[Finding]:
     """What one joint's identification says of itself."""
     where, findings = str(calibration.joint), []
@@ -62,7 +62,8 @@ def about_joint(
     if calibration.zero is ZeroKind.GONIOMETER:
         say("zero_from_goniometer", Severity.INFO, value_deg=round(float(np.rad2deg(calibration.offset_rad)), 1))
     if calibration.zero is ZeroKind.NONE:
-        say("zero_unknown", Severity.WARNING)
+        if has_stood:  # else `no_standing` says it once for all
+            say("zero_unknown", Severity.WARNING)
         if is_zero_typed:
             say("goniometer_without_standing", Severity.WARNING)
     if found.basis.is_from_after:
