@@ -10,7 +10,6 @@ import numpy as np
 from core.body import Joint, Segment, Site, knee_of
 from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
-from core.calibration.hinge import robust_sd
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.identified import Identified, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
@@ -19,6 +18,7 @@ from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at
 from core.rate_kind import find_rate_kind
 from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
+from core.robust import robust_sd
 from core.rotations import wrap
 from core.samples import FloatArray, Recording, RecordingKind, Session
 from core.sensors import SensorTracks

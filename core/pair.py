@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.rotations import matrix_from_quaternion
+from core.rotations import cross_matrix, matrix_from_quaternion
 from core.samples import BoolArray, FloatArray
 from core.tracks import Track, at_positions, continuous
 
@@ -72,6 +72,12 @@ def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
     derivative = np.full_like(rate, np.nan)
     derivative[2:-2] = (rate[:-4] - 8 * rate[1:-3] + 8 * rate[3:-1] - rate[4:]) / (12 * step_s)
     return derivative
+
+
+def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArray:
+    """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3)."""
+    turn = cross_matrix(rate)
+    return turn @ turn + cross_matrix(angular_acceleration)
 
 
 def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pair | None:

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from core.samples import FloatArray
+from core.samples import ComplexArray, FloatArray
 
 
 def cross_matrix(v: FloatArray) -> FloatArray:
@@ -51,3 +51,9 @@ def angle_between(a: FloatArray, b: FloatArray) -> float:
 def wrap(angle_rad: FloatArray) -> FloatArray:
     """Angles brought to -pi..pi."""
     return (angle_rad + np.pi) % (2 * np.pi) - np.pi
+
+
+def in_plane(v: FloatArray, axis: FloatArray) -> ComplexArray:
+    """Vectors (n, 3) seen in the plane normal to `axis`, as complex numbers v.x + i v.y (eq 13)."""
+    x, y = joint_frame(axis)
+    return np.asarray(v @ x + 1j * (v @ y))

@@ -13,6 +13,7 @@ from core.findings import Finding
 
 # any precision: NumPy's operators on float64 are typed so
 FloatArray = NDArray[np.floating[Any]]
+ComplexArray = NDArray[np.complexfloating[Any, Any]]
 BoolArray = NDArray[np.bool_]
 IntArray = NDArray[np.int64]
 

@@ -7,13 +7,11 @@ with the other as samples come in, here the drift is a line between knots, found
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
-from core.calibration.datasets import knot_positions
-from core.calibration.hinge import robust_sd
-from core.pair import Pair
+from core.datasets import knot_positions
+from core.pair import Pair, lever_matrix
 from core.published.angles import angle_from_rates
-from core.published.signs import in_plane
-from core.rotations import wrap
+from core.robust import robust_sd
+from core.rotations import in_plane, wrap
 from core.samples import FloatArray, IntArray
 
 DRIFT_WALK_RAD = np.deg2rad(0.3)  # per square root of a second

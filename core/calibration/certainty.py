@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from core.calibration.datasets import Datasets
+from core.datasets import Datasets
 from core.samples import FloatArray, IntArray
 
 BLOCK_S = 1.0  # residuals nearer in time than this are not independent

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibration.datasets import Datasets
-from core.rotations import cross_matrix
+from core.datasets import Datasets
+from core.pair import lever_matrix
 from core.samples import FloatArray
 
 CENTRE_PRIOR_M = 0.3  # a sensor sits within a segment's length of the joint
@@ -26,12 +26,6 @@ class Coincidence:
     unknowns: FloatArray
     cost: FloatArray
     covariance: FloatArray
-
-
-def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArray:
-    """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3)."""
-    turn = cross_matrix(rate)
-    return turn @ turn + cross_matrix(angular_acceleration)
 
 
 def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:

@@ -2,9 +2,6 @@
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
-from core.calibration.datasets import Datasets, gather, knot_positions
-from core.calibration.hinge import robust_sd
 from core.calibration.joint_axis import (
     NEUTRAL_SCALE_RAD,
     RATE_SCALE_RAD_S,
@@ -17,7 +14,9 @@ from core.calibration.joint_axis import (
     residuals,
     sample_information,
 )
-from core.pair import Pair
+from core.datasets import Datasets, gather, knot_positions
+from core.pair import Pair, lever_matrix
+from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
 
 SAMPLES_PER_S = 10.0  # residuals are correlated over half a second

@@ -7,9 +7,11 @@ never used there.
 
 import numpy as np
 
-from core.calibration.coincidence import BIAS_PRIOR_M_S2, lever_matrix
-from core.calibration.datasets import Datasets
+from core.calibration.coincidence import BIAS_PRIOR_M_S2
 from core.calibration.joint_axis import moved
+from core.datasets import Datasets
+from core.pair import lever_matrix
+from core.robust import robust_sd
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
 
@@ -18,11 +20,6 @@ ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
 MIN_SCALE_RAD_S = 0.002
 MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum
 STEPS = 8
-
-
-def robust_sd(values: FloatArray) -> float:
-    """Standard deviation by the median of the absolute values."""
-    return float(1.4826 * np.median(np.abs(values))) if values.size else float("nan")
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:

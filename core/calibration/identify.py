@@ -7,7 +7,6 @@ import numpy as np
 
 from core.calibration import certainty
 from core.calibration.coincidence import disagreement, fit_coincidence, relative_rotation
-from core.calibration.datasets import Datasets, gather, moving_indices, united
 from core.calibration.heading import residual_scales
 from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_residual
 from core.calibration.joint_axis import (
@@ -22,6 +21,7 @@ from core.calibration.joint_axis import (
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
 from core.calibration.lag import Lag, find_lag, lowest_cost
 from core.calibration.refinement import refine_on_hinge
+from core.datasets import Datasets, gather, moving_indices, united
 from core.pair import FAST_RAD_S, Pair
 from core.rotations import wrap
 from core.samples import FloatArray

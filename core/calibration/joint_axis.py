@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibration.datasets import HEADING_WALK_RAD, Datasets
+from core.datasets import HEADING_WALK_RAD, Datasets
 from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray
 

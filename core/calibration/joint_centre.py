@@ -5,15 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.calibration.certainty import sandwich_covariance, time_blocks
-from core.calibration.coincidence import (
-    BIAS_PRIOR_M_S2,
-    CENTRE_PRIOR_M,
-    fit_coincidence,
-    lever_matrix,
-    relative_rotation,
-)
-from core.calibration.datasets import Datasets
-from core.calibration.hinge import robust_sd
+from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, fit_coincidence, relative_rotation
+from core.datasets import Datasets
+from core.pair import lever_matrix
+from core.robust import robust_sd
 from core.rotations import joint_frame
 from core.samples import FloatArray
 

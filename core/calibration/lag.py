@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibration.coincidence import fit_coincidence, relative_rotation
-from core.calibration.datasets import Datasets
+from core.datasets import Datasets
 from core.samples import FloatArray, IntArray
 
 SEARCH_S = 0.08

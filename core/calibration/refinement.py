@@ -8,11 +8,12 @@ but for a slow drift: with the drift among the unknowns nothing leans on the fil
 import numpy as np
 
 from core.angles.hinge_angle import DRIFT_WALK_RAD, hinge_angle
-from core.calibration.coincidence import CENTRE_PRIOR_M, lever_matrix
-from core.calibration.datasets import Datasets
-from core.calibration.hinge import robust_sd
+from core.calibration.coincidence import CENTRE_PRIOR_M
 from core.calibration.joint_axis import knot_weights
 from core.calibration.joint_centre import MIN_SCALE_M_S2, JointCentre
+from core.datasets import Datasets
+from core.pair import lever_matrix
+from core.robust import robust_sd
 from core.rotations import cross_matrix, joint_frame
 from core.samples import FloatArray
 

@@ -6,10 +6,8 @@ angle about the proximal joint axis from the distal to the proximal x axis, the 
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
-from core.pair import Pair
-from core.published.signs import in_plane
-from core.rotations import joint_frame, wrap
+from core.pair import Pair, lever_matrix
+from core.rotations import in_plane, joint_frame, wrap
 from core.samples import FloatArray
 
 MIN_IN_PLANE_M_S2 = 2.0  # below, the direction of the shifted acceleration means nothing

@@ -5,7 +5,7 @@ Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, section 3.1.3, equations 
 
 import numpy as np
 
-from core.calibration.coincidence import lever_matrix
+from core.pair import lever_matrix
 from core.samples import FloatArray
 
 MAX_STEPS = 30

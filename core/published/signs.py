@@ -9,10 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.rotations import joint_frame
+from core.rotations import in_plane
 from core.samples import FloatArray
-
-ComplexArray = NDArray[np.complex128]
 
 WINDOW_S = 0.5  # in which the joint hardly bends
 MIN_IN_PLANE_RAD_S = 0.2  # less movement than this draws no curve
@@ -43,9 +41,3 @@ def signs_match(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatArray, 
     congruent = np.sum(np.abs(np.sum(cut(z1) * np.conj(cut(z2)), axis=1))[used])
     mirrored = np.sum(np.abs(np.sum(cut(z1) * cut(z2), axis=1))[used])
     return bool(congruent >= mirrored), float(abs(congruent - mirrored) / max(congruent + mirrored, 1e-12))
-
-
-def in_plane(v: FloatArray, axis: FloatArray) -> ComplexArray:
-    """Vectors (n, 3) seen in the plane normal to `axis`, as complex numbers v.x + i v.y (eq 13)."""
-    x, y = joint_frame(axis)
-    return np.asarray(v @ x + 1j * (v @ y))

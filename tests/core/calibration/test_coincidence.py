@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from core.body import Joint
-from core.calibration.coincidence import fit_coincidence, lever_matrix, relative_rotation
-from core.calibration.datasets import Datasets, gather, moving_indices
+from core.calibration.coincidence import fit_coincidence, relative_rotation
 from core.calibration.heading import heading_over
 from core.calibration.lag import find_lag
-from core.pair import Pair
+from core.datasets import Datasets, gather, moving_indices
+from core.pair import Pair, lever_matrix
 from core.rotations import joint_frame, wrap
 
 if TYPE_CHECKING:

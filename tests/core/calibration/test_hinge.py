@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from core.body import Joint, Site
 from core.calibration import hinge
-from core.calibration.datasets import Datasets, gather
-from core.calibration.hinge import hinge_axes, hinge_residual, in_plane_difference, robust_sd
+from core.calibration.hinge import hinge_axes, hinge_residual, in_plane_difference
 from core.calibration.joint_axis import moved
+from core.datasets import Datasets, gather
+from core.robust import robust_sd
 from core.rotations import angle_between
 
 if TYPE_CHECKING:

@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.body import Joint, Site
-from core.calibration.datasets import Datasets, gather
 from core.calibration.joint_axis import (
     Candidates,
     candidates,
@@ -21,6 +20,7 @@ from core.calibration.joint_axis import (
     polish,
     residuals,
 )
+from core.datasets import Datasets, gather
 from core.rotations import angle_between, wrap
 from core.samples import FloatArray
 

@@ -11,8 +11,6 @@ from hypothesis import strategies as st
 from core.body import Joint
 from core.calibration import joint_centre
 from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M
-from core.calibration.datasets import Datasets, gather
-from core.calibration.hinge import robust_sd
 from core.calibration.joint_centre import (
     MIN_SD_HINGE_M,
     MIN_SD_HUMAN_M,
@@ -24,6 +22,8 @@ from core.calibration.joint_centre import (
     centre_sd_m,
     nearest_to_sensors,
 )
+from core.datasets import Datasets, gather
+from core.robust import robust_sd
 from core.rotations import joint_frame
 from core.samples import FloatArray
 

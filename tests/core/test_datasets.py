@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.body import Joint
-from core.calibration.datasets import KNOT_SPACING_S, gather, knot_positions, moving_indices
+from core.datasets import KNOT_SPACING_S, gather, knot_positions, moving_indices
 from core.pair import Pair
 
 if TYPE_CHECKING:
