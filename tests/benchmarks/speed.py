@@ -3,7 +3,7 @@
     python -m tests.benchmarks.speed [--seeds 3] [--repeats 5]
 
 CPU seconds of one core. The methods take turns on every recording; ratios are taken turn by turn, then their median.
-The result is printed and kept in tests/benchmarks/RESULTS.md.
+The result is printed and kept at the end of tests/benchmarks/README.md.
 """
 
 import argparse
@@ -27,6 +27,7 @@ from core.calibration.identify import moving_data
 from core.pair import OrientedTrack, pair_up
 from core.published.angles import published_angle
 from core.published.identify import identify_as_published
+from core.published.joint_centre import shifted_to_sensors
 from core.results import Method
 from core.samples import FloatArray
 from core.tracks import Track
@@ -38,7 +39,8 @@ from tests.benchmarks.trials import Trial, hinge_trials, simulated_trials
 ONE_CORE = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 LONG_MINUTES = 6.0
 KNEE_ONLY = (Joint.LEFT_KNEE,)
-RESULTS = Path(__file__).with_name("RESULTS.md")
+README = Path(__file__).with_name("README.md")
+LAST = "## The last comparison\n"
 
 Run = Callable[[Trial], Estimate]
 
@@ -74,7 +76,10 @@ def published_stages(trial: Trial) -> Estimate:
     assert data is not None
     found = identify_as_published(data, data)
     j1, j2 = found.axis_1, found.axis_2
-    angle = -published_angle(pair, j1, j2, found.centre_1_m, found.centre_2_m)
+    centres = found.centre_1_m, found.centre_2_m
+    if trial.joint.is_knee:
+        centres = shifted_to_sensors(*centres, j1, j2)
+    angle = -published_angle(pair, j1, j2, *centres)
     return Estimate(j1, j2, _stamps(trial), angle, time.process_time() - start_s)
 
 
@@ -246,10 +251,8 @@ def main() -> None:
         *accuracy_table(trials, outcomes, methods),
     ]
     print("\n".join(lines))
-    RESULTS.write_text("\n".join([HEAD, *lines, ""]), encoding="utf-8")
-
-
-HEAD = "# The last comparison\n\nHow it is made and what is scored: README.md.\n"
+    before, _, _ = README.read_text(encoding="utf-8").partition(LAST)
+    README.write_text("\n".join([f"{before}{LAST}", *lines, ""]), encoding="utf-8")
 
 
 if __name__ == "__main__":
