@@ -1,0 +1,200 @@
+"""How does a foot travel from one stance to the next? Its swings, its pitch and its velocity, in any mounting.
+
+Between two steps every foot comes to rest, or nearly so: the calmest instant of each stance anchors everything. From
+anchor to anchor the specific force is integrated and what velocity is left at the end is taken off
+(zero-velocity updates; Skog et al. 2010, doi 10.1109/TBME.2010.2060723, whose stance statistic is used too).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.signal import find_peaks
+
+from core.pair import OrientedTrack, moving_mean
+from core.rotations import matrix_from_quaternion
+from core.samples import FloatArray, IntArray
+
+GRAVITY_M_S2 = 9.81
+CALM_RAD_S, CALM_M_S2 = 0.3, 0.6  # how much a foot still moves in the middle of an ordinary stance
+CALM_WINDOW_S = 0.1
+MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)
+MAX_CALM = 12.0  # a foot that moves more than this, in units of CALM squared, is not standing
+CALM_FLOOR = 0.03  # the sensors' own noise
+BIAS_M_S2 = 0.05  # of the accelerometer and of the vertical, over a stride of a second
+BEND_SHARE = 0.2  # of a second difference is what the trapezoid may miss
+MIN_SWING_M = 0.08  # shorter is fidgeting, not a step
+MIN_SWING_M_S = 0.25
+MAX_TILT_RAD = np.deg2rad(30.0)  # a foot that stands stands as it mostly does; ramps and kerbs included
+MOVING_RAD_S = 1.0
+
+
+@dataclass(frozen=True, slots=True)
+class Swings:
+    """Every forward movement of one foot between two stances, as indices of samples, each (k,), ascending.
+
+    `anchor_before` and `anchor_after` are the calmest instants of the stances around, `fastest` the foot's greatest speed.
+    """
+
+    anchor_before: IntArray
+    fastest: IntArray
+    anchor_after: IntArray
+
+    def __len__(self) -> int:
+        return len(self.fastest)
+
+
+@dataclass(frozen=True, slots=True)
+class FootMotion:
+    """One foot over one track.
+
+    Attributes
+    ----------
+    pitch_axis : (3,)
+        In sensor axes; turning about it lifts the toes.
+    pitch_rate_rad_s, pitch_rad : (n,)
+        Toes up positive; the pitch is zero at the usual foot flat.
+    velocity_m_s : (n, 3)
+        Of the sensor, in earth axes.
+    travel_m : (k, 2)
+        How far each swing carried the foot over the floor.
+    height_m : (k,)
+        How high the sensor rose over its places in the stances around, which are taken to be level.
+    turn_rad : (k,)
+        How far each swing turned the foot about the vertical.
+    is_direction_certain
+        What the pitch and what the way of walking say about the toes agree.
+    """
+
+    start_s: float
+    step_s: float
+    swings: Swings
+    pitch_axis: FloatArray
+    pitch_rate_rad_s: FloatArray
+    pitch_rad: FloatArray
+    velocity_m_s: FloatArray
+    travel_m: FloatArray
+    height_m: FloatArray
+    turn_rad: FloatArray
+    is_direction_certain: bool
+
+    def time_of(self, index: FloatArray) -> FloatArray:
+        return self.start_s + self.step_s * index
+
+
+def follow(foot: OrientedTrack) -> FootMotion:
+    """Find every swing of a foot and how far it went. A foot that never steps has no swings."""
+    track = foot.track
+    step_s, gyr = track.step_s, track.gyr_rad_s
+    earth_from_sensor = matrix_from_quaternion(foot.q_earth_from_sensor)
+    acceleration = np.einsum("nij,nj->ni", earth_from_sensor, track.acc_m_s2) - [0.0, 0.0, GRAVITY_M_S2]
+    up = earth_from_sensor[:, 2]  # in sensor axes
+    anchors = _anchors(gyr, acceleration, up, step_s)
+    velocity = _velocity(acceleration, anchors, step_s)
+    path = _integral(velocity, step_s)
+    swings = _swings(anchors, velocity, path)
+    axis, is_certain = _pitch_axis(gyr, earth_from_sensor, anchors, swings, path, step_s)
+    forward = np.cross(np.median(up[anchors], axis=0), axis) if len(anchors) else np.cross([0.0, 0.0, 1.0], axis)
+    forward = forward / max(float(np.linalg.norm(forward)), 1e-9)
+    headings = np.unwrap(_heading(earth_from_sensor, forward))
+    before, after = swings.anchor_before, swings.anchor_after
+    return FootMotion(
+        start_s=track.start_s,
+        step_s=step_s,
+        swings=swings,
+        pitch_axis=axis,
+        pitch_rate_rad_s=gyr @ axis,
+        pitch_rad=np.arcsin(np.clip(up @ forward, -1.0, 1.0)),
+        velocity_m_s=velocity,
+        travel_m=path[after, :2] - path[before, :2],
+        height_m=_heights(path[:, 2], swings),
+        turn_rad=headings[after] - headings[before],
+        is_direction_certain=is_certain,
+    )
+
+
+def _anchors(gyr: FloatArray, acceleration: FloatArray, up: FloatArray, step_s: float) -> IntArray:
+    """The calmest sample of every stance."""
+    restless = np.sum(gyr**2, axis=1) / CALM_RAD_S**2 + np.sum(acceleration**2, axis=1) / CALM_M_S2**2
+    restless = moving_mean(restless, max(3, round(CALM_WINDOW_S / step_s)))
+    calm = -np.log(restless + CALM_FLOOR)
+    edge = [calm.min() - 1.0]  # a recording may begin and end in standing
+    found, _ = find_peaks(np.concatenate([edge, calm, edge]), prominence=np.log(MIN_CALM_RATIO))
+    found = found - 1
+    found = found[restless[found] < MAX_CALM]
+    if not len(found):
+        return found
+    usual = np.median(up[found], axis=0)
+    tilt = up[found] @ (usual / max(float(np.linalg.norm(usual)), 1e-9))
+    return found[tilt > np.cos(MAX_TILT_RAD)]
+
+
+def _integral(rate: FloatArray, step_s: float) -> FloatArray:
+    total = np.zeros_like(rate)
+    np.cumsum(0.5 * step_s * (rate[1:] + rate[:-1]), axis=0, out=total[1:])
+    return total
+
+
+def _velocity(acceleration: FloatArray, anchors: IntArray, step_s: float) -> FloatArray:
+    """Velocity (n, 3) that is zero at every anchor.
+
+    What is left at an anchor is taken off where it most likely arose: evenly from a bias, and at once from an impact
+    too short for the sampling rate, where the force bends most from sample to sample.
+    """
+    velocity = _integral(acceleration, step_s)
+    if len(anchors):
+        doubt = np.full(len(velocity), BIAS_M_S2**2 * step_s)
+        bend = acceleration[2:] - 2.0 * acceleration[1:-1] + acceleration[:-2]
+        doubt[1:-1] += (BEND_SHARE * step_s) ** 2 * np.sum(bend**2, axis=1)
+        blame = np.cumsum(doubt)
+        for k in range(3):
+            velocity[:, k] -= np.interp(blame, blame[anchors], velocity[anchors, k])
+    return velocity
+
+
+def _swings(anchors: IntArray, velocity: FloatArray, path: FloatArray) -> Swings:
+    speed = np.linalg.norm(velocity, axis=1)
+    pairs = list(zip(anchors[:-1].tolist(), anchors[1:].tolist(), strict=True))
+    fastest = np.array([a + int(np.argmax(speed[a:b])) for a, b in pairs], dtype=np.int64)
+    before, after = anchors[:-1], anchors[1:]
+    travel = np.linalg.norm(path[after, :2] - path[before, :2], axis=1)
+    is_step = (travel > MIN_SWING_M) & (speed[fastest] > MIN_SWING_M_S)
+    return Swings(before[is_step], fastest[is_step], after[is_step])
+
+
+def _pitch_axis(
+    gyr: FloatArray, earth_from_sensor: FloatArray, anchors: IntArray, swings: Swings, path: FloatArray, step_s: float
+) -> tuple[FloatArray, bool]:
+    """The axis the foot mostly turns about, signed so that toes up is positive, and whether both signs agree.
+
+    A foot leaves with its heel first: in the swings its pitch is mostly toes down. And a foot travels toes first.
+    """
+    if not len(swings):
+        return np.array([1.0, 0.0, 0.0]), False
+    moving = gyr[np.sum(gyr**2, axis=1) > MOVING_RAD_S**2]
+    axis = np.asarray(np.linalg.eigh(moving.T @ moving)[1][:, -1])
+    angle = _integral(gyr @ axis, step_s)
+    angle -= np.interp(np.arange(len(angle)), anchors, angle[anchors])
+    heel_up = -np.mean(np.concatenate([angle[a:b] for a, b in _spans(swings)]))
+    before, after = swings.anchor_before, swings.anchor_after
+    right = (earth_from_sensor[before] + earth_from_sensor[after]) @ axis
+    travel = path[after] - path[before]
+    toes_first = float(np.sum(travel[:, 1] * right[:, 0] - travel[:, 0] * right[:, 1]))
+    return axis * (1.0 if heel_up > 0 else -1.0), bool(heel_up * toes_first > 0)
+
+
+def _spans(swings: Swings) -> list[tuple[int, int]]:
+    return list(zip(swings.anchor_before.tolist(), swings.anchor_after.tolist(), strict=True))
+
+
+def _heading(earth_from_sensor: FloatArray, forward: FloatArray) -> FloatArray:
+    """Direction (n,) of the foot over the floor; the filter's own, so that only differences over seconds mean anything."""
+    pointing = earth_from_sensor @ forward
+    return np.arctan2(pointing[:, 1], pointing[:, 0])
+
+
+def _heights(height: FloatArray, swings: Swings) -> FloatArray:
+    rises = []
+    for a, b in _spans(swings):
+        rise = height[a : b + 1] - np.linspace(height[a], height[b], b - a + 1)
+        rises.append(float(rise.max()))
+    return np.array(rises)
