@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.datasets import HEADING_WALK_RAD, Datasets
+from core.pair import FAST_RAD_S
 from core.rotations import joint_frame, turn_about_vertical
-from core.samples import FloatArray
+from core.samples import FloatArray, IntArray
 
 SCAN_STEP_RAD = np.deg2rad(5.0)
 SCAN_S = 60.0  # over longer stretches one constant heading blurs the minima
@@ -65,7 +66,7 @@ def candidates(data: Datasets, few: Datasets, stretch: int) -> Candidates:
 
 def _scan(data: Datasets, stretch: int) -> tuple[FloatArray, FloatArray]:
     chosen = np.flatnonzero(data.stretch == stretch)
-    chosen = chosen[data.time_s[chosen] <= data.time_s[chosen[0]] + SCAN_S]
+    chosen = _liveliest(data, chosen)
     chosen = chosen[:: max(1, len(chosen) // MAX_SCAN_SAMPLES)]
     to_1, to_2 = data.earth_from_1[chosen], data.earth_from_2[chosen]
     rate_1 = np.einsum("nij,nj->ni", to_1, data.g1[chosen])
@@ -88,6 +89,18 @@ def _scan(data: Datasets, stretch: int) -> tuple[FloatArray, FloatArray]:
         if along_1 @ along_2 < 0:
             axis_2[k] = -axis_2[k]
     return axis_1, axis_2
+
+
+def _liveliest(data: Datasets, chosen: IntArray) -> IntArray:
+    """Of the samples of one stretch, in order of time, those of the minute with the most movement."""
+    time_s = data.time_s[chosen]
+    if time_s[-1] - time_s[0] <= SCAN_S:
+        return chosen
+    energy = np.sum(data.g1[chosen] ** 2, axis=1) + np.sum(data.g2[chosen] ** 2, axis=1)
+    total = np.concatenate([[0.0], np.cumsum(np.minimum(energy, FAST_RAD_S**2))])  # a jump is not a minute's worth
+    end = np.searchsorted(time_s, time_s + SCAN_S, side="right")
+    first = int(np.argmax(total[end] - total[: len(chosen)]))
+    return chosen[first : end[first]]
 
 
 def _scatter(sensor_from: FloatArray, turned: FloatArray, fixed: FloatArray, heading: FloatArray) -> FloatArray:
