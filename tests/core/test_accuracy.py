@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-SLACK = 1.2  # the 90th percentile of a few sessions scatters more than that of five hundred
+SLACK = 1.5  # the 90th percentile of a few sessions scatters more than that of five hundred
 
 
 @pytest.fixture(scope="module")
@@ -44,4 +44,4 @@ def test_a_few_sessions_reach_the_targets(accuracy: ModuleType, name: str) -> No
     "name", ["rigid", "rigid 3 s", "rigid 60 Hz", "rigid 200 Hz", "rigid, biased sensors", "soft tissue", "lag 30 ms"]
 )
 def test_a_hundred_sessions_reach_the_targets(accuracy: ModuleType, name: str) -> None:
-    assert_reached(accuracy, name, range(2000, 2100), 1.0)
+    assert_reached(accuracy, name, range(2000, 2100), 1.1)
