@@ -1,1 +1,1 @@
-"""What does walking look like? One clinical question per module; nothing here identifies a joint or computes its angle."""
+"""What does walking look like? One clinical question per module; no joint is identified and no angle computed here."""

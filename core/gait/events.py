@@ -3,9 +3,9 @@
 One definition of each event, for any speed and sampling rate; levels follow each foot's own peaks:
 
 - toe-off: the fast plantarflexion of push-off ends, its rate has fallen to TOE_OFF_SHARE of its peak;
-- initial contact: near the end of swing, the floor turns the foot down: the rate reaches CONTACT_SHARE of the usual peak
-  of loading, after the last time the toes rose. (The shock itself is no help: below 100 Hz it is aliased, and a jerk
-  threshold latches onto earlier peaks);
+- initial contact: near the end of swing the floor turns the foot down; the rate reaches CONTACT_SHARE of the usual peak
+  of loading, after the last time the toes rose. The shock itself is no help: below 100 Hz it is aliased, and a jerk
+  threshold latches onto earlier peaks;
 - full contact and heel rise: the rate comes to rest, and leaves it.
 
 Where a foot hardly rolls (shuffling, a flat landing) the pitch says nothing; its speed does, and the events are marked.
@@ -99,7 +99,10 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     missing = np.concatenate([[0], np.cumsum(~is_measured)])
     is_heard = missing[swings.anchor_after + 1] == missing[swings.anchor_before]
     return FootEvents(
-        *(times[:, k] for k in range(4)),
+        heel_rise_s=times[:, 0],
+        toe_off_s=times[:, 1],
+        initial_contact_s=times[:, 2],
+        full_contact_s=times[:, 3],
         length_m=np.linalg.norm(motion.travel_m, axis=1)[is_whole],
         height_m=motion.height_m[is_whole],
         turn_rad=motion.turn_rad[is_whole],

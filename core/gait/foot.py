@@ -20,8 +20,10 @@ CALM_WINDOW_S = 0.1
 MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)
 MAX_CALM = 12.0  # a foot that moves more than this, in units of CALM squared, is not standing
 CALM_FLOOR = 0.03  # the sensors' own noise
-BIAS_M_S2 = 0.05  # of the accelerometer and of the vertical, over a stride of a second
-BEND_SHARE = 0.2  # of a second difference is what the trapezoid may miss
+MAX_TILT_ERROR_RAD = np.deg2rad(3.0)  # the filter is better than this; what is more, the foot's own wobble felt
+EVEN_M_S2 = 0.005  # what an accelerometer's bias leaves once a stance has shown the vertical, sample by sample
+BEND_SHARE = 0.2  # of a second difference is what the trapezoid may miss,
+SMOOTH_M_S2 = 5.0  # where it exceeds what a swinging foot does at 50 Hz
 MIN_SWING_M = 0.08  # shorter is fidgeting, not a step
 MIN_SWING_M_S = 0.25
 MAX_TILT_RAD = np.deg2rad(30.0)  # a foot that stands stands as it mostly does; ramps and kerbs included
@@ -32,7 +34,8 @@ MOVING_RAD_S = 1.0
 class Swings:
     """Every forward movement of one foot between two stances, as indices of samples, each (k,), ascending.
 
-    `anchor_before` and `anchor_after` are the calmest instants of the stances around, `fastest` the foot's greatest speed.
+    `anchor_before` and `anchor_after` are the calmest instants of the stances around, `fastest` is the foot's greatest
+    speed.
     """
 
     anchor_before: IntArray
@@ -134,20 +137,34 @@ def _integral(rate: FloatArray, step_s: float) -> FloatArray:
     return total
 
 
+def _upright(acceleration: FloatArray, anchors: IntArray, step_s: float) -> FloatArray:
+    """Take off the tilt of the earth's axes (n, 3) that a standing foot shows: there is nothing but gravity at rest."""
+    gravity = np.array([0.0, 0.0, GRAVITY_M_S2])
+    reach = max(1, round(0.5 * CALM_WINDOW_S / step_s))
+    felt = np.stack([acceleration[max(0, i - reach) : i + reach + 1].mean(axis=0) for i in anchors]) + gravity
+    tilt = np.cross(felt, [0.0, 0.0, 1.0]) / np.linalg.norm(felt, axis=1, keepdims=True)
+    tilt *= np.minimum(1.0, MAX_TILT_ERROR_RAD / np.maximum(np.linalg.norm(tilt, axis=1, keepdims=True), 1e-9))
+    index = np.arange(len(acceleration))
+    turned = np.stack([np.interp(index, anchors, tilt[:, k]) for k in range(3)], axis=1)
+    return acceleration + np.cross(turned, acceleration + gravity)
+
+
 def _velocity(acceleration: FloatArray, anchors: IntArray, step_s: float) -> FloatArray:
     """Velocity (n, 3) that is zero at every anchor.
 
     What is left at an anchor is taken off where it most likely arose: evenly from a bias, and at once from an impact
     too short for the sampling rate, where the force bends most from sample to sample.
     """
-    velocity = _integral(acceleration, step_s)
-    if len(anchors):
-        doubt = np.full(len(velocity), BIAS_M_S2**2 * step_s)
-        bend = acceleration[2:] - 2.0 * acceleration[1:-1] + acceleration[:-2]
-        doubt[1:-1] += (BEND_SHARE * step_s) ** 2 * np.sum(bend**2, axis=1)
-        blame = np.cumsum(doubt)
-        for k in range(3):
-            velocity[:, k] -= np.interp(blame, blame[anchors], velocity[anchors, k])
+    if not len(anchors):
+        return _integral(acceleration, step_s)
+    upright = _upright(acceleration, anchors, step_s)
+    velocity = _integral(upright, step_s)
+    doubt = np.full(len(velocity), EVEN_M_S2**2 * step_s)
+    bend = np.sum((upright[2:] - 2.0 * upright[1:-1] + upright[:-2]) ** 2, axis=1)
+    doubt[1:-1] += (BEND_SHARE * step_s) ** 2 * np.maximum(bend - SMOOTH_M_S2**2, 0.0)
+    blame = np.cumsum(doubt)
+    for k in range(3):
+        velocity[:, k] -= np.interp(blame, blame[anchors], velocity[anchors, k])
     return velocity
 
 
@@ -187,7 +204,7 @@ def _spans(swings: Swings) -> list[tuple[int, int]]:
 
 
 def _heading(earth_from_sensor: FloatArray, forward: FloatArray) -> FloatArray:
-    """Direction (n,) of the foot over the floor; the filter's own, so that only differences over seconds mean anything."""
+    """Direction (n,) of the foot over the floor; it drifts, so that only differences over seconds mean anything."""
     pointing = earth_from_sensor @ forward
     return np.arctan2(pointing[:, 1], pointing[:, 0])
 

@@ -1,0 +1,105 @@
+"""How does a joint move over a stride? Angles over 0-100 % of each stride, their mean, the peaks a clinician reads."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.samples import BoolArray, FloatArray
+
+POINTS = 101
+
+
+@dataclass(frozen=True, slots=True)
+class MeanCycle:
+    """Mean and standard deviation (101,) over `n` strides; NaN where there are none, or fewer than two."""
+
+    mean: FloatArray
+    sd: FloatArray
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """Where in a stride a peak is looked for, percent, and whether it is a maximum."""
+
+    name: str
+    first: int
+    last: int
+    is_maximum: bool
+
+
+KNEE_WINDOWS = (
+    Window("knee_loading_peak", 5, 30, True),
+    Window("knee_stance_minimum", 25, 60, False),
+    Window("knee_swing_peak", 55, 90, True),
+)
+ANKLE_WINDOWS = (
+    Window("ankle_loading_plantarflexion", 0, 20, False),
+    Window("ankle_stance_dorsiflexion", 20, 60, True),
+    Window("ankle_push_off_plantarflexion", 50, 80, False),
+    Window("ankle_swing_dorsiflexion", 70, 95, True),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Peak:
+    """One extremum of each stride (k,), and where, percent; NaN where there is none."""
+
+    value: FloatArray
+    percent: FloatArray
+
+
+def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s: FloatArray) -> FloatArray:
+    """The angle over each stride at 0, 1, ... 100 % (k, 101); a stride with a gap, or not wholly recorded, is NaN.
+
+    Parameters
+    ----------
+    time_s, angle : (n,)
+        Ascending instants, and NaN where the angle is not known.
+    start_s, end_s : (k,)
+    """
+    share = np.linspace(0.0, 1.0, POINTS)
+    at_s = start_s[:, None] + (end_s - start_s)[:, None] * share
+    if len(time_s) < 2:
+        return np.full(at_s.shape, np.nan)
+    cycles = np.interp(at_s, time_s, angle)
+    missing = np.concatenate([[0], np.cumsum(~np.isfinite(angle))])
+    first = np.searchsorted(time_s, start_s, side="right") - 1
+    last = np.searchsorted(time_s, end_s)
+    is_whole = (first >= 0) & (last < len(time_s))
+    is_whole &= missing[np.minimum(last, len(time_s) - 1) + 1] == missing[np.maximum(first, 0)]
+    cycles[~is_whole] = np.nan
+    return cycles
+
+
+def mean_cycle(cycles: FloatArray) -> MeanCycle:
+    """Over the strides of (k, 101) that are known."""
+    known = cycles[np.isfinite(cycles).all(axis=1)]
+    unknown = np.full(POINTS, np.nan)
+    mean = known.mean(axis=0) if len(known) else unknown
+    sd = known.std(axis=0, ddof=1) if len(known) > 1 else unknown
+    return MeanCycle(mean, sd, len(known))
+
+
+def find_peak(cycles: FloatArray, window: Window) -> Peak:
+    """The extremum of each stride (k, 101) within the window.
+
+    One at the window's edge in half of the strides or more is no peak: the angle only passes through.
+    """
+    n = len(cycles)
+    is_known = np.isfinite(cycles).all(axis=1)
+    nothing = Peak(np.full(n, np.nan), np.full(n, np.nan))
+    if not is_known.any():
+        return nothing
+    part = np.where(is_known[:, None], cycles[:, window.first : window.last + 1], 0.0)
+    at = part.argmax(axis=1) if window.is_maximum else part.argmin(axis=1)
+    is_edge: BoolArray = (at == 0) | (at == window.last - window.first)
+    if np.mean(is_edge[is_known]) >= 0.5:
+        return nothing
+    value = np.where(is_known, part[np.arange(n), at], np.nan)
+    return Peak(value, np.where(is_known, window.first + at.astype(np.float64), np.nan))
+
+
+def range_of_cycles(cycles: FloatArray) -> FloatArray:
+    """Largest less smallest angle (k,) of each stride (k, 101)."""
+    return cycles.max(axis=1) - cycles.min(axis=1)

@@ -1,0 +1,85 @@
+"""How fast, how far, how evenly? Time and distance of both feet's strides."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.gait.strides import Strides
+from core.samples import FloatArray
+
+MIN_STRIDES_FOR_SD = 2
+
+
+@dataclass(frozen=True, slots=True)
+class MeanAndSd:
+    """Over `n` strides; NaN where there are none (mean) or fewer than two (sd)."""
+
+    mean: float
+    sd: float
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class BothFeet:
+    """What needs both feet; NaN where it cannot be told."""
+
+    cadence_steps_min: float
+    double_support_percent: float
+    speed_m_s: float
+
+
+def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArray]:
+    """Time and distance of each stride (k,), named as the columns of strides.csv; NaN where not known.
+
+    A step leads from the other foot's initial contact to this foot's, which ends the stride.
+    """
+    return {
+        "stride_time_s": strides.time_s,
+        "step_time_s": _step_times(strides, other),
+        "stance_percent": strides.stance_percent,
+        "swing_percent": 100.0 - strides.stance_percent,
+        "stride_length_m": strides.length_m,
+        "speed_m_s": strides.speed_m_s,
+        "clearance_m": strides.clearance_m,
+    }
+
+
+def mean_and_sd(values: FloatArray) -> MeanAndSd:
+    """Of the finite values among (k,)."""
+    known = values[np.isfinite(values)]
+    mean = float(np.mean(known)) if len(known) else float("nan")
+    sd = float(np.std(known, ddof=1)) if len(known) >= MIN_STRIDES_FOR_SD else float("nan")
+    return MeanAndSd(mean, sd, len(known))
+
+
+def both_feet(left: Strides, right: Strides) -> BothFeet:
+    """Over the strides used of both feet; of one foot where the other has none."""
+    used = [(strides, strides.is_used) for strides in (left, right)]
+    times = [float(np.mean(s.time_s[is_used])) for s, is_used in used if is_used.any()]
+    speeds = [float(np.mean(s.speed_m_s[is_used])) for s, is_used in used if is_used.any()]
+    double = np.concatenate([_double_support_percent(a, b)[a.is_used] for a, b in ((left, right), (right, left))])
+    return BothFeet(
+        cadence_steps_min=120.0 / float(np.mean(times)) if times else float("nan"),
+        double_support_percent=mean_and_sd(double).mean,
+        speed_m_s=float(np.mean(speeds)) if speeds else float("nan"),
+    )
+
+
+def _step_times(strides: Strides, other: Strides | None) -> FloatArray:
+    if other is None or not len(other):
+        return np.full(len(strides), np.nan)
+    contacts = np.unique(np.concatenate([other.start_s, other.end_s]))
+    last = np.searchsorted(contacts, strides.end_s) - 1
+    contact = np.where(last >= 0, contacts[np.maximum(last, 0)], np.nan)
+    return np.where(contact > strides.start_s, strides.end_s - contact, np.nan)
+
+
+def _double_support_percent(strides: Strides, other: Strides) -> FloatArray:
+    """Share (k,) of each stride during which both feet stand: this foot's stance less the other's swing within it."""
+    share = np.full(len(strides), np.nan)
+    for k, (start, off) in enumerate(zip(strides.start_s, strides.toe_off_s, strict=True)):
+        inside = (other.toe_off_s > start) & (other.end_s < off)
+        if np.count_nonzero(inside) == 1:
+            swing = float((other.end_s - other.toe_off_s)[inside][0])
+            share[k] = 100.0 * (off - start - swing) / strides.time_s[k]
+    return share

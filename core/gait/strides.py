@@ -1,0 +1,159 @@
+"""Which strides did a foot make, and which of them tell how the patient walks?
+
+A stride leads from one initial contact to the next of the same foot. Starts, stops, turns, pauses, gaps, doubtful
+events and outliers keep their stride out of averages, each with its reason; nothing is dropped in silence.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from core.gait.events import FootEvents
+from core.samples import BoolArray, FloatArray, IntArray
+
+MAX_STRIDE_S = 3.0  # a stride at 0.3 m/s takes 2; longer, the patient stood
+PAUSE_RATIO = 1.5  # of the usual stride time
+MAX_TURN_RAD = np.deg2rad(12.0)  # straight strides turn a foot by up to 5 deg
+EDGE_STRIDES = 2  # so many at either end of a bout may be speeding up or slowing down,
+EDGE_RATIO = 0.87  # if they are so much slower or shorter than the bout
+OUTLIER_SD, MIN_OUTLIER_SHARE = 4.0, 0.12  # beyond both, a stride is unlike the others
+MIN_STRIDES_TO_COMPARE = 5
+
+
+class Reason(StrEnum):
+    """Why a stride is not used. The values are the words of strides.csv."""
+
+    USED = ""
+    GAP = "gap"
+    DOUBT = "doubtful_events"
+    PAUSE = "pause"
+    TURN = "turn"
+    START = "start"
+    STOP = "stop"
+    OUTLIER = "outlier"
+
+
+@dataclass(frozen=True, slots=True)
+class Strides:
+    """Strides of one foot, ascending, all (k,).
+
+    `length_m`, `clearance_m` and `turn_rad` are of the swing that ends the stride; the clearance is how high the foot
+    sensor rises over the floor, not the toe's. NaN from a shank. `bout` numbers the uninterrupted runs of strides.
+    """
+
+    start_s: FloatArray
+    full_contact_s: FloatArray
+    heel_rise_s: FloatArray
+    toe_off_s: FloatArray
+    end_s: FloatArray
+    length_m: FloatArray
+    clearance_m: FloatArray
+    turn_rad: FloatArray
+    bout: IntArray
+    reason: tuple[Reason, ...]
+
+    def __len__(self) -> int:
+        return len(self.start_s)
+
+    @property
+    def is_used(self) -> BoolArray:
+        return np.array([reason is Reason.USED for reason in self.reason], dtype=bool)
+
+    @property
+    def time_s(self) -> FloatArray:
+        return self.end_s - self.start_s
+
+    @property
+    def stance_percent(self) -> FloatArray:
+        return 100.0 * (self.toe_off_s - self.start_s) / self.time_s
+
+    @property
+    def speed_m_s(self) -> FloatArray:
+        return self.length_m / self.time_s
+
+
+def strides_of(stretches: Sequence[FootEvents]) -> Strides:
+    """Strides of one foot from its events, one item per stretch without gaps, in order of time."""
+    parts: dict[str, list[FloatArray]] = {name: [] for name in _COLUMNS}
+    for events in stretches:
+        start, end = events.initial_contact_s[:-1], events.initial_contact_s[1:]
+        is_stride = end - start <= MAX_STRIDE_S
+        here = {
+            "start_s": start,
+            "full_contact_s": events.full_contact_s[:-1],
+            "heel_rise_s": events.heel_rise_s[1:],
+            "toe_off_s": events.toe_off_s[1:],
+            "end_s": end,
+            "length_m": events.length_m[1:],
+            "clearance_m": events.height_m[1:],
+            "turn_rad": events.turn_rad[1:],
+            "is_certain": (events.is_certain[1:] & events.is_certain[:-1]).astype(np.float64),
+            "is_measured": (events.is_measured[1:] & events.is_measured[:-1]).astype(np.float64),
+        }
+        for name, values in here.items():
+            parts[name].append(values[is_stride])
+    columns = {name: np.concatenate([np.empty(0), *values]) for name, values in parts.items()}
+    is_certain, is_measured = columns.pop("is_certain") > 0, columns.pop("is_measured") > 0
+    start, end = columns["start_s"], columns["end_s"]
+    bout = np.concatenate([np.zeros(min(1, len(start)), int), np.cumsum(start[1:] > end[:-1] + 1e-6)]).astype(np.int64)
+    reason = _reasons(columns, bout, is_certain, is_measured)
+    return Strides(**columns, bout=bout, reason=reason)
+
+
+_COLUMNS = (
+    *("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s", "length_m", "clearance_m", "turn_rad"),
+    *("is_certain", "is_measured"),
+)
+
+
+def _reasons(
+    columns: dict[str, FloatArray], bout: IntArray, is_certain: BoolArray, is_measured: BoolArray
+) -> tuple[Reason, ...]:
+    """The first reason that holds for each stride, the gravest first."""
+    time, length = columns["end_s"] - columns["start_s"], columns["length_m"]
+    reasons = np.full(len(time), Reason.USED, dtype=object)
+    if not len(time):
+        return ()
+
+    def mark(where: BoolArray, reason: Reason) -> None:
+        reasons[where & (reasons == Reason.USED)] = reason
+
+    mark(~is_measured, Reason.GAP)
+    mark(~is_certain, Reason.DOUBT)
+    mark(np.abs(columns["turn_rad"]) > MAX_TURN_RAD, Reason.TURN)
+    usual = np.median(time[reasons == Reason.USED]) if np.any(reasons == Reason.USED) else np.median(time)
+    is_start, is_stop = _edges(time, length, bout, reasons == Reason.USED)
+    mark(is_start, Reason.START)
+    mark(is_stop, Reason.STOP)
+    mark(time > PAUSE_RATIO * usual, Reason.PAUSE)
+    mark(_is_unlike(time, reasons == Reason.USED) | _is_unlike(length, reasons == Reason.USED), Reason.OUTLIER)
+    return tuple(reasons.tolist())
+
+
+def _edges(time: FloatArray, length: FloatArray, bout: IntArray, is_good: BoolArray) -> tuple[BoolArray, BoolArray]:
+    """Strides at the beginning and at the end of each bout that are slower or shorter than the rest of it."""
+    is_start, is_stop = np.zeros(len(time), dtype=bool), np.zeros(len(time), dtype=bool)
+    for number in np.unique(bout):
+        here = np.flatnonzero(bout == number)
+        inner = here[EDGE_STRIDES:-EDGE_STRIDES][is_good[here[EDGE_STRIDES:-EDGE_STRIDES]]]
+        like = inner if len(inner) else here
+        is_slow = time > np.median(time[like]) / EDGE_RATIO
+        if np.isfinite(length[like]).all():
+            is_slow |= length < EDGE_RATIO * np.median(length[like])
+            is_slow |= length / time < EDGE_RATIO * np.median(length[like] / time[like])
+        for edge, mask in ((here[:EDGE_STRIDES], is_start), (here[::-1][:EDGE_STRIDES], is_stop)):
+            slow = np.flatnonzero(is_slow[edge])
+            mask[edge[: slow[-1] + 1 if len(slow) else 0]] = True
+    return is_start, is_stop
+
+
+def _is_unlike(values: FloatArray, is_good: BoolArray) -> BoolArray:
+    """Good strides that lie far from the middle of the others (median absolute deviation)."""
+    good = values[is_good]
+    if len(good) < MIN_STRIDES_TO_COMPARE or not np.isfinite(good).all():
+        return np.zeros(len(values), dtype=bool)
+    middle = float(np.median(good))
+    reach = max(OUTLIER_SD * 1.4826 * float(np.median(np.abs(good - middle))), MIN_OUTLIER_SHARE * abs(middle))
+    return is_good & (np.abs(values - middle) > reach)
