@@ -52,7 +52,7 @@ class Pair:
 
     @property
     def is_moving(self) -> BoolArray:
-        speed = np.sqrt(np.sum(self.g1**2, axis=1) + np.sum(self.g2**2, axis=1))
+        speed = np.sqrt(np.einsum("ni,ni->n", self.g1, self.g1) + np.einsum("ni,ni->n", self.g2, self.g2))
         return moving_mean(speed, max(1, round(MOVING_WINDOW_S / self.step_s))) > MOVING_RAD_S
 
 

@@ -14,6 +14,7 @@ from core.tracks import (
     MAX_REPORTED_GAP_S,
     MIN_STRETCH_S,
     MIN_STRETCH_SAMPLES,
+    in_every_column,
     is_heard,
     is_stuck,
     nominal_step_s,
@@ -73,19 +74,19 @@ About = tuple[str, Severity, dict[str, float | int | str]]
 
 
 def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
-    is_there = np.isfinite(block.gyr_rad_s).all(axis=1) & np.isfinite(block.acc_m_s2).all(axis=1)
+    is_there = in_every_column(np.isfinite(block.gyr_rad_s)) & in_every_column(np.isfinite(block.acc_m_s2))
     there = int(np.count_nonzero(is_there))
     if there < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[is_there]) < MIN_STRETCH_S:
         return [("too_few_samples", Severity.GRAVE, {"samples": there})]
-    wrong = _about_units(block, np.asarray(is_there), kind)
+    wrong = _about_units(block, is_there, kind)
     if wrong:
         return wrong
     heard = is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)
     about: list[About] = []
-    impossible = np.abs(block.gyr_rad_s[is_there]).max(axis=1) > MAX_RATE_RAD_S
-    impossible |= np.abs(block.acc_m_s2[is_there]).max(axis=1) > MAX_FORCE_M_S2
-    if impossible.any():
-        about.append(("impossible_values", Severity.WARNING, {"count": int(np.count_nonzero(impossible))}))
+    possible = in_every_column(np.abs(block.gyr_rad_s[is_there]) <= MAX_RATE_RAD_S)
+    possible &= in_every_column(np.abs(block.acc_m_s2[is_there]) <= MAX_FORCE_M_S2)
+    if not possible.all():
+        about.append(("impossible_values", Severity.WARNING, {"count": int(np.count_nonzero(~possible))}))
     stuck = 100 * float(np.mean(is_stuck(block.time_s, block.gyr_rad_s, block.acc_m_s2)))
     if np.count_nonzero(heard) < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[heard]) < MIN_STRETCH_S:
         return [*about, ("stuck_throughout", Severity.GRAVE, {})]

@@ -109,17 +109,24 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
 
 def is_heard(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
     """Which samples (n,) are measurements: finite, possible, later than the one before, and not of a stuck sensor."""
-    limits = ((gyr, MAX_RATE_RAD_S), (acc, MAX_FORCE_M_S2))
     with np.errstate(invalid="ignore"):
-        is_there = np.logical_and.reduce([(np.abs(values) <= limit).all(axis=1) for values, limit in limits])
+        is_there = in_every_column(np.abs(gyr) <= MAX_RATE_RAD_S) & in_every_column(np.abs(acc) <= MAX_FORCE_M_S2)
     is_there[1:] &= np.diff(time_s) > 0
     return is_there & ~is_stuck(time_s, gyr, acc)
+
+
+def in_every_column(holds: BoolArray) -> BoolArray:
+    """Rows (n,) of (n, 3) where all hold; several times faster than reducing along so short an axis."""
+    return holds[:, 0] & holds[:, 1] & holds[:, 2]
 
 
 def is_stuck(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
     """Samples (n,) of a run of equal rows that lasts longer than a sensor holds a value."""
     stuck = np.zeros(len(time_s), dtype=bool)
-    is_same = np.concatenate([[False], (gyr[1:] == gyr[:-1]).all(axis=1) & (acc[1:] == acc[:-1]).all(axis=1)])
+    is_same = np.zeros(len(time_s), dtype=bool)
+    is_same[1:] = in_every_column(gyr[1:] == gyr[:-1]) & in_every_column(acc[1:] == acc[:-1])
+    if not is_same.any():
+        return stuck
     edges = np.flatnonzero(np.diff(np.concatenate([[0], is_same.astype(np.int8), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         if time_s[last - 1] - time_s[first - 1] > MAX_HELD_S:
