@@ -48,16 +48,15 @@ def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArr
     intervals, position = knot_positions(pair)
     over = np.flatnonzero(pair.is_measured[1:] & ~pair.is_measured[:-1])  # what a gap hid turns all that follows
     terms = intervals + 1 + len(over)
-    shape = np.zeros((len(pair), terms))
-    left = np.minimum(position.astype(int), intervals - 1)
-    row = np.arange(len(pair))
-    shape[row, left], shape[row, left + 1] = 1 - (position - left), position - left
-    for k, index in enumerate(over):
-        shape[index + 1 :, intervals + 1 + k] = 1.0
+    at = np.zeros((len(chosen), terms))
+    left = np.minimum(position[chosen].astype(int), intervals - 1)
+    share = position[chosen] - left
+    row = np.arange(len(chosen))
+    at[row, left], at[row, left + 1] = 1 - share, share
+    at[:, intervals + 1 :] = chosen[:, None] > over
     walk = np.diff(np.eye(terms)[: intervals + 1], axis=0)
     prior = walk.T @ walk / (DRIFT_WALK_RAD**2 * pair.duration_s / intervals)
     prior[range(intervals + 1, terms), range(intervals + 1, terms)] = GAP_RAD**-2
-    at = shape[chosen]
     information = min(1.0, pair.step_s * float(np.median(np.diff(chosen))) / CORRELATION_S)
     knots = np.zeros(terms)
     knots[: intervals + 1] = start
@@ -68,4 +67,7 @@ def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArr
         matrix = at.T @ (at * weight[:, None]) + prior
         step = at.T @ (weight * error / np.maximum(length, 1e-9)) - prior @ knots
         knots = knots + np.linalg.solve(matrix + 1e-9 * np.eye(len(matrix)), step)
-    return shape @ knots
+    drift = np.interp(position, np.arange(intervals + 1), knots[: intervals + 1])
+    jumps = np.zeros(len(pair))
+    jumps[over + 1] = knots[intervals + 1 :]
+    return np.asarray(drift + np.cumsum(jumps))

@@ -39,44 +39,40 @@ def identify_axes(g1: FloatArray, g2: FloatArray) -> tuple[FloatArray, FloatArra
     g1, g2 : (n, 3)
         Rates of the data sets S(i) (eq 2), rad/s.
     """
-    best: tuple[float, FloatArray] | None = None
-    for start in STARTS:
-        angles = _gauss_newton(g1, g2, np.array(start))
-        cost = _cost(g1, g2, angles)
-        if best is None or cost < best[0]:
-            best = cost, angles
-    assert best is not None
-    phi_1, theta_1, phi_2, theta_2 = best[1]
-    return axis_from_angles(phi_1, theta_1), axis_from_angles(phi_2, theta_2)
+    x, _ = min((_gauss_newton(g1, g2, np.array(start)) for start in STARTS), key=lambda found: found[1])
+    return axis_from_angles(x[0], x[1]), axis_from_angles(x[2], x[3])
 
 
-def _cost(g1: FloatArray, g2: FloatArray, x: FloatArray) -> float:
-    error = constraint(g1, g2, axis_from_angles(x[0], x[1]), axis_from_angles(x[2], x[3]))
-    return float(error @ error)
-
-
-def _gauss_newton(g1: FloatArray, g2: FloatArray, x: FloatArray) -> FloatArray:
-    damping, cost = 1e-3, _cost(g1, g2, x)
+def _gauss_newton(g1: FloatArray, g2: FloatArray, x: FloatArray) -> tuple[FloatArray, float]:
+    damping = 1e-3
+    error, slope = _error_and_slope(g1, g2, x)
+    cost = float(error @ error)
     for _ in range(MAX_STEPS):
-        slope = np.empty((len(g1), 4))
-        lengths = []
-        for k, rate in enumerate((g1, g2)):
-            phi, theta = x[2 * k], x[2 * k + 1]
-            axis = axis_from_angles(phi, theta)
-            length = np.maximum(np.linalg.norm(np.cross(rate, axis), axis=1), 1e-9)
-            sign = 1.0 if k == 0 else -1.0
-            slope[:, 2 * k : 2 * k + 2] = -sign * ((rate @ axis) / length)[:, None] * (rate @ _tangents(phi, theta))
-            lengths.append(length)
-        error = lengths[0] - lengths[1]
         information = slope.T @ slope
         step = -np.linalg.solve(information + damping * np.diag(np.diag(information) + 1e-9), slope.T @ error)
-        new_cost = _cost(g1, g2, x + step)
+        new_error, new_slope = _error_and_slope(g1, g2, x + step)
+        new_cost = float(new_error @ new_error)
         if new_cost > cost:
             damping = min(damping * 10, 1e6)
             if damping >= 1e6:
                 break
             continue
-        x, cost, damping = x + step, new_cost, max(damping / 10, 1e-9)
+        x, error, slope, cost, damping = x + step, new_error, new_slope, new_cost, max(damping / 10, 1e-9)
         if np.max(np.abs(step)) < CONVERGED_RAD:
             break
-    return x
+    return x, cost
+
+
+def _error_and_slope(g1: FloatArray, g2: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The constraint (n,) and its slopes (n, 4) by the angles x."""
+    slope = np.empty((len(g1), 4))
+    lengths = []
+    for k, (rate, sign) in enumerate(((g1, 1.0), (g2, -1.0))):
+        phi, theta = x[2 * k], x[2 * k + 1]
+        slopes = rate @ _tangents(phi, theta)
+        # the slope by phi is a unit vector across the axis; this is the other one
+        other = rate @ np.array([-np.sin(theta), np.cos(theta), 0.0])
+        length = np.maximum(np.sqrt(slopes[:, 0] ** 2 + other**2), 1e-9)  # |g x j|
+        slope[:, 2 * k : 2 * k + 2] = -sign * ((rate @ axis_from_angles(phi, theta)) / length)[:, None] * slopes
+        lengths.append(length)
+    return lengths[0] - lengths[1], slope
