@@ -82,12 +82,12 @@ def mean_cycle(cycles: FloatArray) -> MeanCycle:
 
 
 def find_peak(cycles: FloatArray, window: Window) -> Peak:
-    """The extremum of each stride (k, 101) within the window.
+    """The extremum of each stride (k, 101) within the window; missing strides are NaN throughout.
 
     One at the window's edge in half of the strides or more is no peak: the angle only passes through.
     """
     n = len(cycles)
-    is_known = np.isfinite(cycles).all(axis=1)
+    is_known = ~np.isnan(cycles[:, 0])  # cycles are whole or missing
     nothing = Peak(np.full(n, np.nan), np.full(n, np.nan))
     if not is_known.any():
         return nothing

@@ -113,23 +113,24 @@ def _reasons(
 ) -> tuple[Reason, ...]:
     """The first reason that holds for each stride, the gravest first."""
     time, length = columns["end_s"] - columns["start_s"], columns["length_m"]
-    reasons = np.full(len(time), Reason.USED, dtype=object)
     if not len(time):
         return ()
+    order = tuple(Reason)
+    code = np.zeros(len(time), dtype=np.int64)
 
     def mark(where: BoolArray, reason: Reason) -> None:
-        reasons[where & (reasons == Reason.USED)] = reason
+        code[where & (code == 0)] = order.index(reason)
 
     mark(~is_measured, Reason.GAP)
     mark(~is_certain, Reason.DOUBT)
     mark(np.abs(columns["turn_rad"]) > MAX_TURN_RAD, Reason.TURN)
-    usual = np.median(time[reasons == Reason.USED]) if np.any(reasons == Reason.USED) else np.median(time)
-    is_start, is_stop = _edges(time, length, bout, reasons == Reason.USED)
+    usual = np.median(time[code == 0]) if np.any(code == 0) else np.median(time)
+    is_start, is_stop = _edges(time, length, bout, code == 0)
     mark(is_start, Reason.START)
     mark(is_stop, Reason.STOP)
     mark(time > PAUSE_RATIO * usual, Reason.PAUSE)
-    mark(_is_unlike(time, reasons == Reason.USED) | _is_unlike(length, reasons == Reason.USED), Reason.OUTLIER)
-    return tuple(reasons.tolist())
+    mark(_is_unlike(time, code == 0) | _is_unlike(length, code == 0), Reason.OUTLIER)
+    return tuple(order[k] for k in code)
 
 
 def _edges(time: FloatArray, length: FloatArray, bout: IntArray, is_good: BoolArray) -> tuple[BoolArray, BoolArray]:
