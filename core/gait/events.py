@@ -20,12 +20,11 @@ from core.pair import OrientedTrack
 from core.samples import BoolArray, FloatArray
 
 TOE_OFF_SHARE = 0.88
-CONTACT_SHARE = 0.65
+CONTACT_SHARE = 0.69
 MAX_FALL_S = 0.04  # a foot whose toes come down that long has landed, whatever shakes the sensor
 STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.1  # of the peak of push-off: below, the foot is flat
-ONSET_RATIO = (
-    2.0  # a rate that grows with time to the power 1.7 takes so much longer to half a level than from there on
-)
+ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
+LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor
 
@@ -91,7 +90,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
         on = _contact(rate, m, q, level, MAX_FALL_S / motion.step_s) if -rate[q] > MIN_ROLL_RAD_S else np.nan
         off = off if np.isfinite(off) else last_crossing(speed, a, m, flat)
         on = on if np.isfinite(on) else first_crossing(speed, m, b, flat)
-        rise, full = _onset(-rate, p, a, still), _onset(-rate, q, b, still)
+        rise, full = _onset(-rate, p, a, still), _onset(-rate, q, b, LANDING_RATIO * still)
         rows[k] = min(rise, off), off, on, max(full, on)
     rows = np.where(np.isfinite(rows), rows, np.nan)
     is_whole = np.isfinite(rows).all(axis=1)

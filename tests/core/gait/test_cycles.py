@@ -1,0 +1,70 @@
+"""Are angles brought to 0-100 % of each stride, and are their peaks where a clinician finds them?"""
+
+import numpy as np
+import pytest
+
+from core.gait.cycles import Window, cycles_of, find_peak, mean_cycle, range_of_cycles
+from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+
+TIME_S = np.arange(0.0, 5.0, 0.01)
+START_S = np.array([0.5, 1.6, 2.7])
+END_S = START_S + 1.1
+
+
+def angle() -> np.ndarray:
+    return 30.0 - 30.0 * np.cos(2 * np.pi * (TIME_S - 0.5) / 1.1)
+
+
+def test_each_stride_is_brought_to_its_own_percent() -> None:
+    cycles = cycles_of(TIME_S, angle(), START_S, END_S)
+    assert cycles.shape == (3, 101)
+    np.testing.assert_allclose(
+        cycles, np.tile(30.0 - 30.0 * np.cos(2 * np.pi * np.linspace(0, 1, 101)), (3, 1)), atol=0.05
+    )
+    np.testing.assert_allclose(range_of_cycles(cycles), 60.0, atol=0.1)
+
+
+def test_a_gap_drops_its_stride_only() -> None:
+    broken = angle()
+    broken[(TIME_S > 2.0) & (TIME_S < 2.1)] = np.nan
+    cycles = cycles_of(TIME_S, broken, START_S, END_S)
+    assert np.isfinite(cycles).all(axis=1).tolist() == [True, False, True]
+    assert mean_cycle(cycles).n == 2
+
+
+def test_a_stride_beyond_the_recording_is_not_known() -> None:
+    cycles = cycles_of(TIME_S, angle(), np.array([-0.5, 4.5]), np.array([0.6, 5.6]))
+    assert np.isnan(cycles).all()
+    assert cycles_of(np.empty(0), np.empty(0), START_S, END_S).shape == (3, 101)
+
+
+def test_mean_and_sd_of_strides() -> None:
+    told = mean_cycle(np.stack([np.full(101, 1.0), np.full(101, 3.0)]))
+    np.testing.assert_allclose(told.mean, 2.0)
+    np.testing.assert_allclose(told.sd, np.sqrt(2.0))
+    assert mean_cycle(np.empty((0, 101))).n == 0
+
+
+def test_a_peak_is_found_in_its_window() -> None:
+    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), Window("swing", 30, 90, True))
+    np.testing.assert_allclose(peak.value, 60.0, atol=0.05)
+    np.testing.assert_allclose(peak.percent, 50.0, atol=1.0)
+
+
+def test_an_extremum_at_the_edge_of_the_window_is_no_peak() -> None:
+    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), Window("rising", 10, 40, True))
+    assert np.isnan(peak.value).all()
+    assert np.isnan(peak.percent).all()
+
+
+def test_the_symmetry_index_is_for_positive_figures_only() -> None:
+    assert symmetry_index_percent(1.1, 0.9) == pytest.approx(20.0)
+    assert symmetry_index_percent(0.9, 1.1) == pytest.approx(-20.0)
+    assert np.isnan(symmetry_index_percent(-2.0, 2.5))
+    assert np.isnan(symmetry_index_percent(float("nan"), 2.5))
+
+
+def test_curves_are_compared_point_by_point() -> None:
+    one = np.linspace(0.0, 10.0, 101)
+    assert curve_difference(one, one + 3.0) == pytest.approx(3.0)
+    assert gait_variable_score(one, one - 4.0) == pytest.approx(4.0)

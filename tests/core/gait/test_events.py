@@ -1,0 +1,168 @@
+"""Are a foot's landings and leavings found, in any mounting, and none where there is none?"""
+
+import csv
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from core.body import Side, Site
+from core.calibration.rest import rest_of
+from core.gait.events import FootEvents, first_crossing, gait_of
+from core.orientation import oriented
+from core.pair import OrientedTrack
+from core.samples import FloatArray, ImuBlock, RateKind
+from core.tracks import even_tracks
+from devices.walker import FootTruth, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+
+FOOT = Site.LEFT_FOOT
+PHASES = {  # from which event to which, and whether the latter is of the next swing
+    "loading": ("initial_contact_s", "full_contact_s", 0),
+    "foot flat": ("full_contact_s", "heel_rise_s", 1),
+    "pre-swing": ("heel_rise_s", "toe_off_s", 0),
+    "swing": ("toe_off_s", "initial_contact_s", 0),
+}
+EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
+
+
+def track_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
+    (track,) = even_tracks(block)
+    return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
+
+
+def walk_of(settings: WalkerSettings, turn: Rotation | None = None) -> tuple[FootEvents, FootTruth]:
+    """Events and truth of the left foot in the second recording; `turn` turns the sensor in its mounting."""
+    made = simulate(replace(settings, sites=(FOOT,)))
+    blocks = [recording.imu[FOOT] for recording in made.session.recordings]
+    if turn is not None:
+        blocks = [replace(b, gyr_rad_s=turn.apply(b.gyr_rad_s), acc_m_s2=turn.apply(b.acc_m_s2)) for b in blocks]
+    rest = rest_of(blocks[0])
+    assert rest is not None
+    return gait_of(track_of(blocks[1], rest.gyr_rad_s)), made.truth.recordings["walk 1"].feet[Side.LEFT]
+
+
+def walking(
+    speed_m_s: float = 1.19, rate_hz: float = 100.0, tissue: Tissue = Tissue.RIGID, seed: int = 0
+) -> WalkerSettings:
+    recordings = (Standing(), Walk(speed_m_s=speed_m_s))
+    return WalkerSettings(seed=seed, recordings=recordings, rate_hz=rate_hz, tissue=tissue)
+
+
+@pytest.mark.parametrize("tissue", [Tissue.RIGID, Tissue.SOFT])
+@pytest.mark.parametrize(
+    ("speed_m_s", "rate_hz"), [(0.3, 100.0), (0.3, 60.0), (1.19, 50.0), (1.19, 200.0), (2.0, 60.0)]
+)
+def test_events_phases_and_lengths_of_a_simulated_walk_are_found(
+    speed_m_s: float, rate_hz: float, tissue: Tissue
+) -> None:
+    errors: dict[str, list[FloatArray]] = {name: [] for name in (*EVENTS, *PHASES, "length")}
+    for seed in (3, 4, 5):
+        found, truth = walk_of(walking(speed_m_s, rate_hz, tissue, seed))
+        assert len(found) == len(truth.events.toe_off_s)
+        assert found.is_certain[1:-1].all()
+        # the first and the last swing lead from and to standing
+        for name in EVENTS:
+            errors[name].append((getattr(found, name) - getattr(truth.events, name))[1:-1])
+        for name, (begin, end, next_row) in PHASES.items():
+            lasts = [
+                getattr(e, end)[next_row:] - getattr(e, begin)[: len(found) - next_row] for e in (found, truth.events)
+            ]
+            errors[name].append((lasts[0] - lasts[1])[1:-1])
+        errors["length"].append((found.length_m / truth.stride_lengths_m - 1.0)[1:-1])
+    pooled = {name: np.concatenate(values) for name, values in errors.items()}
+    mean_s, sd_s = (0.010, 0.015) if rate_hz >= 100 else (0.020, 0.025)
+    assert {name: np.std(pooled[name]) for name in EVENTS if np.std(pooled[name]) > 0.010} == {}
+    assert {name: np.mean(pooled[name]) for name in PHASES if abs(np.mean(pooled[name])) > mean_s} == {}
+    assert {name: np.std(pooled[name]) for name in PHASES if np.std(pooled[name]) > sd_s} == {}
+    assert abs(np.mean(pooled["length"])) < 0.02
+
+
+def test_turning_the_sensor_in_its_mounting_changes_no_event() -> None:
+    found, _ = walk_of(walking())
+    turned, _ = walk_of(walking(), Rotation.from_rotvec([1.0, -2.0, 0.7]))
+    for name in EVENTS:
+        np.testing.assert_allclose(getattr(turned, name), getattr(found, name), atol=1e-3)
+    np.testing.assert_allclose(turned.length_m, found.length_m, atol=0.002)
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        replace(walking(), prosthetic_side=Side.LEFT),
+        replace(walking(0.3), prosthetic_side=Side.LEFT),
+        replace(walking(), stiff_knee_side=Side.LEFT),
+        replace(walking(0.3), stiff_knee_side=Side.LEFT),
+    ],
+    ids=["prosthesis", "slow prosthesis", "stiff knee", "slow stiff knee"],
+)
+def test_a_prosthesis_and_a_stiff_knee_gain_and_lose_no_event(settings: WalkerSettings) -> None:
+    found, truth = walk_of(settings)
+    assert len(found) == len(truth.events.toe_off_s)
+    late = (found.initial_contact_s - truth.events.initial_contact_s)[1:-1]
+    assert np.abs(late).max() < 0.07
+    assert np.std(late) < 0.01
+
+
+def test_standing_and_free_motion_hold_no_strides() -> None:
+    made = simulate(WalkerSettings(recordings=(Standing(duration_s=10.0), FreeMotion(duration_s=20.0)), sites=(FOOT,)))
+    blocks = [recording.imu[FOOT] for recording in made.session.recordings]
+    rest = rest_of(blocks[0])
+    assert rest is not None
+    standing, free = (gait_of(track_of(block, rest.gyr_rad_s)) for block in blocks)
+    assert len(standing) == 0
+    assert len(free) <= 1  # a foot set down somewhere else; no stride
+
+
+def test_a_turn_is_measured() -> None:
+    settings = WalkerSettings(recordings=(Standing(), Walk(turn_rad=np.pi / 2, strides=12)))
+    found, _ = walk_of(settings)
+    assert np.sum(found.turn_rad) == pytest.approx(np.pi / 2, abs=0.05)
+
+
+def test_the_first_crossing_lies_between_samples() -> None:
+    assert first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
+    assert np.isnan(first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
+
+
+def test_optics_and_events_agree(test_data: Callable[[str], Path]) -> None:
+    folder = test_data("feet_mocap_events")
+    contact, off, length = [], [], []
+    with np.load(folder / "healthy_feet.npz") as arrays:
+        rate_hz = float(arrays["fs"])
+        feet = {s: [arrays[f"{s}_foot_{k}"].astype(np.float64) for k in ("gyr", "acc")] for s in Side}
+    with (folder / "stride_events_sample.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    paths = _lengths(folder / "position_sample.csv")
+    for side, (gyr, acc) in feet.items():
+        block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
+        rest = rest_of(block)
+        assert rest is not None
+        found = gait_of(track_of(block, rest.gyr_rad_s))
+        here = [row for row in rows if row["foot"] == side]
+        nearest = [int(np.argmin(np.abs(found.initial_contact_s - float(r["ic"]) / rate_hz))) for r in here]
+        assert len(set(nearest)) == len(here)
+        # the list leaves out first and last steps, and runs two swings of a turn together
+        assert len(found) - len(here) <= 4
+        contact += [found.initial_contact_s[k] - float(r["ic"]) / rate_hz for r, k in zip(here, nearest, strict=True)]
+        late = [found.toe_off_s - float(r["tc"]) / rate_hz for r in here]
+        off += [float(values[np.argmin(np.abs(values))]) for values in late]
+        length += [found.length_m[k] - paths[int(r["s_id"])] for r, k in zip(here, nearest, strict=True)]
+    assert len(contact) == 57
+    assert np.std(contact) < 0.010
+    # the optics call it contact before the floor turns the foot
+    assert np.mean(contact) == pytest.approx(0.024, abs=0.003)
+    assert np.std(off) < 0.010
+    assert abs(float(np.mean(off))) < 0.003
+    assert abs(float(np.mean(length))) < 0.01 * sum(paths.values()) / len(paths)
+    assert np.std(length) < 0.03
+
+
+def _lengths(path: Path) -> dict[int, float]:
+    ends: dict[int, list[float]] = {}
+    with path.open(newline="") as file:
+        for row in csv.DictReader(file):
+            ends[int(row["s_id"])] = [float(row["pos_x"]), float(row["pos_y"])]
+    return {number: float(np.linalg.norm(end)) for number, end in ends.items()}
