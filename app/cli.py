@@ -8,11 +8,13 @@ import argparse
 import io
 import math
 import os
+import signal
 import sys
+import threading
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn, TextIO
+from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 if TYPE_CHECKING:
     from core.findings import Finding
@@ -220,6 +222,7 @@ def _write_analysis(
     analysis = analyse(session, Method(method), tau_s, progress)
     progress(1.0, "writing")
     write_results(session, analysis, folder, has_log=has_log)
+    progress(1.0, "writing")  # the last chance to be interrupted: what follows replaces the old results
     return analysis
 
 
@@ -252,15 +255,28 @@ class _Progress:
         self._stream = stream
         self._is_terminal = stream.isatty()
         self._next_percent = 0
+        self._is_interrupted = False
+        self._handler_before: Any = None
 
     def __enter__(self) -> "_Progress":
+        if threading.current_thread() is threading.main_thread():
+            self._handler_before = signal.signal(signal.SIGINT, self._interrupt)
         return self
 
     def __exit__(self, *_: object) -> None:
+        if self._handler_before is not None:
+            signal.signal(signal.SIGINT, self._handler_before)
         if self._is_terminal:
             print("\r\x1b[K", end="", file=self._stream, flush=True)
 
+    def _interrupt(self, *_: object) -> None:
+        """Stop at once, or, where a library swallows the exception, at the next progress."""
+        self._is_interrupted = True
+        raise KeyboardInterrupt
+
     def __call__(self, share: float, what: str) -> None:
+        if self._is_interrupted:
+            raise KeyboardInterrupt
         from app.wording import place
         from devices.files.refusal import one_line
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from core.body import Joint, Segment, Site, knee_of
+from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
@@ -20,9 +20,10 @@ from core.rate_kind import find_rate_kind
 from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
 from core.robust import robust_sd
 from core.rotations import wrap
-from core.samples import FloatArray, Recording, RecordingKind, Session
+from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.validity import Basis, basis_of, spans_of_validity
+from core.walking import gait_in
 
 Progress = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. May raise to stop the analysis."""
@@ -85,7 +86,22 @@ def analyse(
             findings += about_angles(found)
     findings += about_missing_joints(session, quality.unusable, recordings)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
-    return Analysis(method, session.is_simulated, tuple(calibrations), tuple(recordings), tuple(unique.values()))
+    return Analysis(
+        method=method,
+        is_simulated=session.is_simulated,
+        calibrations=tuple(calibrations),
+        recordings=tuple(recordings),
+        findings=tuple(unique.values()),
+        affected_side=_affected_side(session.patient),
+    )
+
+
+def _affected_side(patient: Patient) -> Side | None:
+    """The side that symmetry compares with the sound one; None where none or both are affected."""
+    for said in (patient.affected_side, patient.prosthetic_side):
+        if said in set(Side):
+            return Side(said)
+    return None
 
 
 class _Steps:
@@ -296,7 +312,18 @@ def _angles(
         if basis is None or found is None:
             continue
         joints[joint] = _angle(calibrated[basis], found)
-    return RecordingAnalysis(recording.name, recording.folder, recording.kind, _clock_of(tracks, recording), joints)
+    time_s, gait = _clock_of(tracks, recording), {}
+    if recording.kind is RecordingKind.WALKING:
+        offsets = {side: _foot_offset_s(recording, side, bases, calibrated) for side in Side}
+        gait = gait_in(tracks, recording, time_s, joints, offsets)
+    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
+
+
+def _foot_offset_s(recording: Recording, side: Side, bases: Bases, calibrated: dict[Basis, JointCalibration]) -> float:
+    """What brings a foot sensor's clock to the thigh's: the lags of both joints, as far as they are known."""
+    keys = [(recording.name, joint) for joint in (knee_of(side), ankle_of(side))]
+    found = [calibrated.get(bases[key]) for key in keys if key in bases]
+    return sum(calibration.lag_s for calibration in found if calibration is not None)
 
 
 def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:

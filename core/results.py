@@ -4,9 +4,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from core.body import Joint
+from core.body import Joint, Side
 from core.findings import Finding
-from core.samples import FloatArray, RecordingKind
+from core.gait.events import FootEvents
+from core.gait.strides import Strides
+from core.samples import FloatArray, IntArray, RecordingKind
 
 
 class Method(StrEnum):
@@ -88,14 +90,38 @@ class JointAngle:
 
 
 @dataclass(frozen=True, slots=True)
+class SideGait:
+    """One side of one walk. Times are on the recording's clock.
+
+    Attributes
+    ----------
+    events
+        One item per stretch without gaps.
+    parameters
+        Per stride (k,): time and distance, peaks and ranges, named as in strides.csv; angles are radians and named so.
+    cycles
+        Per joint the angle over each stride, (k, 101) radians; NaN rows where it is not known.
+    phase : (n,)
+        Index into `core.gait.phases.PHASES` at each sample of the recording.
+    """
+
+    events: tuple[FootEvents, ...]
+    strides: Strides
+    parameters: Mapping[str, FloatArray]
+    cycles: Mapping[Joint, FloatArray]
+    phase: IntArray
+
+
+@dataclass(frozen=True, slots=True)
 class RecordingAnalysis:
-    """Angles of one recording, all on the clock `time_s` (n,)."""
+    """Angles of one recording, all on the clock `time_s` (n,); gait of the sides that walked with a foot sensor."""
 
     name: str
     folder: str
     kind: RecordingKind
     time_s: FloatArray
     joints: Mapping[Joint, JointAngle]
+    gait: Mapping[Side, SideGait] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,4 +132,5 @@ class Analysis:
     is_simulated: bool
     calibrations: tuple[Calibration, ...]
     recordings: tuple[RecordingAnalysis, ...]
-    findings: tuple[Finding, ...] = field(default=())
+    findings: tuple[Finding, ...] = ()
+    affected_side: Side | None = None

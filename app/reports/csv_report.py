@@ -8,7 +8,8 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
-from core.body import Joint
+from core.body import Joint, Side
+from core.gait.phases import PHASES
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray
 
@@ -18,7 +19,7 @@ DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns nee
 
 
 def write_angles(recording: RecordingAnalysis, path: Path) -> None:
-    """Write one recording's angles in degrees, gaps as empty cells; the phases stay empty while they are unknown.
+    """Write one recording's angles in degrees, gaps as empty cells, and the phase of each foot in words.
 
     Raises
     ------
@@ -58,8 +59,16 @@ def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:
         for joint in joints:
             columns |= _joint_columns(joint, recording.joints[joint], rows)
         n = len(columns["time_s"])
-        columns |= {name: pa.nulls(n, pa.string()) for name in ("left_phase", "right_phase")}
+        columns |= {f"{side}_phase": _phases(recording, side, rows, n) for side in Side}
         yield pa.RecordBatch.from_pydict(columns)
+
+
+def _phases(recording: RecordingAnalysis, side: Side, rows: slice, n: int) -> pa.Array:
+    """Give the phase of each row in words, empty where it is unknown."""
+    if side not in recording.gait:
+        return pa.nulls(n, pa.string())
+    words = pa.array([str(phase) or None for phase in PHASES])
+    return words.take(pa.array(recording.gait[side].phase[rows]))
 
 
 def _joint_columns(joint: Joint, angle: JointAngle, rows: slice) -> dict[str, pa.Array]:

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from app.reports.csv_report import write_angles
+from app.reports.gait_csv import write_gait
 from app.reports.summary import read_summary, write_summary
 from core.results import Analysis
 from core.samples import Session
@@ -40,6 +41,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
             raise FileRefusedError(recording.name, what, "Give this recording's folder another name")
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)
         write_angles(recording, folder / recording.folder / ANGLES)
+        write_gait(recording, folder / recording.folder)
     if has_log:
         from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write
 

@@ -8,13 +8,28 @@ from typing import Any
 
 import numpy as np
 
+from app.reports.gait_csv import PARAMETERS, parameter, used_cycles
 from app.wording import sentence
-from core.body import Joint
+from core.body import Joint, Side
 from core.findings import Finding
-from core.results import Analysis, JointCalibration
+from core.gait.cycles import mean_cycle
+from core.gait.spatiotemporal import MeanAndSd, both_feet, mean_and_sd
+from core.gait.symmetry import curve_difference, symmetry_index_percent
+from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray, RecordingKind
 
 FORMAT = "gaitwright-analysis/1"
+# positive figures only: the index means nothing for signed angles
+SYMMETRIC = (
+    "stride_time_s",
+    "step_time_s",
+    "stance_percent",
+    "swing_percent",
+    "stride_length_m",
+    "clearance_m",
+    "knee_range_deg",
+    "ankle_range_deg",
+)
 
 
 def write_summary(analysis: Analysis, path: Path) -> None:
@@ -44,15 +59,56 @@ def summarise(analysis: Analysis) -> dict[str, Any]:
     """Give the content of `summary.json`; `joints` holds each joint's last calibration."""
     calibrations = [{"walks": list(span.walks), "joints": _joints(span.joints)} for span in analysis.calibrations]
     last = {joint: found for span in analysis.calibrations for joint, found in span.joints.items()}
-    walks = [recording.name for recording in analysis.recordings if recording.kind is RecordingKind.WALKING]
+    walks = [recording for recording in analysis.recordings if recording.kind is RecordingKind.WALKING]
     return {
         "format": FORMAT,
         "simulated": analysis.is_simulated,
         "joints": _joints(last),
         "calibrations": calibrations,
-        "walks": {walk: {"left": {}, "right": {}, "both": {}} for walk in walks},
+        "walks": {walk.name: _walk(walk, analysis.affected_side) for walk in walks},
         "findings": [_finding(finding) for finding in analysis.findings],
     }
+
+
+def _walk(recording: RecordingAnalysis, affected: Side | None) -> dict[str, Any]:
+    """Give each side's averages over the strides used, and what compares both sides."""
+    sides = {str(side): _side(recording.gait[side]) if side in recording.gait else {} for side in Side}
+    if len(recording.gait) < len(Side):
+        return {**sides, "both": {}}
+    left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
+    one, other = (right, left) if affected is Side.RIGHT else (left, right)
+    feet = both_feet(left.strides, right.strides)
+    both = {
+        "cadence_steps_min": _number(feet.cadence_steps_min),
+        "double_support_percent": _number(feet.double_support_percent),
+        "speed_m_s": _number(feet.speed_m_s),
+        "symmetry_index_percent": {
+            name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
+        },
+        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind)) for kind in ("knee", "ankle")},
+    }
+    return {**sides, "both": both}
+
+
+def _side(gait: SideGait) -> dict[str, Any]:
+    used = int(np.count_nonzero(gait.strides.is_used))
+    figures: dict[str, Any] = {"strides_used": used, "strides_left_out": len(gait.strides) - used}
+    for name in PARAMETERS:
+        found = _mean(gait, name)
+        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.mean), _number(found.sd)
+    return figures
+
+
+def _mean(gait: SideGait, name: str) -> MeanAndSd:
+    return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
+
+
+def _difference_deg(left: SideGait, right: SideGait, kind: str) -> float:
+    joints = Joint(f"left_{kind}"), Joint(f"right_{kind}")
+    if joints[0] not in left.cycles or joints[1] not in right.cycles:
+        return math.nan
+    means = [mean_cycle(used_cycles(gait, joint)).mean for gait, joint in zip((left, right), joints, strict=True)]
+    return math.degrees(curve_difference(means[0], means[1]))
 
 
 def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:

@@ -26,7 +26,8 @@ PHASES = tuple(Phase)
 
 
 def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
-    """Index (n,) into PHASES at each of the ascending instants; 0, unknown, before the first and after the last event.
+    """Index (n,) into PHASES at each of the ascending instants; 0, unknown, before the first and after the last event;
+    in stance too where only the shank wore a sensor.
 
     Parameters
     ----------
@@ -40,10 +41,12 @@ def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
         if not len(events):
             continue
         rows = (events.heel_rise_s, events.toe_off_s, events.initial_contact_s, events.full_contact_s)
+        after = (Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING)
+        if events.is_from_shank:
+            rows, after = rows[1:3], (Phase.UNKNOWN, Phase.SWING)
         edges = np.maximum.accumulate(np.stack(rows, axis=1).ravel())
         passed = np.searchsorted(edges, time_s, side="right")
-        after = [Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING]
-        names = np.array([PHASES.index(p) for p in after])[passed % 4]
+        names = np.array([PHASES.index(p) for p in after])[passed % len(after)]
         is_inside = (passed > 0) & (passed < len(edges))
         phase[is_inside] = names[is_inside]
     return phase

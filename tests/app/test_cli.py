@@ -25,6 +25,8 @@ from devices.files.session_folder import write_session
 
 ROOT = Path(__file__).parents[2]
 
+TABLES = ("angles.csv", "cycles.csv", "events.csv", "strides.csv")
+
 
 def swinging(seconds: float, seed: int) -> dict[Site, ImuBlock]:
     """Make a thigh and a shank that swing about one axis of both sensors, with some noise."""
@@ -75,10 +77,10 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> str:
 def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Path, tmp_path: Path) -> None:
     assert analyse(session, tmp_path / "out") == 0
     assert list(files_in(tmp_path / "out")) == [
-        "free_motion/angles.csv",
+        *(f"free_motion/{table}" for table in TABLES),
         "session.rrd",
         "summary.json",
-        "walk_1/angles.csv",
+        *(f"walk_1/{table}" for table in TABLES),
     ]
     summary = json.loads((tmp_path / "out" / "summary.json").read_bytes())
     assert summary["format"] == "gaitwright-analysis/1"
@@ -271,7 +273,11 @@ def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path
     assert analyse(session, tmp_path / "out") == 0
     (tmp_path / "out" / "walk_9").mkdir()
     assert analyse(session, tmp_path / "out", "--no-rrd") == 0
-    assert list(files_in(tmp_path / "out")) == ["free_motion/angles.csv", "summary.json", "walk_1/angles.csv"]
+    assert list(files_in(tmp_path / "out")) == [
+        *(f"free_motion/{table}" for table in TABLES),
+        "summary.json",
+        *(f"walk_1/{table}" for table in TABLES),
+    ]
     assert not (tmp_path / "out" / "walk_9").exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["out", "session"]
 

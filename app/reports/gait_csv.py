@@ -1,0 +1,104 @@
+"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, as three tables."""
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from app.reports.csv_report import write_table
+from core.body import Joint, Side
+from core.gait.cycles import POINTS, mean_cycle
+from core.results import RecordingAnalysis, SideGait
+from core.samples import FloatArray
+
+EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
+TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
+PARAMETERS = (  # as strides.csv has them; angles in degrees
+    "stride_time_s",
+    "step_time_s",
+    "stance_percent",
+    "swing_percent",
+    "stride_length_m",
+    "speed_m_s",
+    "clearance_m",
+    "knee_at_initial_contact_deg",
+    "knee_loading_peak_deg",
+    "knee_stance_minimum_deg",
+    "knee_swing_peak_deg",
+    "knee_swing_peak_percent",
+    "knee_range_deg",
+    "ankle_at_initial_contact_deg",
+    "ankle_loading_plantarflexion_deg",
+    "ankle_stance_dorsiflexion_deg",
+    "ankle_push_off_plantarflexion_deg",
+    "ankle_swing_dorsiflexion_deg",
+    "ankle_range_deg",
+)
+
+
+def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
+    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait they hold their headings only.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written.
+    """
+    write_table(("time_s", "side", "event"), _events(recording), folder / "events.csv")
+    write_table(("side", *TIMES, *PARAMETERS, "used", "reason"), _strides(recording), folder / "strides.csv")
+    joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
+    header = ["percent"]
+    for joint in joints:
+        header += [f"{joint}_mean_deg", f"{joint}_stride_sd_deg", f"{joint}_n"]
+    write_table(header, _cycles(recording, joints), folder / "cycles.csv")
+
+
+def parameter(gait: SideGait, name: str) -> FloatArray:
+    """One column of strides.csv (k,), angles in degrees; NaN where the joint has no angle."""
+    if name.endswith("_deg"):
+        values = gait.parameters.get(name.removesuffix("_deg") + "_rad")
+        return np.full(len(gait.strides), np.nan) if values is None else np.rad2deg(values)
+    values = gait.parameters.get(name)
+    return np.full(len(gait.strides), np.nan) if values is None else values
+
+
+def used_cycles(gait: SideGait, joint: Joint) -> FloatArray:
+    """The joint's angle over the strides used, (k, 101), radians."""
+    return gait.cycles[joint][gait.strides.is_used]
+
+
+def _events(recording: RecordingAnalysis) -> list[tuple[str, ...]]:
+    found = [
+        (float(time_s), str(side), event)
+        for side in Side
+        if side in recording.gait
+        for events in recording.gait[side].events
+        for event in EVENTS
+        for time_s in getattr(events, f"{event}_s")
+    ]
+    return [(_cell(time_s), side, event) for time_s, side, event in sorted(found)]
+
+
+def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
+    for side in Side:
+        if side not in recording.gait:
+            continue
+        gait = recording.gait[side]
+        columns = [getattr(gait.strides, name) for name in TIMES] + [parameter(gait, name) for name in PARAMETERS]
+        for k, reason in enumerate(gait.strides.reason):
+            used = "false" if reason else "true"
+            yield [str(side), *(_cell(float(column[k])) for column in columns), used, str(reason)]
+
+
+def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[str]]:
+    means = [mean_cycle(used_cycles(recording.gait[joint.side], joint)) for joint in joints]
+    for percent in range(POINTS if joints else 0):
+        row = [str(percent)]
+        for mean in means:
+            row += [_cell(math.degrees(mean.mean[percent])), _cell(math.degrees(mean.sd[percent])), str(mean.n)]
+        yield row
+
+
+def _cell(value: float) -> str:
+    return f"{value:.5f}" if math.isfinite(value) else ""

@@ -1,0 +1,99 @@
+"""How does each side walk in one recording? Events, phases, strides and cycles, on the recording's clock."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.gait.cycles import (
+    ANKLE_WINDOWS,
+    KNEE_WINDOWS,
+    cycles_of,
+    find_peak,
+    range_of_cycles,
+)
+from core.gait.events import FootEvents, gait_of
+from core.gait.phases import phases_at
+from core.gait.spatiotemporal import parameters_of
+from core.gait.strides import Strides, strides_of
+from core.results import JointAngle, SideGait
+from core.samples import BoolArray, FloatArray, Recording
+from core.sensors import SensorTracks
+
+
+def foot_site(side: Side) -> Site:
+    return Site(f"{side}_{Segment.FOOT}")
+
+
+def gait_in(
+    tracks: SensorTracks,
+    recording: Recording,
+    time_s: FloatArray,
+    joints: Mapping[Joint, JointAngle],
+    clock_offsets_s: Mapping[Side, float],
+) -> dict[Side, SideGait]:
+    """Both sides' gait in one walk; a side without a foot sensor is missing.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        The recording's clock.
+    clock_offsets_s
+        What brings each foot sensor's clock to it.
+    """
+    events = {
+        side: _events(tracks, recording, foot_site(side), clock_offsets_s[side])
+        for side in Side
+        if tracks.is_usable(recording, foot_site(side))
+    }
+    strides = {side: strides_of(found) for side, found in events.items()}
+    gait = {}
+    for side, found in events.items():
+        other = strides.get(Side.RIGHT if side is Side.LEFT else Side.LEFT)
+        mine = strides[side]
+        cycles = {
+            joint: cycles_of(time_s, joints[joint].angle_rad, mine.start_s, mine.end_s)
+            for joint in (knee_of(side), ankle_of(side))
+            if joint in joints
+        }
+        parameters = {**parameters_of(mine, other), **_joint_parameters(mine, cycles)}
+        gait[side] = SideGait(tuple(found), mine, parameters, cycles, phases_at(time_s, found))
+    return gait
+
+
+def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: float) -> list[FootEvents]:
+    """Events of one foot, stretch by stretch, long recordings block by block."""
+    found = []
+    for block in tracks.blocks(recording):
+        for foot in tracks.oriented(recording, site, block):
+            events = gait_of(foot)
+            is_mine = (events.initial_contact_s >= block.core_from_s) & (events.initial_contact_s < block.core_to_s)
+            found.append(_only(events, is_mine, offset_s))
+    return [events for events in found if len(events)]
+
+
+def _only(events: FootEvents, keep: BoolArray, offset_s: float) -> FootEvents:
+    kept = {
+        name: getattr(events, name)[keep] for name in ("length_m", "height_m", "turn_rad", "is_certain", "is_measured")
+    }
+    times = {
+        name: getattr(events, name)[keep] + offset_s
+        for name in ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
+    }
+    return replace(events, **kept, **times)
+
+
+def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
+    """Peaks, ranges and the angle at initial contact of each stride (k,), radians or percent."""
+    parameters: dict[str, FloatArray] = {}
+    for joint, windows in ((j, KNEE_WINDOWS if j.is_knee else ANKLE_WINDOWS) for j in cycles):
+        kind, curves = "knee" if joint.is_knee else "ankle", cycles[joint]
+        parameters[f"{kind}_at_initial_contact_rad"] = curves[:, 0] if len(curves) else np.empty(0)
+        for window in windows:
+            peak = find_peak(curves, window)
+            parameters[f"{window.name}_rad"] = peak.value
+            if window.name == "knee_swing_peak":
+                parameters["knee_swing_peak_percent"] = peak.percent
+        parameters[f"{kind}_range_rad"] = range_of_cycles(curves)
+    return parameters

@@ -1,0 +1,107 @@
+"""Do events, strides, cycles and averages say what the simulated patient did?"""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.reports.gait_csv import PARAMETERS, write_gait
+from app.reports.summary import summarise
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.results import Analysis
+from devices.walker import SimulatedSession, Standing, Walk, WalkerSettings, simulate
+
+
+@pytest.fixture(scope="module")
+def walked() -> SimulatedSession:
+    return simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), clock_late_s={Site.LEFT_FOOT: 0.03}))
+
+
+@pytest.fixture(scope="module")
+def found(walked: SimulatedSession) -> Analysis:
+    return analyse(walked.session)
+
+
+@pytest.fixture(scope="module")
+def folder(found: Analysis, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("walk_1")
+    write_gait(found.recordings[0], folder)
+    return folder
+
+
+def rows(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_every_step_has_its_four_events_on_the_clock_of_the_walk(walked: SimulatedSession, folder: Path) -> None:
+    events = rows(folder / "events.csv")
+    assert [float(row["time_s"]) for row in events] == sorted(float(row["time_s"]) for row in events)
+    for side in Side:
+        truth = walked.truth.recordings["walk 1"].feet[side].events
+        for name in ("initial_contact", "full_contact", "heel_rise", "toe_off"):
+            told = [float(row["time_s"]) for row in events if row["side"] == side and row["event"] == name]
+            true = getattr(truth, f"{name}_s")
+            # the left foot's late clock is brought to the thigh's, as its truth is not
+            late = 0.03 if side is Side.LEFT else 0.0
+            assert len(told) == len(true)
+            error_s = np.abs(np.array(told) - true)
+            assert np.median(error_s) < 0.015 + late
+            assert np.max(error_s) < 0.1 + late  # the last step, which stops
+
+
+def test_strides_are_as_long_as_they_were_and_say_why_they_are_left_out(walked: SimulatedSession, folder: Path) -> None:
+    strides = rows(folder / "strides.csv")
+    assert list(strides[0]) == [
+        *("side", "start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s"),
+        *PARAMETERS,
+        *("used", "reason"),
+    ]
+    for side in Side:
+        mine = [row for row in strides if row["side"] == side]
+        used = [float(row["stride_length_m"]) for row in mine if row["used"] == "true"]
+        true = walked.truth.recordings["walk 1"].feet[side].stride_lengths_m
+        assert len(used) >= 5
+        assert np.median(used) == pytest.approx(np.median(true), rel=0.02)
+        assert all(bool(row["reason"]) == (row["used"] == "false") for row in mine)
+
+
+def test_the_mean_cycle_is_the_mean_of_the_strides_used(found: Analysis, folder: Path) -> None:
+    cycles = rows(folder / "cycles.csv")
+    assert [int(row["percent"]) for row in cycles] == list(range(101))
+    gait = found.recordings[0].gait[Side.LEFT]
+    curves = np.rad2deg(gait.cycles[Joint.LEFT_KNEE][gait.strides.is_used])
+    assert [float(row["left_knee_mean_deg"]) for row in cycles] == pytest.approx(curves.mean(axis=0), abs=1e-5)
+    assert [float(row["left_knee_stride_sd_deg"]) for row in cycles] == pytest.approx(
+        curves.std(axis=0, ddof=1), abs=1e-5
+    )
+    assert {int(row["left_knee_n"]) for row in cycles} == {len(curves)}
+
+
+def test_the_summary_has_the_averages_of_each_side_and_what_compares_them(
+    walked: SimulatedSession, found: Analysis, folder: Path
+) -> None:
+    walk = summarise(found)["walks"]["walk 1"]
+    strides = [row for row in rows(folder / "strides.csv") if row["side"] == "left"]
+    used = [row for row in strides if row["used"] == "true"]
+    assert walk["left"]["strides_used"] == len(used)
+    assert walk["left"]["strides_left_out"] == len(strides) - len(used)
+    for name in PARAMETERS:
+        mean = np.mean([float(row[name]) for row in used if row[name]]) if any(row[name] for row in used) else None
+        assert walk["left"][f"{name}_mean"] == (None if mean is None else pytest.approx(mean, abs=1e-4))
+    assert walk["both"]["speed_m_s"] == pytest.approx(walked.truth.recordings["walk 1"].speed_m_s, rel=0.1)
+    assert walk["both"]["cadence_steps_min"] == pytest.approx(
+        120 / np.mean([walk[side]["stride_time_s_mean"] for side in ("left", "right")]), rel=1e-6
+    )
+    assert abs(walk["both"]["symmetry_index_percent"]["stride_time_s"]) < 3.0
+    assert 0 < walk["both"]["curve_difference_deg"]["knee"] < 10.0
+
+
+def test_symmetry_compares_the_affected_side_with_the_sound_one(walked: SimulatedSession, found: Analysis) -> None:
+    turned = replace(found, affected_side=Side.RIGHT)
+    index = summarise(found)["walks"]["walk 1"]["both"]["symmetry_index_percent"]
+    other = summarise(turned)["walks"]["walk 1"]["both"]["symmetry_index_percent"]
+    assert other["stance_percent"] == pytest.approx(-index["stance_percent"])
