@@ -40,10 +40,10 @@ def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
     for events in stretches:
         if not len(events):
             continue
-        rows = (events.heel_rise_s, events.toe_off_s, events.initial_contact_s, events.full_contact_s)
-        after = (Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING)
+        rows = [events.heel_rise_s, events.toe_off_s, events.initial_contact_s, events.full_contact_s]
+        after = [Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING]
         if events.is_from_shank:
-            rows, after = rows[1:3], (Phase.UNKNOWN, Phase.SWING)
+            rows, after = rows[1:3], [Phase.UNKNOWN, Phase.SWING]
         edges = np.maximum.accumulate(np.stack(rows, axis=1).ravel())
         passed = np.searchsorted(edges, time_s, side="right")
         names = np.array([PHASES.index(p) for p in after])[passed % len(after)]
