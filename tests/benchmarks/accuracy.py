@@ -56,7 +56,7 @@ LATE = {site: 0.03 for site in Site if site.segment is Segment.SHANK}
 CONDITIONS = {
     "rigid": Condition(WalkerSettings(), {**SIGNS, "knee axis": 0.25, "knee Z": 0.13, "ankle Z": 0.45}),
     "rigid 3 s": Condition(WalkerSettings(recordings=SHORT), {**SIGNS, "knee axis": 0.35}),
-    "rigid 60 Hz": Condition(WalkerSettings(rate_hz=60.0), {**SIGNS, "knee Z": 0.13, "ankle Z": 0.45}),
+    "rigid 60 Hz": Condition(WalkerSettings(rate_hz=60.0), {**SIGNS, "knee Z": 0.13}),
     "rigid 200 Hz": Condition(WalkerSettings(rate_hz=200.0), {**SIGNS, "knee Z": 0.13, "ankle Z": 0.45}),
     "rigid, biased sensors": Condition(
         WalkerSettings(errors=BAD_SENSORS), {**SIGNS, "knee Z": 0.20, "knee centre": 3.5, "ankle centre": 3.5}
