@@ -1,0 +1,53 @@
+"""Does a foot that does nothing, or next to nothing, give no events and no error?"""
+
+import numpy as np
+import pytest
+
+from core.gait.events import gait_of
+from core.gait.foot import GRAVITY_M_S2
+from core.gait.shank import gait_of_shank
+from core.orientation import oriented
+from core.pair import OrientedTrack
+from core.samples import FloatArray, RateKind
+from core.tracks import Track
+
+RNG = np.random.default_rng(5)
+
+
+def foot(gyr: FloatArray, acc: FloatArray, step_s: float = 0.01) -> OrientedTrack:
+    track = Track(0.0, step_s, gyr, acc, None, None, np.ones(len(gyr), dtype=bool))
+    return oriented(track, RateKind.INSTANTANEOUS, np.zeros(3))
+
+
+def still(n: int) -> tuple[FloatArray, FloatArray]:
+    return np.zeros((n, 3)), np.tile([0.0, 0.0, GRAVITY_M_S2], (n, 1))
+
+
+@pytest.mark.parametrize("n", [10, 30, 500])
+def test_a_foot_that_lies_still_has_no_events(n: int) -> None:
+    track = foot(*still(n))
+    assert len(gait_of(track)) == 0
+    assert len(gait_of_shank(track)) == 0
+
+
+def test_noise_has_no_events() -> None:
+    gyr, acc = still(1000)
+    track = foot(gyr + 0.02 * RNG.normal(size=gyr.shape), acc + 0.1 * RNG.normal(size=acc.shape))
+    assert len(gait_of(track)) == 0
+    assert len(gait_of_shank(track)) == 0
+
+
+def test_a_foot_tapping_on_the_spot_makes_no_step() -> None:
+    t = np.arange(1000) / 100.0
+    lift = np.deg2rad(15.0) * np.maximum(np.sin(2 * np.pi * 0.8 * t), 0.0) ** 4
+    gyr = np.zeros((1000, 3))
+    gyr[:, 1] = -np.gradient(lift, t)
+    acc = GRAVITY_M_S2 * np.stack([np.sin(lift), np.zeros(1000), np.cos(lift)], axis=1)
+    assert len(gait_of(foot(gyr, acc))) == 0
+
+
+def test_shaking_that_never_rests_has_no_events() -> None:
+    t = np.arange(1500) / 100.0
+    gyr = np.stack([5.0 * np.sin(7.0 * t), 4.0 * np.cos(5.0 * t), 3.0 * np.sin(3.0 * t)], axis=1)
+    acc = still(1500)[1] + 5.0 * np.stack([np.sin(9.0 * t), np.cos(11.0 * t), np.sin(6.0 * t)], axis=1)
+    assert len(gait_of(foot(gyr, acc))) == 0
