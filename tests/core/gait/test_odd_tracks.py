@@ -2,10 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from core.gait.events import gait_of
 from core.gait.foot import GRAVITY_M_S2
 from core.gait.shank import gait_of_shank
+from core.gait.strides import Reason, strides_of
 from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import FloatArray, RateKind
@@ -51,3 +53,24 @@ def test_shaking_that_never_rests_has_no_events() -> None:
     gyr = np.stack([5.0 * np.sin(7.0 * t), 4.0 * np.cos(5.0 * t), 3.0 * np.sin(3.0 * t)], axis=1)
     acc = still(1500)[1] + 5.0 * np.stack([np.sin(9.0 * t), np.cos(11.0 * t), np.sin(6.0 * t)], axis=1)
     assert len(gait_of(foot(gyr, acc))) == 0
+
+
+@pytest.mark.parametrize("step_m", [0.15, 0.3])
+def test_a_foot_that_slides_flat_over_the_floor_makes_every_step_and_leaves_doubt(step_m: float) -> None:
+    """Ten steps of 0.48 s, one every 1.2 s, in a mounting of chance."""
+    t = (np.arange(15000) + 0.5) / 1000.0  # never where one step ends and the next begins
+    since = np.clip(t - 1.5, 0.0, 12.0 - 1e-9)
+    u = np.clip((since % 1.2 - 0.72) / 0.48, 0.0, 1.0)
+    forward_m = step_m * (np.floor(since / 1.2) + u**3 * (10.0 - 15.0 * u + 6.0 * u**2))
+    forward = np.gradient(np.gradient(forward_m, t), t)
+    acc = np.stack([forward, np.zeros_like(t), np.full_like(t, GRAVITY_M_S2)], axis=1)[::10]
+    mounting = Rotation.from_rotvec([0.5, -1.1, 2.0])
+    gyr = 0.002 * RNG.normal(size=acc.shape)
+    events = gait_of(foot(gyr, mounting.apply(acc) + 0.03 * RNG.normal(size=acc.shape)))
+    assert len(events) == 10
+    np.testing.assert_allclose(events.length_m, step_m, atol=0.02)
+    off_s = 1.5 + 1.2 * np.arange(10) + 0.72
+    np.testing.assert_allclose(events.toe_off_s, off_s, atol=0.1)
+    np.testing.assert_allclose(events.initial_contact_s, off_s + 0.48, atol=0.1)
+    assert not events.is_certain.any()
+    assert set(strides_of([events]).reason) == {Reason.DOUBT}
