@@ -16,6 +16,7 @@ from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
 
 MAX_HINGE_RESIDUAL_RAD_S = 0.06  # mechanical hinges 0.02, human joints 0.07 to 1.0
+MAX_OFF_AXIS_RAD_S = 0.05  # mechanical hinges 0.025, simulated 0.01 to 0.02; people 0.07 and more in walking
 ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
 MIN_SCALE_RAD_S = 0.002
 MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum

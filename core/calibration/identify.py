@@ -8,7 +8,7 @@ import numpy as np
 from core.calibration import certainty
 from core.calibration.coincidence import disagreement, fit_coincidence, relative_rotation
 from core.calibration.heading import residual_scales
-from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, hinge_axes, hinge_residual
+from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, MAX_OFF_AXIS_RAD_S, hinge_axes, hinge_residual
 from core.calibration.joint_axis import (
     Candidates,
     candidates,
@@ -187,7 +187,9 @@ def _refined(
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
     seen = [many] if others is None else [many, others.thinned(POLISH_SAMPLES)]
     residual = max(hinge_residual(one, j1, j2) for one in seen)
-    is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S
+    # lengths alone can agree by chance: what a hinge does not do at all is turn across its axis
+    off_axis, _ = residual_scales(many, fit)
+    is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S
     centre = centre_by_vectors(many, fit.knots_rad[0])
     floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
     axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit), floor)
