@@ -137,6 +137,12 @@ SENTENCES = {
     "published_sign_unsure": (
         "the published method could not pair the directions of the two axes with certainty. Its curve may be mirrored."
     ),
+    "events_from_shank": (
+        "there is no foot sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
+    ),
+    "doubtful_strides": (
+        "strides with a foot that hardly rolled: {count}. When it landed is in doubt, so averages leave them out."
+    ),
     "published_differs": (
         "the published method differs by {difference_deg:.1f}° in shape. Compare the two curves before relying on it."
     ),

@@ -23,7 +23,7 @@ from core.rotations import wrap
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.validity import Basis, basis_of, spans_of_validity
-from core.walking import gait_in
+from core.walking import gait_in, site_of_events
 
 Progress = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. May raise to stop the analysis."""
@@ -314,14 +314,18 @@ def _angles(
         joints[joint] = _angle(calibrated[basis], found)
     time_s, gait = _clock_of(tracks, recording), {}
     if recording.kind is RecordingKind.WALKING:
-        offsets = {side: _foot_offset_s(recording, side, bases, calibrated) for side in Side}
+        offsets = {side: _clock_offset_s(tracks, recording, side, bases, calibrated) for side in Side}
         gait = gait_in(tracks, recording, time_s, joints, offsets)
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
 
 
-def _foot_offset_s(recording: Recording, side: Side, bases: Bases, calibrated: dict[Basis, JointCalibration]) -> float:
-    """What brings a foot sensor's clock to the thigh's: the lags of both joints, as far as they are known."""
-    keys = [(recording.name, joint) for joint in (knee_of(side), ankle_of(side))]
+def _clock_offset_s(
+    tracks: SensorTracks, recording: Recording, side: Side, bases: Bases, calibrated: dict[Basis, JointCalibration]
+) -> float:
+    """What brings the clock of the sensor that tells the events to the thigh's: the lags of the joints between."""
+    site = site_of_events(tracks, recording, side)
+    joints = (knee_of(side), ankle_of(side)) if site and site.segment is Segment.FOOT else (knee_of(side),)
+    keys = [(recording.name, joint) for joint in joints]
     found = [calibrated.get(bases[key]) for key in keys if key in bases]
     return sum(calibration.lag_s for calibration in found if calibration is not None)
 

@@ -15,6 +15,7 @@ from core.gait.cycles import (
 )
 from core.gait.events import FootEvents, gait_of
 from core.gait.phases import phases_at
+from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Strides, strides_of
 from core.results import JointAngle, SideGait
@@ -22,8 +23,13 @@ from core.samples import BoolArray, FloatArray, Recording
 from core.sensors import SensorTracks
 
 
-def foot_site(side: Side) -> Site:
-    return Site(f"{side}_{Segment.FOOT}")
+def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Site | None:
+    """The sensor that tells when a side's foot lands and leaves."""
+    for segment in (Segment.FOOT, Segment.SHANK):
+        site = Site(f"{side}_{segment}")
+        if tracks.is_usable(recording, site):
+            return site
+    return None
 
 
 def gait_in(
@@ -33,19 +39,19 @@ def gait_in(
     joints: Mapping[Joint, JointAngle],
     clock_offsets_s: Mapping[Side, float],
 ) -> dict[Side, SideGait]:
-    """Both sides' gait in one walk; a side without a foot sensor is missing.
+    """Both sides' gait in one walk, from the foot, else from the shank; a side with neither is missing.
 
     Parameters
     ----------
     time_s : (n,)
         The recording's clock.
     clock_offsets_s
-        What brings each foot sensor's clock to it.
+        What brings the clock of each side's sensor, `site_of_events`, to it.
     """
     events = {
-        side: _events(tracks, recording, foot_site(side), clock_offsets_s[side])
+        side: _events(tracks, recording, site, clock_offsets_s[side])
         for side in Side
-        if tracks.is_usable(recording, foot_site(side))
+        if (site := site_of_events(tracks, recording, side)) is not None
     }
     strides = {side: strides_of(found) for side, found in events.items()}
     gait = {}
@@ -63,11 +69,11 @@ def gait_in(
 
 
 def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: float) -> list[FootEvents]:
-    """Events of one foot, stretch by stretch, long recordings block by block."""
+    """Events of one side, stretch by stretch, long recordings block by block."""
     found = []
     for block in tracks.blocks(recording):
         for foot in tracks.oriented(recording, site, block):
-            events = gait_of(foot)
+            events = gait_of(foot) if site.segment is Segment.FOOT else gait_of_shank(foot)
             is_mine = (events.initial_contact_s >= block.core_from_s) & (events.initial_contact_s < block.core_to_s)
             found.append(_only(events, is_mine, offset_s))
     return [events for events in found if len(events)]

@@ -76,6 +76,7 @@ def _events(recording: RecordingAnalysis) -> list[tuple[str, ...]]:
         for events in recording.gait[side].events
         for event in EVENTS
         for time_s in getattr(events, f"{event}_s")
+        if math.isfinite(time_s)
     ]
     return [(_cell(time_s), side, event) for time_s, side, event in sorted(found)]
 

@@ -105,3 +105,24 @@ def test_symmetry_compares_the_affected_side_with_the_sound_one(walked: Simulate
     index = summarise(found)["walks"]["walk 1"]["both"]["symmetry_index_percent"]
     other = summarise(turned)["walks"]["walk 1"]["both"]["symmetry_index_percent"]
     assert other["stance_percent"] == pytest.approx(-index["stance_percent"])
+
+
+def test_without_a_foot_sensor_steps_come_from_the_shank_and_say_so(tmp_path: Path) -> None:
+    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
+    walked = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=sites))
+    found = analyse(walked.session)
+    write_gait(found.recordings[0], tmp_path)
+    names = {row["event"] for row in rows(tmp_path / "events.csv")}
+    assert names == {"initial_contact", "toe_off"}
+    assert {row["stride_length_m"] for row in rows(tmp_path / "strides.csv")} == {""}
+    assert "events_from_shank" in {finding.key for finding in found.findings}
+
+
+def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:
+    walked = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), sites=(Site.LEFT_FOOT, Site.RIGHT_FOOT)))
+    found = analyse(walked.session)
+    assert found.calibrations == () or not any(c.joints for c in found.calibrations)
+    write_gait(found.recordings[0], tmp_path)
+    events = rows(tmp_path / "events.csv")
+    assert {row["side"] for row in events} == {"left", "right"}
+    assert rows(tmp_path / "cycles.csv") == []
