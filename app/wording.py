@@ -37,8 +37,9 @@ SENTENCES = {
     # what the data look like
     "too_few_samples": "only {samples} samples. Nothing can be computed from them; record at least three seconds.",
     "all_zero": "every sample is zero. Check this sensor; its joints are left out.",
+    "bridged": "{missing_percent:.1f} % of the samples are missing, one by one. The angles go on across them.",
     "gaps": (
-        "samples are missing in {count} places, {missing_percent:.1f} % in all, the longest {longest_s:.2f} s. "
+        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, the longest {longest_s:.2f} s). "
         "The angles have gaps there."
     ),
     "many_gaps": (

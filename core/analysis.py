@@ -3,7 +3,7 @@
 Read `analyse` as a table of contents; each step is a module of its own.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -213,7 +213,8 @@ def _calibration(
     standing = _standing_twist(tracks, found)
     moving = within_half_a_turn(np.concatenate([t.moving_twist for t in twists])) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
-    sign = _clinical_sign(found, twists, is_walking, wrap(moving - zero_rad), standing is not None, knee)
+    bend_rad, has_standing = wrap(moving - zero_rad), standing is not None
+    sign = _clinical_sign(found, twists, is_walking, bend_rad, has_standing, knee, session.turned_sign)
     turn = session.turned_sign.get(joint, 1)
     zero = (
         ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
@@ -272,6 +273,7 @@ def _clinical_sign(
     bend_rad: FloatArray,
     has_standing: bool,
     knee: JointCalibration | None,
+    turned_sign: Mapping[Joint, int],
 ) -> ClinicalSign:
     if not bend_rad.size:
         return ClinicalSign(1, 0.0, False)
@@ -281,21 +283,29 @@ def _clinical_sign(
     shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
     if knee is None:
         return ankle_sign(None, 0.0, shank_rate, is_walking)
-    found_knee = ClinicalSign(knee.clinical_sign, knee.clinical_sign_margin or 0.0, knee.is_sign_certain)
+    # the user's word on a knee is no word on its ankle
+    found_sign = knee.clinical_sign * turned_sign.get(knee.joint, 1)
+    found_knee = ClinicalSign(found_sign, knee.clinical_sign_margin or 0.0, knee.is_sign_certain)
     return ankle_sign(found_knee, float(knee.axis_distal @ found.geometry.axis_1), shank_rate, is_walking)
 
 
 def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:
-    """Walks that share the calibration of every joint go together; without walks the free motion stands alone."""
+    """Walks that share the calibration of every joint go together.
+
+    What a free motion shows of joints that no walk holds comes first, without walks.
+    """
     groups: dict[tuple[Basis, ...], list[str]] = {}
     walks = [recording for recording in span if recording.kind is RecordingKind.WALKING]
     for recording in walks or _moving(span):
         key = tuple(bases[recording.name, joint] for joint in Joint if (recording.name, joint) in bases)
         groups.setdefault(key, []).extend([recording.name] if walks else [])
-    return [
+    in_walks = {basis.joint for key in groups for basis in key}
+    alone = {basis.joint: found for basis, found in calibrated.items() if basis.joint not in in_walks}
+    by_walk = [
         Calibration(tuple(names), {basis.joint: calibrated[basis] for basis in key if basis in calibrated})
         for key, names in groups.items()
     ]
+    return [*([Calibration((), alone)] if alone else []), *by_walk]
 
 
 def _angles(

@@ -54,6 +54,8 @@ def about_joint(
     margin = calibration.sign_margin
     if calibration.method is Method.ROBUST and margin is not None and margin < MIN_SIGN_MARGIN:
         say("sign_in_doubt", Severity.WARNING, margin=round(margin, 2))
+    if calibration.method is Method.PUBLISHED and margin is not None and margin < MIN_SIGN_MARGIN:
+        say("published_sign_unsure", Severity.WARNING)
     if turned is not None:
         say("sign_turned" if turned < 0 else "sign_confirmed", Severity.INFO)
     elif not calibration.is_sign_certain:

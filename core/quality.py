@@ -132,6 +132,8 @@ def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
     count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
     if percent < MIN_LOSS_PERCENT and count == 0:
         return []
+    if count == 0 and percent < GRAVE_LOSS_PERCENT:
+        return [("bridged", Severity.INFO, {"missing_percent": round(percent, 1)})]
     severity = Severity.WARNING if percent < GRAVE_LOSS_PERCENT else Severity.GRAVE
     numbers: dict[str, float | int | str] = {
         "count": count,

@@ -19,6 +19,7 @@ from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray, RecordingKind
 
 FORMAT = "gaitwright-analysis/1"
+BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s", "symmetry_index_percent", "curve_difference_deg")
 # positive figures only: the index means nothing for signed angles
 SYMMETRIC = (
     "stride_time_s",
@@ -74,7 +75,7 @@ def _walk(recording: RecordingAnalysis, affected: Side | None) -> dict[str, Any]
     """Give each side's averages over the strides used, and what compares both sides."""
     sides = {str(side): _side(recording.gait[side]) if side in recording.gait else {} for side in Side}
     if len(recording.gait) < len(Side):
-        return {**sides, "both": {}}
+        return {**sides, "both": dict.fromkeys(BOTH)}
     left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
     one, other = (right, left) if affected is Side.RIGHT else (left, right)
     feet = both_feet(left.strides, right.strides)
@@ -96,7 +97,8 @@ def _side(gait: SideGait) -> dict[str, Any]:
     for name in PARAMETERS:
         found = _mean(gait, name)
         figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.mean), _number(found.sd)
-    return figures
+    # needs the reference bands of the report, which are not chosen yet
+    return {**figures, "gait_variable_score_deg": None}
 
 
 def _mean(gait: SideGait, name: str) -> MeanAndSd:

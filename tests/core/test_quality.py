@@ -126,7 +126,7 @@ def test_storms_of_nan_that_leave_nothing(knee_visit: Session, share: float, met
 
 
 @methods
-@pytest.mark.parametrize(("share", "key"), [(0.05, "gaps"), (0.5, "many_gaps")])
+@pytest.mark.parametrize(("share", "key"), [(0.05, "bridged"), (0.5, "many_gaps")])
 def test_storms_of_nan_that_leave_enough(
     person: "Person", knee_visit: Session, share: float, key: str, method: Method
 ) -> None:
