@@ -113,6 +113,10 @@ SENTENCES = {
         "the axis found lies {elevation_deg:.0f}° from horizontal, so flexion did not dominate the motion. Repeat "
         "free motion and bend this joint more."
     ),
+    "clock_moved": (
+        "the farther sensor's clock is {lag_ms:+.0f} ms off here and was not in the others. It has been "
+        "corrected; with one receiver for all sensors it does not happen."
+    ),
     "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
     "not_the_same_joint": (
         "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one "

@@ -4,6 +4,7 @@ Read `analyse` as a table of contents; each step is a module of its own.
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
-from core.identified import Identified, identify
+from core.findings import Finding, Severity
+from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
 from core.published.angles import DEFAULT_TAU_S
@@ -73,7 +75,9 @@ def analyse(
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)
-        measured = _measure(tracks, bases, identified, steps)
+        lags, told = _lags(tracks, bases, identified)
+        findings += told
+        measured = _measure(tracks, bases, identified, lags, steps)
         calibrated = _calibrate(tracks, bases, identified, measured, method)
         for basis, calibration in calibrated.items():
             joint = basis.joint
@@ -81,7 +85,7 @@ def analyse(
             findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
         calibrations += _by_walk(span, bases, calibrated)
         for recording in _moving(span):
-            found = _angles(tracks, recording, bases, calibrated, measured)
+            found = _angles(tracks, recording, bases, calibrated, measured, lags)
             recordings.append(found)
             findings += about_angles(found)
     findings += about_missing_joints(session, quality.unusable, recordings)
@@ -145,8 +149,32 @@ def _identify(
     return identified
 
 
+def _lags(
+    tracks: SensorTracks, bases: Bases, identified: dict[Basis, Identified]
+) -> tuple[dict[tuple[str, Joint], float], list[Finding]]:
+    """The lag of each joint in each recording, and a finding where a recording has another than the identification."""
+    lags, findings = {}, []
+    for (name, joint), basis in bases.items():
+        found = identified.get(basis)
+        if found is None:
+            continue
+        lags[name, joint] = found.geometry.lag_s
+        if found.robust is not None and found.recordings != (name,):
+            recording = next(r for r in tracks.span if r.name == name)
+            moved_s = clock_moved_s(tracks, recording, found)
+            if moved_s:
+                lags[name, joint] += moved_s
+                numbers = {"lag_ms": round(1000 * moved_s, 1)}
+                findings.append(Finding("clock_moved", Severity.WARNING, f"{name}, {joint}", numbers))
+    return lags, findings
+
+
 def _measure(
-    tracks: SensorTracks, bases: Bases, identified: dict[Basis, Identified], steps: _Steps
+    tracks: SensorTracks,
+    bases: Bases,
+    identified: dict[Basis, Identified],
+    lags: dict[tuple[str, Joint], float],
+    steps: _Steps,
 ) -> dict[tuple[str, Joint], Twist]:
     measured: dict[tuple[str, Joint], Twist] = {}
     for recording in _moving(tracks.span):
@@ -157,10 +185,9 @@ def _measure(
                 continue
             steps.tick(recording.name)
             # an ankle is measured on its shank's clock, which the knee brings to the thigh's
-            knee_basis = bases.get((recording.name, knee_of(joint.side)))
-            knee = identified.get(knee_basis) if knee_basis else None
-            offset_s = knee.geometry.lag_s if knee and joint.proximal.segment is Segment.SHANK else 0.0
-            geometry = identified[basis].geometry
+            knee = (recording.name, knee_of(joint.side))
+            offset_s = lags.get(knee, 0.0) if joint.proximal.segment is Segment.SHANK else 0.0
+            geometry = replace(identified[basis].geometry, lag_s=lags[recording.name, joint])
             measured[recording.name, joint] = measure(tracks, recording, joint, geometry, time_s, offset_s)
     return measured
 
@@ -314,6 +341,7 @@ def _angles(
     bases: Bases,
     calibrated: dict[Basis, JointCalibration],
     measured: dict[tuple[str, Joint], Twist],
+    lags: dict[tuple[str, Joint], float],
 ) -> RecordingAnalysis:
     """Turn the twists of one recording to the clinical sign and zero, and say how sure they are."""
     joints: dict[Joint, JointAngle] = {}
@@ -324,20 +352,18 @@ def _angles(
         joints[joint] = _angle(calibrated[basis], found)
     time_s, gait = _clock_of(tracks, recording), {}
     if recording.kind is RecordingKind.WALKING:
-        offsets = {side: _clock_offset_s(tracks, recording, side, bases, calibrated) for side in Side}
+        offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
         gait = gait_in(tracks, recording, time_s, joints, offsets)
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
 
 
 def _clock_offset_s(
-    tracks: SensorTracks, recording: Recording, side: Side, bases: Bases, calibrated: dict[Basis, JointCalibration]
+    tracks: SensorTracks, recording: Recording, side: Side, lags: dict[tuple[str, Joint], float]
 ) -> float:
     """What brings the clock of the sensor that tells the events to the thigh's: the lags of the joints between."""
     site = site_of_events(tracks, recording, side)
     joints = (knee_of(side), ankle_of(side)) if site and site.segment is Segment.FOOT else (knee_of(side),)
-    keys = [(recording.name, joint) for joint in joints]
-    found = [calibrated.get(bases[key]) for key in keys if key in bases]
-    return sum(calibration.lag_s for calibration in found if calibration is not None)
+    return sum(lags.get((recording.name, joint), 0.0) for joint in joints)
 
 
 def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:

@@ -6,8 +6,9 @@ import numpy as np
 
 from core.body import Joint
 from core.calibration.identify import Identification, identify_joint, moving_data
+from core.calibration.joint_axis import heading_from_axes
 from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
-from core.calibration.lag import Lag
+from core.calibration.lag import Lag, find_lag
 from core.measure import Geometry, pairs_of
 from core.pair import Pair
 from core.published.identify import identify_as_published
@@ -16,6 +17,9 @@ from core.results import AxisSource, Method
 from core.samples import FloatArray, Recording
 from core.sensors import SensorTracks
 from core.validity import Basis
+
+LAG_SAMPLES = 400
+MIN_MOVED_S = 0.015  # tissue in walking looks up to 10 ms late
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,3 +153,18 @@ def _as_published(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identifie
         is_hinge=False,
         robust=None,
     )
+
+
+def clock_moved_s(tracks: SensorTracks, recording: Recording, found: Identified) -> float:
+    """How far the distal clock of one recording is from where the identification found it, 0 where it is not.
+
+    One lag holds for all recordings of a joint; one whose own accelerations ask for another is worth telling.
+    """
+    geometry, joint = found.geometry, found.basis.joint
+    pairs = pairs_of(tracks, recording, joint, tracks.blocks(recording)[0], geometry.lag_s)
+    data = moving_data(tuple(pairs))
+    if data is None:
+        return 0.0
+    some = data.thinned(LAG_SAMPLES)
+    lag = find_lag(some, heading_from_axes(some, geometry.axis_1[None], geometry.axis_2[None])[0])
+    return lag.lag_s if abs(lag.lag_s) > MIN_MOVED_S else 0.0

@@ -153,6 +153,8 @@ def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
     assert one.centre_distal_m is not None
     assert other.centre_distal_m is not None
     np.testing.assert_allclose(turn.inv().apply(one.centre_distal_m), other.centre_distal_m, atol=0.001)
+    assert one.sign_margin is not None
+    assert other.sign_margin is not None
     # margins of many thousands differ by what rounding does to a cost near zero
     assert np.log(one.sign_margin) == pytest.approx(np.log(other.sign_margin), abs=0.5)
     assert told(plain) == told(turned)

@@ -119,3 +119,15 @@ def test_new_straps_are_a_new_calibration() -> None:
     assert len(found.calibrations) == 2
     assert [c.joints[KNEE].free_motion_from is None for c in found.calibrations] == [False, True]
     assert rms_deg(error_rad(walked, found, KNEE)) < 1.0
+
+
+def test_a_clock_that_is_late_in_one_walk_only_is_corrected_and_told() -> None:
+    walked = simulate(WalkerSettings(seed=3))
+    standing, free, walk = walked.session.recordings
+    late = {s: replace(b, time_s=b.time_s + 0.03) if s is Site.LEFT_SHANK else b for s, b in walk.imu.items()}
+    found = analyse(replace(walked.session, recordings=(standing, free, replace(walk, imu=late))))
+    told = {f.where: f.numbers["lag_ms"] for f in found.findings if f.key == "clock_moved"}
+    assert set(told) == {"walk 1, left_knee", "walk 1, left_ankle"}
+    assert told["walk 1, left_knee"] == pytest.approx(-30.0, abs=1.5)
+    for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
+        assert rms_deg(error_rad(walked, found, joint)) < 0.8
