@@ -132,16 +132,16 @@ def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
     count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
     if percent < MIN_LOSS_PERCENT and count == 0:
         return []
-    if count == 0 and percent < GRAVE_LOSS_PERCENT:
+    is_grave = percent >= GRAVE_LOSS_PERCENT
+    if count == 0 and not is_grave:
         return [("bridged", Severity.INFO, {"missing_percent": round(percent, 1)})]
-    severity = Severity.WARNING if percent < GRAVE_LOSS_PERCENT else Severity.GRAVE
     numbers: dict[str, float | int | str] = {
         "count": count,
         "missing_percent": round(percent, 1),
         "longest_s": round(longest_s, 3),
     }
-    # a grave loss is told, but what was heard is still used
-    return [("gaps" if severity is Severity.WARNING else "many_gaps", Severity.WARNING, numbers)]
+    # told as a warning in either case: what was heard is still used
+    return [("many_gaps" if is_grave else "gaps", Severity.WARNING, numbers)]
 
 
 def _clipped_percent(values: FloatArray) -> float:

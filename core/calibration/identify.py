@@ -32,7 +32,6 @@ POLISH_SAMPLES = 1500
 CANDIDATE_STEPS = 5
 POLISH_STEPS = 6
 MIN_MOVING_S = 2.0  # less movement than this identifies nothing
-DISTINCT_RAD = np.deg2rad(14.0)
 RIVAL_HEADING_RAD = np.deg2rad(45.0)
 ACCELERATION_COST_FLOOR = 0.05
 MAX_REST_S = 0.01  # after the first correction
