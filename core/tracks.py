@@ -109,10 +109,15 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
 
 def is_heard(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
     """Which samples (n,) are measurements: finite, possible, later than the one before, and not of a stuck sensor."""
-    with np.errstate(invalid="ignore"):
-        is_there = in_every_column(np.abs(gyr) <= MAX_RATE_RAD_S) & in_every_column(np.abs(acc) <= MAX_FORCE_M_S2)
+    is_there = is_possible(gyr, acc)
     is_there[1:] &= np.diff(time_s) > 0
     return is_there & ~is_stuck(time_s, gyr, acc)
+
+
+def is_possible(gyr: FloatArray, acc: FloatArray) -> BoolArray:
+    """Samples (n,) that a sensor worn by a patient can measure; missing ones cannot be."""
+    with np.errstate(invalid="ignore"):
+        return in_every_column(np.abs(gyr) <= MAX_RATE_RAD_S) & in_every_column(np.abs(acc) <= MAX_FORCE_M_S2)
 
 
 def in_every_column(holds: BoolArray) -> BoolArray:

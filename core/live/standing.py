@@ -1,0 +1,156 @@
+"""Does the patient stand still, which sensor moved, and what do the sensors read meanwhile?
+
+The limits of stillness are those of `core.calibration.rest`; what is found is what that module finds in the samples
+since the last movement.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from itertools import pairwise
+
+import numpy as np
+
+from core.body import Site
+from core.calibration.rest import MAX_ACC_SPREAD_M_S2, MAX_BIAS_RAD_S, MAX_SPREAD_RAD_S, Rest, rest_of
+from core.samples import BoolArray, FloatArray, ImuBlock
+from core.tracks import is_possible
+
+WANTED_S = 3.0
+WINDOW_S = 0.25  # how soon a movement is told
+KEPT_S = 10.0  # who stands longer is measured over the last ten seconds
+SILENT_S = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class StandingState:
+    """How far the standing has come.
+
+    Attributes
+    ----------
+    still_s
+        How long all sensors have been heard and still.
+    moved
+        Sensors that moved in the last window of any; the count has begun anew after them.
+    silent
+        Sensors not heard for half a second, or that repeat one value; without them nothing counts.
+    rest
+        Bias and specific force of each sensor, once the wanted time was still.
+    """
+
+    still_s: float
+    wanted_s: float
+    moved: tuple[Site, ...] = ()
+    silent: tuple[Site, ...] = ()
+    rest: Mapping[Site, Rest] = field(default_factory=dict)
+
+    @property
+    def is_done(self) -> bool:
+        return bool(self.rest)
+
+
+class Standing:
+    """Watches any number of sensors; fed block by block, of any size and in any order of sites."""
+
+    def __init__(self, sites: Iterable[Site], wanted_s: float = WANTED_S) -> None:
+        self._watches = {site: _Watch() for site in sites}
+        self._state = StandingState(0.0, wanted_s)
+
+    @property
+    def state(self) -> StandingState:
+        return self._state
+
+    def update(self, blocks: Mapping[Site, ImuBlock]) -> StandingState:
+        """Take new samples of some or all sites.
+
+        Raises
+        ------
+        KeyError
+            A site that was not announced.
+        """
+        for site, block in blocks.items():
+            self._watches[site].feed(block)
+        self._state = self._told()
+        return self._state
+
+    def _told(self) -> StandingState:
+        watches = self._watches
+        latest_s = max((watch.heard_s for watch in watches.values()), default=-np.inf)
+        silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.heard_s <= SILENT_S)
+        if silent or not watches:  # a sensor that is not heard may be moving: the count waits for it and begins anew
+            return replace(self._state, still_s=0.0, moved=(), silent=silent, rest={})
+        since_s = max(watch.still_since_s for watch in watches.values())
+        until_s = min(watch.judged_s for watch in watches.values())
+        rest: dict[Site, Rest] = {}
+        if until_s - since_s >= self._state.wanted_s:
+            found = {site: watch.rest(since_s) for site, watch in watches.items()}
+            known = {site: one for site, one in found.items() if one is not None}
+            rest = known if len(known) == len(found) else {}
+        moved = tuple(site for site, watch in watches.items() if watch.is_moving)
+        return replace(self._state, still_s=max(0.0, until_s - since_s), moved=moved, silent=(), rest=rest)
+
+
+class _Watch:
+    """One sensor, judged in windows that follow each other from its first sample."""
+
+    def __init__(self) -> None:
+        self.heard_s = self.still_since_s = self.judged_s = -np.inf
+        self.is_moving = self.is_stuck = False
+        self._samples: ImuBlock | None = None
+
+    def feed(self, block: ImuBlock) -> None:
+        is_new = (block.time_s > self.heard_s) & is_possible(block.gyr_rad_s, block.acc_m_s2)
+        is_new[1:] &= np.diff(block.time_s) > 0
+        for part in _between_silences(_part(block, is_new)):
+            if self._samples is None or part.time_s[0] - self.heard_s > SILENT_S:
+                self._samples = part
+                self.still_since_s = self.judged_s = float(part.time_s[0])
+            else:
+                self._samples = _joined(self._samples, part)
+            self.heard_s = float(part.time_s[-1])
+            self._judge(self._samples)
+
+    def rest(self, since_s: float) -> Rest | None:
+        return None if self._samples is None else rest_of(_since(self._samples, since_s))
+
+    def _judge(self, samples: ImuBlock) -> None:
+        while samples.time_s[-1] >= self.judged_s + WINDOW_S:
+            until_s = self.judged_s + WINDOW_S
+            window = slice(*np.searchsorted(samples.time_s, [self.judged_s, until_s]))
+            gyr, acc = samples.gyr_rad_s[window], samples.acc_m_s2[window]
+            self.is_stuck = len(gyr) > 2 and not (np.ptp(gyr, axis=0).any() or np.ptp(acc, axis=0).any())
+            self.is_moving = not _is_still(gyr, acc)
+            self.still_since_s = until_s if self.is_moving else self.still_since_s
+            self.judged_s = until_s
+        self._samples = _since(samples, max(self.still_since_s, self.judged_s - KEPT_S))
+
+
+def _is_still(gyr: FloatArray, acc: FloatArray) -> bool:
+    if len(gyr) < 2:
+        return False
+    spread = [float(np.sqrt(np.sum(np.var(values, axis=0)))) for values in (gyr, acc)]
+    mean_rate = float(np.linalg.norm(gyr.mean(axis=0)))
+    return spread[0] < MAX_SPREAD_RAD_S and spread[1] < MAX_ACC_SPREAD_M_S2 and mean_rate < MAX_BIAS_RAD_S
+
+
+def _between_silences(block: ImuBlock) -> list[ImuBlock]:
+    """The stretches of a block between silences; most blocks are one, an empty block is none."""
+    cuts = (np.flatnonzero(np.diff(block.time_s) > SILENT_S) + 1).tolist()
+    borders = [0, *cuts, len(block)] if len(block) else []
+    return [_part(block, slice(a, b)) for a, b in pairwise(borders)]
+
+
+def _since(block: ImuBlock, time_s: float) -> ImuBlock:
+    return _part(block, slice(int(np.searchsorted(block.time_s, time_s)), None))
+
+
+def _part(block: ImuBlock, part: slice | BoolArray) -> ImuBlock:
+    return ImuBlock(block.sensor, block.time_s[part], block.gyr_rad_s[part], block.acc_m_s2[part])
+
+
+def _joined(one: ImuBlock, other: ImuBlock) -> ImuBlock:
+    return ImuBlock(
+        one.sensor,
+        np.concatenate([one.time_s, other.time_s]),
+        np.concatenate([one.gyr_rad_s, other.gyr_rad_s]),
+        np.concatenate([one.acc_m_s2, other.acc_m_s2]),
+    )
