@@ -19,7 +19,16 @@ from core.measure import Twist, measure
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at
 from core.rate_kind import find_rate_kind
-from core.results import Analysis, Calibration, JointAngle, JointCalibration, Method, RecordingAnalysis, ZeroKind
+from core.results import (
+    Analysis,
+    Calibration,
+    JointAngle,
+    JointCalibration,
+    Method,
+    RecordingAnalysis,
+    SideGait,
+    ZeroKind,
+)
 from core.robust import robust_sd
 from core.rotations import wrap
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
@@ -350,10 +359,14 @@ def _angles(
         if basis is None or found is None:
             continue
         joints[joint] = _angle(calibrated[basis], found)
-    time_s, gait = _clock_of(tracks, recording), {}
+    time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
         offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
-        gait = gait_in(tracks, recording, time_s, joints, offsets)
+        in_doubt = frozenset(j for j in joints if not calibrated[bases[recording.name, j]].is_sign_certain)
+        gait = {
+            side: replace(found, sign_in_doubt=in_doubt & set(found.cycles))
+            for side, found in gait_in(tracks, recording, time_s, joints, offsets).items()
+        }
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
 
 

@@ -103,6 +103,9 @@ class SideGait:
         Per joint the angle over each stride, (k, 101) radians; NaN rows where it is not known.
     phase : (n,)
         Index into `core.gait.phases.PHASES` at each sample of the recording.
+    sign_in_doubt
+        Joints whose clinical sign is only the likelier one: their curves may be mirrored, so ranges and spreads hold
+        and no angle does.
     """
 
     events: tuple[FootEvents, ...]
@@ -110,6 +113,7 @@ class SideGait:
     parameters: Mapping[str, FloatArray]
     cycles: Mapping[Joint, FloatArray]
     phase: IntArray
+    sign_in_doubt: frozenset[Joint] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

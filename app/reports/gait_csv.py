@@ -1,14 +1,19 @@
-"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, as three tables."""
+"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, as three tables.
+
+A joint whose clinical sign is in doubt may be mirrored: of it they hold the range and the spread, which are the same
+either way, and leave the angles empty.
+"""
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from app.reports.csv_report import write_table
 from core.body import Joint, Side
-from core.gait.cycles import POINTS, mean_cycle
+from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
 
@@ -45,7 +50,8 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
     OSError
         A file cannot be written.
     """
-    write_table(("time_s", "side", "event"), _events(recording), folder / "events.csv")
+    events = ((_cell(time_s), str(side), event) for time_s, side, event in events_of(recording))
+    write_table(("time_s", "side", "event"), events, folder / "events.csv")
     write_table(("side", *TIMES, *PARAMETERS, "used", "reason"), _strides(recording), folder / "strides.csv")
     joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
     header = ["percent"]
@@ -54,31 +60,41 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
     write_table(header, _cycles(recording, joints), folder / "cycles.csv")
 
 
-def parameter(gait: SideGait, name: str) -> FloatArray:
-    """One column of strides.csv (k,), angles in degrees; NaN where the joint has no angle."""
-    if name.endswith("_deg"):
-        values = gait.parameters.get(name.removesuffix("_deg") + "_rad")
-        return np.full(len(gait.strides), np.nan) if values is None else np.rad2deg(values)
-    values = gait.parameters.get(name)
-    return np.full(len(gait.strides), np.nan) if values is None else values
-
-
-def used_cycles(gait: SideGait, joint: Joint) -> FloatArray:
-    """The joint's angle over the strides used, (k, 101), radians."""
-    return gait.cycles[joint][gait.strides.is_used]
-
-
-def _events(recording: RecordingAnalysis) -> list[tuple[str, ...]]:
+def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
+    """Time, side and kind of every event that is known, ascending."""
     found = [
-        (float(time_s), str(side), event)
-        for side in Side
-        if side in recording.gait
-        for events in recording.gait[side].events
+        (float(time_s), side, event)
+        for side, gait in recording.gait.items()
+        for events in gait.events
         for event in EVENTS
         for time_s in getattr(events, f"{event}_s")
         if math.isfinite(time_s)
     ]
-    return [(_cell(time_s), side, event) for time_s, side, event in sorted(found)]
+    return sorted(found)
+
+
+def parameter(gait: SideGait, name: str) -> FloatArray:
+    """One column of strides.csv (k,), angles in degrees; NaN where there is no angle, or one that may be mirrored."""
+    values = gait.parameters.get(name.removesuffix("_deg") + "_rad" if name.endswith("_deg") else name)
+    is_mirrored = not name.endswith("_range_deg") and any(name.startswith(_kind(j)) for j in gait.sign_in_doubt)
+    if values is None or is_mirrored:
+        return np.full(len(gait.strides), np.nan)
+    return np.rad2deg(values) if name.endswith("_deg") else values
+
+
+def used_cycles(gait: SideGait, joint: Joint) -> FloatArray:
+    """The joint's angle over the strides used, (k, 101), radians; mirrored or not where the sign is in doubt."""
+    return gait.cycles[joint][gait.strides.is_used]
+
+
+def mean_of_used(gait: SideGait, joint: Joint) -> MeanCycle:
+    """The joint's mean over the strides used, radians, NaN where it may be mirrored; and its spread."""
+    found = mean_cycle(used_cycles(gait, joint)) if joint in gait.cycles else mean_cycle(np.empty((0, POINTS)))
+    return replace(found, mean=np.full(POINTS, np.nan)) if joint in gait.sign_in_doubt else found
+
+
+def _kind(joint: Joint) -> str:
+    return "knee_" if joint.is_knee else "ankle_"
 
 
 def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
@@ -93,7 +109,7 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
 
 
 def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[str]]:
-    means = [mean_cycle(used_cycles(recording.gait[joint.side], joint)) for joint in joints]
+    means = [mean_of_used(recording.gait[joint.side], joint) for joint in joints]
     for percent in range(POINTS if joints else 0):
         row = [str(percent)]
         for mean in means:

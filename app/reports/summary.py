@@ -2,24 +2,25 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from app.reports.gait_csv import PARAMETERS, parameter, used_cycles
+from app.reports.gait_csv import PARAMETERS, mean_of_used, parameter
+from app.reports.reference_bands import reference_curves
 from app.wording import sentence
 from core.body import Joint, Side
 from core.findings import Finding
-from core.gait.cycles import mean_cycle
 from core.gait.spatiotemporal import MeanAndSd, both_feet, mean_and_sd
-from core.gait.symmetry import curve_difference, symmetry_index_percent
-from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait
+from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray, RecordingKind
 
 FORMAT = "gaitwright-analysis/1"
 BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s", "symmetry_index_percent", "curve_difference_deg")
+KINDS = ("knee", "ankle")
 # positive figures only: the index means nothing for signed angles
 SYMMETRIC = (
     "stride_time_s",
@@ -66,14 +67,29 @@ def summarise(analysis: Analysis) -> dict[str, Any]:
         "simulated": analysis.is_simulated,
         "joints": _joints(last),
         "calibrations": calibrations,
-        "walks": {walk.name: _walk(walk, analysis.affected_side) for walk in walks},
+        "walks": {walk.name: _walk(walk, _calibrated(analysis, walk), analysis.affected_side) for walk in walks},
+        "reference_group": _reference_group(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }
 
 
-def _walk(recording: RecordingAnalysis, affected: Side | None) -> dict[str, Any]:
+def _reference_group() -> dict[str, Any]:
+    """Say whom the gait variable score compares with."""
+    group = reference_curves()
+    return {"group": group.group, "n": group.n, "speed_m_s": group.speed_m_s, "source": group.source}
+
+
+def _calibrated(analysis: Analysis, walk: RecordingAnalysis) -> dict[Joint, JointCalibration]:
+    """Give the calibrations that one walk was measured with."""
+    return {j: found for span in analysis.calibrations if walk.name in span.walks for j, found in span.joints.items()}
+
+
+def _walk(
+    recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], affected: Side | None
+) -> dict[str, Any]:
     """Give each side's averages over the strides used, and what compares both sides."""
-    sides = {str(side): _side(recording.gait[side]) if side in recording.gait else {} for side in Side}
+    has_zero = {joint for joint, found in calibrated.items() if found.zero is not ZeroKind.NONE}
+    sides = {str(side): _side(side, recording.gait[side], has_zero) if side in recording.gait else {} for side in Side}
     if len(recording.gait) < len(Side):
         return {**sides, "both": dict.fromkeys(BOTH)}
     left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
@@ -86,19 +102,27 @@ def _walk(recording: RecordingAnalysis, affected: Side | None) -> dict[str, Any]
         "symmetry_index_percent": {
             name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
         },
-        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind)) for kind in ("knee", "ankle")},
+        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind)) for kind in KINDS},
     }
     return {**sides, "both": both}
 
 
-def _side(gait: SideGait) -> dict[str, Any]:
+def _side(side: Side, gait: SideGait, has_zero: Set[Joint]) -> dict[str, Any]:
     used = int(np.count_nonzero(gait.strides.is_used))
     figures: dict[str, Any] = {"strides_used": used, "strides_left_out": len(gait.strides) - used}
     for name in PARAMETERS:
         found = _mean(gait, name)
         figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.mean), _number(found.sd)
-    # needs the reference bands of the report, which are not chosen yet
-    return {**figures, "gait_variable_score_deg": None}
+    joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
+    scores = {kind: _number(_score_deg(gait, j)) if j in has_zero else None for kind, j in joints.items()}
+    return {**figures, "gait_variable_score_deg": scores}
+
+
+def _score_deg(gait: SideGait, joint: Joint) -> float:
+    """Give the distance from the mean curve of a group that walked at one speed, so another speed counts as well."""
+    group = reference_curves()
+    group_deg = group.knee_mean_deg if joint.is_knee else group.ankle_mean_deg
+    return gait_variable_score(np.rad2deg(mean_of_used(gait, joint).mean), group_deg)
 
 
 def _mean(gait: SideGait, name: str) -> MeanAndSd:
@@ -106,10 +130,7 @@ def _mean(gait: SideGait, name: str) -> MeanAndSd:
 
 
 def _difference_deg(left: SideGait, right: SideGait, kind: str) -> float:
-    joints = Joint(f"left_{kind}"), Joint(f"right_{kind}")
-    if joints[0] not in left.cycles or joints[1] not in right.cycles:
-        return math.nan
-    means = [mean_cycle(used_cycles(gait, joint)).mean for gait, joint in zip((left, right), joints, strict=True)]
+    means = [mean_of_used(gait, Joint(f"{side}_{kind}")).mean for side, gait in zip(Side, (left, right), strict=True)]
     return math.degrees(curve_difference(means[0], means[1]))
 
 

@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from app.reports.gait_csv import PARAMETERS, write_gait
+from app.reports.reference_bands import reference_curves
 from app.reports.summary import summarise
 from core.analysis import analyse
+from core.calibration import clinical_sign
 from core.body import Joint, Side, Site
 from core.results import Analysis
 from devices.walker import SimulatedSession, Standing, Walk, WalkerSettings, simulate
@@ -126,3 +128,49 @@ def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:
     events = rows(tmp_path / "events.csv")
     assert {row["side"] for row in events} == {"left", "right"}
     assert rows(tmp_path / "cycles.csv") == []
+
+
+def test_the_score_is_the_distance_of_the_mean_cycle_from_the_group(found: Analysis, folder: Path) -> None:
+    summary = summarise(found)
+    cycles, group = rows(folder / "cycles.csv"), reference_curves()
+    for side in Side:
+        scores = summary["walks"]["walk 1"][side]["gait_variable_score_deg"]
+        for kind, group_deg in (("knee", group.knee_mean_deg), ("ankle", group.ankle_mean_deg)):
+            mean_deg = np.array([float(row[f"{side}_{kind}_mean_deg"]) for row in cycles])
+            assert scores[kind] == pytest.approx(np.sqrt(np.mean((mean_deg - group_deg) ** 2)), abs=1e-4)
+    assert summary["reference_group"]["n"] == 24
+    assert summary["reference_group"]["speed_m_s"] == 1.245
+
+
+def test_without_a_zero_or_without_strides_there_is_no_score(found: Analysis) -> None:
+    walked = simulate(WalkerSettings(seed=4, recordings=(Walk(),)))
+    summary = summarise(analyse(walked.session))
+    assert summary["joints"]["left_knee"]["zero"] == "none"
+    assert summary["walks"]["walk 1"]["left"]["gait_variable_score_deg"] == {"knee": None, "ankle": None}
+    nobody = {side: replace(gait, cycles={}) for side, gait in found.recordings[0].gait.items()}
+    empty = replace(found, recordings=(replace(found.recordings[0], gait=nobody),))
+    assert summarise(empty)["walks"]["walk 1"]["right"]["gait_variable_score_deg"] == {"knee": None, "ankle": None}
+
+
+def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(clinical_sign, "MIN_RANGE_RAD", np.deg2rad(20.0))  # the stiff knee moves by some 15
+    stiff = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk()), stiff_knee_side=Side.LEFT))
+    found = analyse(stiff.session)
+    assert ("clinical_sign_uncertain", "left_knee") in {(finding.key, finding.where) for finding in found.findings}
+    write_gait(found.recordings[0], tmp_path)
+    strides = [row for row in rows(tmp_path / "strides.csv") if row["side"] == "left"]
+    told = {name for name in PARAMETERS if name.startswith("knee_") and any(row[name] for row in strides)}
+    assert told == {"knee_range_deg"}
+    cycles = rows(tmp_path / "cycles.csv")
+    assert {row["left_knee_mean_deg"] for row in cycles} == {""}
+    assert all(row["left_knee_stride_sd_deg"] and row["right_knee_mean_deg"] for row in cycles)
+    walk = summarise(found)["walks"]["walk 1"]
+    assert walk["left"]["gait_variable_score_deg"]["knee"] is walk["both"]["curve_difference_deg"]["knee"] is None
+    assert walk["right"]["gait_variable_score_deg"]["knee"] > 0
+    assert walk["both"]["symmetry_index_percent"]["knee_range_deg"] < -100
+
+    told_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
+    write_gait(told_by_hand.recordings[0], tmp_path)
+    assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
