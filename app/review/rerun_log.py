@@ -3,13 +3,10 @@
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
 another recording in the same views. Nothing is left out between samples, and nobody's words are inside.
 
-The same session gives the same bytes. Rerun numbers its chunks, rows and stores by the clock and by chance, so they
-are numbered here; and it ends a file with a table of contents in random order, which is cut off: the viewer makes it
-anew, as it does for a log that was never closed.
+The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
+numbered here, and `rrd_file` does the rest.
 """
 
-import errno
-import struct
 import tempfile
 import uuid
 from collections.abc import Iterator
@@ -23,27 +20,23 @@ import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
-from core.body import Joint, Site
-from core.results import Analysis, JointAngle
-from core.samples import FloatArray, ImuBlock, RecordingKind, Session
+from app.reports.gait_csv import events_of
+from app.review.rrd_file import remove_chance
+from core.body import Joint, Side, Site, ankle_of, knee_of
+from core.gait.phases import PHASES
+from core.results import Analysis, JointAngle, RecordingAnalysis
+from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
 
 APPLICATION = "gaitwright"
 RECORDING = "session"
 BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chance, so it can take its place
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
 BAND_SD = 2.0
-
-# What the log's file consists of: "RRF2" and its version, then messages, each with its kind and length before it
-FILE_HEADER_BYTES = 12
-MESSAGE_HEADER = struct.Struct("<QQ")
-END, STORE_INFO = 0, 1
-LONGEST_ENVELOPE = 128  # a message names its store within its first bytes
-ROW_ID = slice(3, 20)  # in a store's info: eight bytes of time, a tag, eight bytes of chance
-NO_ROW_ID = b"\0" * 8 + b"\x11" + b"\0" * 8
+CURVE_HEIGHT, LANE_HEIGHT = 2, 1  # shares of a column of the layout
 
 
 def write_log(session: Session, analysis: Analysis, path: Path) -> None:
-    """Write raw signals, angles by each method and their certainty, with a layout for the viewer.
+    """Write raw signals, angles by each method and their certainty, phases and events, with a layout for the viewer.
 
     Raises
     ------
@@ -59,7 +52,7 @@ def write_log(session: Session, analysis: Analysis, path: Path) -> None:
         rr.send_chunks(_numbered(chunk, number), recording=log)
         log.flush()  # or the chunks would pile up in memory
     log.disconnect()
-    _remove_chance(path, layout_name)
+    remove_chance(path, layout_name, BLUEPRINT)
 
 
 def _timelines(session: Session) -> dict[str, str]:
@@ -77,6 +70,9 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
     for analysed in analysis.recordings:
         for joint, angle in analysed.joints.items():
             yield from _angle_chunks(timelines[analysed.name], joint, analysed.time_s, angle)
+        for side, gait in analysed.gait.items():
+            yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
+            yield from _event_chunk(timelines[analysed.name], side, analysed)
 
 
 def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
@@ -87,6 +83,10 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
         for curve in ("result", "published", "orientation"):
             yield _label(f"/angles/{joint}/{curve}", [f"{curve} °"])
         yield _label(f"/angles/{joint}/certainty", ["2 sd below °", "2 sd above °"])
+    words = [str(phase) for phase in PHASES if phase]
+    columns = rr.StateConfiguration.columns(values=words, labels=[word.replace("_", " ") for word in words])
+    for side in _sides_with_gait(analysis):
+        yield Chunk.from_columns(f"/phases/{side}", indexes=[], columns=columns.partition([len(words)]))
 
 
 def _label(entity: str, names: list[str]) -> Chunk:
@@ -104,6 +104,28 @@ def _angle_chunks(timeline: str, joint: Joint, time_s: FloatArray, angle: JointA
     for curve, values_rad in (curves | {"certainty": band_rad}).items():
         if values_rad is not None:
             yield from _series(f"/angles/{joint}/{curve}", timeline, time_s, np.rad2deg(values_rad))
+
+
+def _phase_chunk(timeline: str, side: Side, time_s: FloatArray, phase: IntArray) -> Iterator[Chunk]:
+    """Yield each phase at the sample it begins with, as in angles.csv; an empty word ends the lane until the next."""
+    begins = np.flatnonzero(np.diff(phase, prepend=-1))
+    if len(begins):
+        yield Chunk.from_columns(
+            f"/phases/{side}",
+            indexes=[rr.TimeColumn(timeline, duration=time_s[begins])],
+            columns=rr.StateChange.columns(state=[str(PHASES[k]) for k in phase[begins]]),
+        )
+
+
+def _event_chunk(timeline: str, side: Side, recording: RecordingAnalysis) -> Iterator[Chunk]:
+    """Yield the events of events.csv; choosing one in the viewer goes to its time."""
+    found = [(time_s, event) for time_s, its_side, event in events_of(recording) if its_side is side]
+    if found:
+        yield Chunk.from_columns(
+            f"/events/{side}",
+            indexes=[rr.TimeColumn(timeline, duration=[time_s for time_s, _ in found])],
+            columns=rr.TextLog.columns(text=[event for _, event in found]),
+        )
 
 
 def _series(entity: str, timeline: str, time_s: FloatArray, values: FloatArray) -> Iterator[Chunk]:
@@ -125,16 +147,36 @@ def _joints(analysis: Analysis) -> list[Joint]:
     return [joint for joint in Joint if any(joint in recording.joints for recording in analysis.recordings)]
 
 
+def _sides_with_gait(analysis: Analysis) -> list[Side]:
+    return [side for side in Side if any(side in recording.gait for recording in analysis.recordings)]
+
+
 def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rrb.Blueprint:
-    angles = [rrb.TimeSeriesView(origin=f"/angles/{j}", name=j.replace("_", " ")) for j in _joints(analysis)]
-    tabs = [rrb.Grid(*angles, name="Angles", grid_columns=2)] if angles else []
+    sides = [column for side in Side if (column := _side_views(analysis, side)) is not None]
+    tabs: list[rrb.Container | rrb.View] = [rrb.Horizontal(*sides, name="Angles and phases")] if sides else []
+    if _sides_with_gait(analysis):
+        tabs += [rrb.TextLogView(origin="/events", name="Events")]
     for signal in ("angular_rate", "specific_force"):
         views = [rrb.TimeSeriesView(origin=f"/raw/{s}/{signal}", name=s.replace("_", " ")) for s in _sites(session)]
         tabs += [rrb.Grid(*views, name=signal.replace("_", " ").capitalize(), grid_columns=2)]
     layout = rrb.Tabs(*tabs)
     for number, part in enumerate(_parts(layout)):
         part.id = uuid.UUID(int=number + 1)
-    return rrb.Blueprint(layout, rrb.TimePanel(timeline=timeline), collapse_panels=True)
+    return rrb.Blueprint(layout, rrb.TimePanel(timeline=timeline, state="collapsed"), collapse_panels=True)
+
+
+def _side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
+    """Stack a side's knee, ankle and, under the curves and on their axis of time, the lane of its phases."""
+    axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
+    joints = [joint for joint in (knee_of(side), ankle_of(side)) if joint in _joints(analysis)]
+    views: list[rrb.View] = [
+        rrb.TimeSeriesView(origin=f"/angles/{joint}", name=joint.replace("_", " "), axis_x=axis) for joint in joints
+    ]
+    heights = [CURVE_HEIGHT] * len(views)
+    if side in _sides_with_gait(analysis):
+        views.append(rrb.StateTimelineView(origin=f"/phases/{side}", name=f"{side} phases", time_view=axis))
+        heights.append(LANE_HEIGHT)
+    return rrb.Vertical(*views, row_shares=heights, name=str(side)) if views else None
 
 
 def _parts(part: rrb.Container | rrb.View) -> Iterator[rrb.Container | rrb.View]:
@@ -167,34 +209,3 @@ def _numbered(chunk: Chunk, number: int) -> Chunk:
     metadata = dict(batch.schema.metadata) | {b"rerun:id": f"chunk_{number:032X}".encode()}
     same = pa.RecordBatch.from_arrays(columns, schema=pa.schema(fields, metadata))
     return Chunk.from_record_batch(same)[0]
-
-
-def _remove_chance(path: Path, layout_name: bytes) -> None:
-    """Overwrite in place what differs from one writing to the next, and cut off the table of contents.
-
-    Raises
-    ------
-    OSError
-        The log has no end, because Rerun could not write it whole.
-    ValueError
-        A file of another version of Rerun.
-    """
-    with path.open("r+b") as file:
-        position = FILE_HEADER_BYTES
-        while True:
-            file.seek(position)
-            header = file.read(MESSAGE_HEADER.size)
-            if len(header) < MESSAGE_HEADER.size:
-                raise OSError(errno.EIO, "the log ends too early", str(path))
-            kind, length = MESSAGE_HEADER.unpack(header)
-            if kind == END:
-                file.truncate(position)
-                return
-            envelope = bytearray(file.read(min(length, LONGEST_ENVELOPE)))
-            if kind == STORE_INFO:
-                if envelope[:3] != b"\x0a\x12\x09" or envelope[11] != NO_ROW_ID[8]:
-                    raise ValueError(f"store info begins with {bytes(envelope[:20])!r}, expected a row's name")
-                envelope[ROW_ID] = NO_ROW_ID
-            file.seek(position + MESSAGE_HEADER.size)
-            file.write(envelope.replace(layout_name, BLUEPRINT))
-            position += MESSAGE_HEADER.size + length

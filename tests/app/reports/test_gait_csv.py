@@ -11,8 +11,8 @@ from app.reports.gait_csv import PARAMETERS, write_gait
 from app.reports.reference_bands import reference_curves
 from app.reports.summary import summarise
 from core.analysis import analyse
-from core.calibration import clinical_sign
 from core.body import Joint, Side, Site
+from core.calibration import clinical_sign
 from core.results import Analysis
 from devices.walker import SimulatedSession, Standing, Walk, WalkerSettings, simulate
 

@@ -1,21 +1,27 @@
 """Does the Rerun log hold every sample and angle, the same bytes each time, and nobody's name?"""
 
+import csv
+import os
+import subprocess
+import sys
 import time
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 
+from app.reports.gait_csv import write_gait
 from app.review import rerun_log
 from app.review.rerun_log import write_log
-from core.body import Joint, Site
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
-
-# a log without its table of contents is read from one end to the other, and Rerun says so
-pytestmark = pytest.mark.filterwarnings("ignore:RRD file has no footer")
+from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 
 def block(n: int, seed: int) -> ImuBlock:
@@ -90,7 +96,7 @@ def test_the_layout_is_in_the_file(tmp_path: Path) -> None:
     (layout,) = reader.blueprints()
     assert layout.application_id == reader.recordings()[0].application_id == rerun_log.APPLICATION
     text = "".join(str(chunk.to_record_batch().to_pydict()) for chunk in reader.stream(store=layout))
-    for part in ("Angles", "Angular rate", "Specific force", "/angles/left_knee", "walking_1"):
+    for part in ("Angles and phases", "Angular rate", "Specific force", "/angles/left_knee", "walking_1"):
         assert f"'{part}'" in text
 
 
@@ -118,7 +124,7 @@ def test_a_session_without_joints_or_recordings_is_a_log_all_the_same(tmp_path: 
     write_log(session, nothing, tmp_path / "raw.rrd")
     assert len(curve(tmp_path / "raw.rrd", "/raw/left_thigh/specific_force", "walking_1")[0]) == 50
     write_log(replace(session, recordings=()), nothing, tmp_path / "empty.rrd")
-    assert len(RrdReader(tmp_path / "empty.rrd").recordings()) == 1
+    assert len(RrdReader(tmp_path / "empty.rrd").blueprints()) == 1
 
 
 def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
@@ -126,7 +132,61 @@ def test_an_unwritable_file_is_an_os_error(tmp_path: Path) -> None:
         write_log(*visit(), tmp_path / "missing" / "session.rrd")
 
 
-def test_a_log_that_was_not_written_to_its_end_is_an_os_error(tmp_path: Path) -> None:
-    write_log(*visit(), tmp_path / "session.rrd")  # whose end is cut off
-    with pytest.raises(OSError, match="too early"):
-        rerun_log._remove_chance(tmp_path / "session.rrd", b"no such layout")
+@pytest.fixture(scope="module")
+def walk(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Analysis]:
+    """Log and tables of a simulated walk, in one folder."""
+    folder = tmp_path_factory.mktemp("walk")
+    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+    analysis = analyse(session)
+    write_log(session, analysis, folder / "session.rrd")
+    write_gait(analysis.recordings[0], folder)
+    return folder, analysis
+
+
+def words(path: Path, entity: str, component: str) -> list[tuple[float, str]]:
+    """Read time, seconds, and word of every row of one entity."""
+    batches = [c.to_record_batch() for c in RrdReader(path).stream() if c.entity_path == entity and not c.is_static]
+    times = [ns / 1e9 for batch in batches for ns in batch.column("walking_1").cast("int64").to_pylist()]
+    return list(zip(times, [row[0] for b in batches for row in b.column(component).to_pylist()], strict=True))
+
+
+@pytest.mark.parametrize("side", Side)
+def test_the_events_are_those_of_the_table(walk: tuple[Path, Analysis], side: Side) -> None:
+    folder, _ = walk
+    found = words(folder / "session.rrd", f"/events/{side}", "TextLog:text")
+    with (folder / "events.csv").open(newline="") as file:
+        told = [(float(row["time_s"]), row["event"]) for row in csv.DictReader(file) if row["side"] == side]
+    assert len(told) > 15
+    assert [event for _, event in found] == [event for _, event in told]
+    assert [time_s for time_s, _ in found] == pytest.approx([time_s for time_s, _ in told], abs=1e-5)
+
+
+@pytest.mark.parametrize("side", Side)
+def test_at_each_sample_the_lane_is_in_the_phase_of_the_walk(walk: tuple[Path, Analysis], side: Side) -> None:
+    folder, analysis = walk
+    found = words(folder / "session.rrd", f"/phases/{side}", "StateChange:state")
+    recording = analysis.recordings[0]
+    at = np.searchsorted([time_s for time_s, _ in found], recording.time_s + 1e-9, side="right") - 1
+    assert [found[k][1] for k in at] == [str(PHASES[k]) for k in recording.gait[side].phase]
+    assert {word for _, word in found} == {str(phase) for phase in PHASES}
+    assert found[-1][1] == ""  # the lane ends with the last event
+
+
+def test_the_lanes_lie_under_the_curves_of_their_side(walk: tuple[Path, Analysis]) -> None:
+    _, analysis = walk
+    for side in Side:
+        column = rerun_log._side_views(analysis, side)
+        assert column is not None
+        origins = [view.origin for view in column.contents if isinstance(view, rrb.View)]
+        assert origins == [f"/angles/{side}_knee", f"/angles/{side}_ankle", f"/phases/{side}"]
+
+
+def test_rerun_itself_finds_the_file_whole(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    session, _ = visit()
+    write_log(replace(session, recordings=()), Analysis(Method.ROBUST, False, (), ()), tmp_path / "empty.rrd")
+    settings = tmp_path / "settings"  # of its own, so that nothing is asked for and nobody told
+    quiet = os.environ | {"XDG_CONFIG_HOME": str(settings), "APPDATA": str(settings), "HOME": str(settings)}
+    for arguments in (["analytics", "disable"], ["rrd", "verify", walk[0] / "session.rrd", tmp_path / "empty.rrd"]):
+        done = subprocess.run([sys.executable, "-m", "rerun", *arguments], env=quiet, capture_output=True, check=False)
+        assert done.returncode == 0, done.stderr.decode()
+    assert b"2 files verified without error" in done.stdout + done.stderr
