@@ -7,6 +7,7 @@ are files of `resources`; this module is given their text.
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
 
 import numpy as np
 
@@ -16,9 +17,9 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.samples import FloatArray
 
 MAX_SPEED_DIFFERENCE_M_S = 0.15  # further from its speed, a band is not drawn without saying so
-KNEE_BETWEEN_SESSIONS_DEG = 9.2  # upper end of the published minimal detectable change, 3.4 to 9.2
-WITHIN_SESSION_DEG = 1.0
 MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD = 3, 10
+KNEE_NEW_ATTACHMENT_DEG = 9.2  # upper end of the published minimal detectable change, 3.4 to 9.2, 15 volunteers
+SAME_ATTACHMENT_DEG = 1.0  # beside chance, for what sensors that stay on may do between two walks
 
 SOURCE = (
     "Fukuchi, Fukuchi & Duarte 2018, PeerJ 6:e4640, data doi 10.6084/m9.figshare.5722711, CC BY 4.0, "
@@ -56,6 +57,24 @@ class ReferenceValues:
     @property
     def speed_m_s(self) -> float:
         return self.values["walking_speed"].mean
+
+
+class Verdict(StrEnum):
+    """Is a difference real? The first two are judgements, the others say why there is none."""
+
+    EXCEEDS_ERROR = "exceeds_error"
+    INSIDE_ERROR = "inside_error"
+    TOO_FEW_STRIDES = "too_few_strides"
+    NO_PUBLISHED_FIGURE = "no_published_figure"
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One mean less another, and the measurement error it has to exceed to be real; NaN where there is none."""
+
+    difference_deg: float
+    error_deg: float
+    verdict: Verdict
 
 
 def read_curves(text: str) -> ReferenceCurves:
@@ -108,19 +127,32 @@ def nearest_class(classes: tuple[ReferenceValues, ...], speed_m_s: float) -> Ref
     return min(classes, key=lambda reference: abs(reference.speed_m_s - speed_m_s))
 
 
-def is_real_within_session(one: MeanAndSd, other: MeanAndSd) -> bool | None:
-    """Do two walks of one session, not re-strapped, differ by more than chance? Degrees; None without two strides."""
-    spread = one.sd**2 / max(one.n, 1) + other.sd**2 / max(other.n, 1)
-    if not np.isfinite(spread):
-        return None
-    return abs(one.mean - other.mean) > 1.96 * float(np.sqrt(spread)) + WITHIN_SESSION_DEG
+def compare_same_attachment(one: MeanAndSd, other: MeanAndSd) -> Difference:
+    """Two walks of one session with the sensors left on, any joint: the error is that of two means, and a degree."""
+    if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
+        return _not_judged(one, other, Verdict.TOO_FEW_STRIDES)
+    spread_deg = float(np.sqrt(one.sd**2 / one.n + other.sd**2 / other.n))
+    return _judged(one, other, 1.96 * spread_deg + SAME_ATTACHMENT_DEG)
 
 
-def is_real_between_sessions(joint: Joint, difference_deg: float) -> bool | None:
-    """Between two sessions, or left and right: None at the ankle, for which no figure is published."""
-    if not joint.is_knee or not np.isfinite(difference_deg):
-        return None
-    return abs(difference_deg) > KNEE_BETWEEN_SESSIONS_DEG
+def compare_new_attachment(joint: Joint, one: MeanAndSd, other: MeanAndSd) -> Difference:
+    """Two visits, sensors strapped on anew, or the left against the right joint; ankles are never judged."""
+    if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
+        return _not_judged(one, other, Verdict.TOO_FEW_STRIDES)
+    if not joint.is_knee:
+        return _not_judged(one, other, Verdict.NO_PUBLISHED_FIGURE)
+    return _judged(one, other, KNEE_NEW_ATTACHMENT_DEG)
+
+
+def _judged(one: MeanAndSd, other: MeanAndSd, error_deg: float) -> Difference:
+    difference_deg = one.mean - other.mean
+    is_real = abs(difference_deg) > error_deg
+    return Difference(difference_deg, error_deg, Verdict.EXCEEDS_ERROR if is_real else Verdict.INSIDE_ERROR)
+
+
+def _not_judged(one: MeanAndSd, other: MeanAndSd, why: Verdict) -> Difference:
+    has_means = min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+    return Difference(one.mean - other.mean if has_means else float("nan"), float("nan"), why)
 
 
 def _table(text: str) -> list[dict[str, str]]:

@@ -15,11 +15,19 @@ from core.body import Joint, Side
 from core.findings import Finding
 from core.gait.spatiotemporal import MeanAndSd, both_feet, mean_and_sd
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
+from core.norms import compare_new_attachment
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray, RecordingKind
 
 FORMAT = "gaitwright-analysis/1"
-BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s", "symmetry_index_percent", "curve_difference_deg")
+BOTH = (
+    "cadence_steps_min",
+    "double_support_percent",
+    "speed_m_s",
+    "symmetry_index_percent",
+    "curve_difference_deg",
+    "side_difference",
+)
 KINDS = ("knee", "ankle")
 # positive figures only: the index means nothing for signed angles
 SYMMETRIC = (
@@ -103,6 +111,9 @@ def _walk(
             name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
         },
         "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind)) for kind in KINDS},
+        "side_difference": {
+            name: _side_difference(one, other, name, has_zero) for name in PARAMETERS if name.endswith("_deg")
+        },
     }
     return {**sides, "both": both}
 
@@ -132,6 +143,25 @@ def _mean(gait: SideGait, name: str) -> MeanAndSd:
 def _difference_deg(left: SideGait, right: SideGait, kind: str) -> float:
     means = [mean_of_used(gait, Joint(f"{side}_{kind}")).mean for side, gait in zip(Side, (left, right), strict=True)]
     return math.degrees(curve_difference(means[0], means[1]))
+
+
+def _side_difference(one: SideGait, other: SideGait, name: str, has_zero: Set[Joint]) -> dict[str, Any] | None:
+    """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
+
+    None where either side has no such angle, or no zero to tell it from.
+    """
+    left, right = (Joint(f"{side}_{name.split('_')[0]}") for side in Side)
+    if not name.endswith("_range_deg") and not {left, right} <= has_zero:
+        return None
+    means = _mean(one, name), _mean(other, name)
+    if not all(mean.n for mean in means):
+        return None
+    found = compare_new_attachment(left, *means)
+    return {
+        "difference_deg": _number(found.difference_deg),
+        "error_deg": _number(found.error_deg),
+        "verdict": str(found.verdict),
+    }
 
 
 def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:

@@ -174,3 +174,20 @@ def test_a_knee_whose_sign_is_uncertain_has_a_range_and_a_spread_and_no_angle(
     told_by_hand = analyse(replace(stiff.session, turned_sign={Joint.LEFT_KNEE: 1}))
     write_gait(told_by_hand.recordings[0], tmp_path)
     assert all(row["left_knee_mean_deg"] for row in rows(tmp_path / "cycles.csv"))
+
+
+def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error(found: Analysis) -> None:
+    walk = summarise(found)["walks"]["walk 1"]
+    told = walk["both"]["side_difference"]
+    assert set(told) == {name for name in PARAMETERS if name.endswith("_deg")}
+    sides = [walk[side]["knee_swing_peak_deg_mean"] for side in ("left", "right")]
+    assert told["knee_swing_peak_deg"]["difference_deg"] == pytest.approx(sides[0] - sides[1])
+    assert told["knee_swing_peak_deg"]["error_deg"] == 9.2
+    assert told["knee_swing_peak_deg"]["verdict"] == "inside_error"
+    assert told["ankle_range_deg"]["verdict"] == "no_published_figure"
+    assert told["ankle_range_deg"]["error_deg"] is None
+
+    stiff = simulate(WalkerSettings(seed=4, recordings=(Walk(),), stiff_knee_side=Side.LEFT))
+    told = summarise(analyse(stiff.session))["walks"]["walk 1"]["both"]["side_difference"]
+    assert told["knee_swing_peak_deg"] is None  # without a zero
+    assert told["knee_range_deg"]["verdict"] == "exceeds_error"
