@@ -99,8 +99,8 @@ SENTENCES = {
         "record free motion."
     ),
     "clinical_sign_uncertain": (
-        "the motion does not tell flexion from extension (margin {margin:.2f}). Look at the curve and turn the "
-        "sign if the joint bends the wrong way."
+        "the motion does not tell flexion from extension (margin {margin:.2f}), so only its range is given. Look at "
+        "the curve, then confirm or turn the sign."
     ),
     "sign_turned": "the sign was turned by hand. The angle is shown as it was corrected.",
     "sign_confirmed": "the sign was confirmed by hand. It is used as it was found.",
@@ -148,6 +148,27 @@ SENTENCES = {
     "doubtful_strides": (
         "strides with a foot that hardly rolled: {count}. When it landed is in doubt, so averages leave them out."
     ),
+    "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
+    "side_without_strides": (
+        "no whole stride was found, though the other side has some. Check that the sensor sits where it is said to, "
+        "then walk once more."
+    ),
+    "strides_all_left_out": (
+        "all strides found ({count}) were left out, most of them {reason}. Record a walk with more straight, steady "
+        "strides."
+    ),
+    "no_mean": (
+        "usable strides on the {side}: {count}; {wanted} make a mean. Walk once more, or read single strides only."
+    ),
+    "no_spread": (
+        "only {left} left and {right} right strides, {wanted} make a spread. Walk once more, or go on without a spread."
+    ),
+    "no_spread_of_side": (
+        "only {count} {side} strides, {wanted} make a spread. Walk once more, or go on without a spread."
+    ),
+    "no_peak": (
+        "no {peak}, since the angle only passes through where it is looked for. Nothing is given in its place."
+    ),
     "published_differs": (
         "the published method differs by {difference_deg:.1f}° in shape. Compare the two curves before relying on it."
     ),
@@ -161,7 +182,35 @@ SENTENCES = {
     "simulated": "these data are simulated. They come from no patient.",
     "axis_uncertain": "the joint axis is certain to {axis_sd_deg:.1f}° only. Record free motion, or move longer.",
     "short_recording": "a short recording. Its angles are less certain.",
-    "labels_look_swapped": "thigh and shank, or shank and foot, seem swapped. Swap them, or keep them as worn.",
+    "labels_look_swapped": (
+        "seem swapped, as the motion fits better the other way round. Swap them, or keep them as worn."
+    ),
+    "labels_look_mixed": (
+        "seem to be worn in another order, as the motion fits that better. Check which sensor is where."
+    ),
+}
+
+# what a finding's numbers name by the words of the files, as the sentences say it
+NAMES = {
+    "side": {"left": "left", "right": "right"},
+    "reason": {
+        "gap": "with missing samples",
+        "doubtful_events": "with a landing in doubt",
+        "pause": "with a pause",
+        "turn": "turning",
+        "start": "starting",
+        "stop": "stopping",
+        "outlier": "unlike the others",
+    },
+    "peak": {
+        "knee_loading_peak": "loading peak",
+        "knee_stance_minimum": "stance minimum",
+        "knee_swing_peak": "swing peak",
+        "ankle_loading_plantarflexion": "loading plantarflexion",
+        "ankle_stance_dorsiflexion": "stance dorsiflexion",
+        "ankle_push_off_plantarflexion": "push-off plantarflexion",
+        "ankle_swing_dorsiflexion": "swing dorsiflexion",
+    },
 }
 
 WHOLE_SESSION = "session"  # what a finding about no part in particular says as its place
@@ -177,7 +226,7 @@ def sentence(finding: Finding) -> str:
 
     A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
     """
-    known = {name: _said(value) for name, value in finding.numbers.items() if _is_known(value)}
+    known = {name: _said(name, value) for name, value in finding.numbers.items() if _is_known(value)}
     try:
         said = tr(SENTENCES[finding.key]).format_map(known)
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
@@ -216,8 +265,12 @@ def _is_known(value: float | int | str) -> bool:
     return isinstance(value, str) or math.isfinite(value)
 
 
-def _said(value: float | int | str) -> float | int | str:
-    part = _part(value) if isinstance(value, str) else None
+def _said(name: str, value: float | int | str) -> float | int | str:
+    if not isinstance(value, str):
+        return value
+    if value in NAMES.get(name, {}):
+        return tr(NAMES[name][value])
+    part = _part(value)
     return value if part is None else name_of(part)
 
 

@@ -16,6 +16,7 @@ from core.findings import Finding, Severity
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
+from core.placement.labels import about_labels
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at
 from core.rate_kind import find_rate_kind
@@ -34,6 +35,7 @@ from core.rotations import wrap
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.validity import Basis, basis_of, spans_of_validity
+from core.walk_findings import about_walk
 from core.walking import gait_in, site_of_events
 
 Progress = Callable[[float, str], None]
@@ -81,6 +83,7 @@ def analyse(
         rate_kind, told = find_rate_kind(session, span, quality.unusable)
         findings += told
         tracks = SensorTracks(session, span, quality.unusable, rate_kind)
+        findings += about_labels(tracks)
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)
@@ -97,6 +100,7 @@ def analyse(
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
             recordings.append(found)
             findings += about_angles(found)
+            findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
     findings += about_missing_joints(session, quality.unusable, recordings)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
     return Analysis(

@@ -6,7 +6,6 @@ import numpy as np
 
 from core.body import Joint, Site
 from core.findings import Finding, Severity
-from core.gait.strides import Reason
 from core.identified import Identified
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
 from core.rotations import wrap
@@ -98,7 +97,7 @@ def _about_robust(calibration: JointCalibration, found: Identified, say: Say) ->
 
 
 def about_angles(recording: RecordingAnalysis) -> list[Finding]:
-    """Where the result and the published angle part, and what the steps leave in doubt."""
+    """Where the result and the published angle part."""
     findings = []
     for joint, angle in recording.joints.items():
         difference = wrap(angle.angle_rad - angle.published_rad)
@@ -107,14 +106,6 @@ def about_angles(recording: RecordingAnalysis) -> list[Finding]:
             if rms > MAX_DIFFERENCE_RAD:
                 numbers = {"difference_deg": round(float(np.rad2deg(rms)), 1)}
                 findings.append(Finding("published_differs", Severity.INFO, f"{recording.name}, {joint}", numbers))
-    for side, gait in recording.gait.items():
-        where = f"{recording.name}, {side}_shank"
-        if any(events.is_from_shank for events in gait.events):
-            findings.append(Finding("events_from_shank", Severity.INFO, where))
-        doubtful = sum(reason is Reason.DOUBT for reason in gait.strides.reason)
-        if doubtful:
-            where = f"{recording.name}, {side}_foot"
-            findings.append(Finding("doubtful_strides", Severity.WARNING, where, {"count": doubtful}))
     return findings
 
 

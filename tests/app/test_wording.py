@@ -11,18 +11,20 @@ from string import Formatter
 
 import pytest
 
-from app.wording import SENTENCES, name_of, place, sentence
-from core.body import Joint, Site
+from app.wording import NAMES, SENTENCES, name_of, place, sentence
+from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
+from core.gait.strides import Reason
 
 ROOT = Path(__file__).parents[2]
 FORBIDDEN = re.compile(r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|wrong sensor|you)\b|!", re.IGNORECASE)
-NAMES = {"name": "battery_percent", "kind": "averaged", "joint": "left ankle"}
+SAMPLES = {"name": "battery_percent", "kind": "averaged", "joint": "left ankle"}
 
 
 def sample(key: str, where: str = "walk 1, left_knee") -> Finding:
     fields = [field for _, field, _, _ in Formatter().parse(SENTENCES[key]) if field]
-    return Finding(key, Severity.WARNING, where, {field: NAMES.get(field, 12) for field in fields})
+    return Finding(key, Severity.WARNING, where, {field: SAMPLES.get(field, 12) for field in fields})
 
 
 @pytest.mark.parametrize("key", SENTENCES)
@@ -109,3 +111,39 @@ def test_every_part_is_named_side_first() -> None:
 def test_wording_needs_no_screen() -> None:
     program = "import sys, app.wording; sys.exit(any(name.startswith('PySide6') for name in sys.modules))"
     assert subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False).returncode == 0
+
+
+def test_every_reason_and_every_peak_has_its_words() -> None:
+    assert set(NAMES["reason"]) == {str(reason) for reason in Reason if reason is not Reason.USED}
+    assert set(NAMES["peak"]) == {window.name for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
+    assert set(NAMES["side"]) == set(Side)
+
+
+def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
+    assert "“stop”" in sentence(Finding("unknown_column", Severity.INFO, "", {"name": "stop"}))
+
+
+@pytest.mark.parametrize(
+    ("key", "numbers", "said"),
+    [
+        (
+            "no_spread",
+            {"left": 4, "right": 9, "wanted": 10},
+            "Walk 1: only 4 left and 9 right strides, 10 make a spread. Walk once more, or go on without a spread.",
+        ),
+        (
+            "strides_all_left_out",
+            {"count": 7, "reason": "turn"},
+            "Walk 1: all strides found (7) were left out, most of them turning. "
+            "Record a walk with more straight, steady strides.",
+        ),
+        (
+            "no_peak",
+            {"peak": "ankle_push_off_plantarflexion"},
+            "Walk 1: no push-off plantarflexion, since the angle only passes through where it is looked for. "
+            "Nothing is given in its place.",
+        ),
+    ],
+)
+def test_what_a_walk_lacks_is_said_in_words(key: str, numbers: dict[str, int | str], said: str) -> None:
+    assert sentence(Finding(key, Severity.INFO, "walk 1", numbers)) == said

@@ -1,0 +1,74 @@
+"""What is worth telling about the strides of a walk? Those that are missing, too few or in doubt, and missing peaks."""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from core.body import Side, Site
+from core.findings import Finding, Severity
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
+from core.gait.strides import Reason
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+from core.results import RecordingAnalysis, SideGait
+
+
+def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> list[Finding]:
+    """What the strides of both sides leave in doubt.
+
+    Parameters
+    ----------
+    sites
+        Which sensor told the events of each side in `walk.gait`.
+    """
+    if walk.gait and not any(len(gait.strides) for gait in walk.gait.values()):
+        return [Finding("no_strides", Severity.WARNING, walk.name)]
+    findings: list[Finding] = []
+    for side, gait in walk.gait.items():
+        findings += _about_events(f"{walk.name}, {sites[side]}", gait)
+        findings += _about_peaks(walk.name, gait)
+    return [*findings, *_about_counts(walk)]
+
+
+def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:
+    reasons = Counter(gait.strides.reason)
+    if any(events.is_from_shank for events in gait.events):
+        yield Finding("events_from_shank", Severity.INFO, where)
+    if reasons[Reason.DOUBT]:
+        yield Finding("doubtful_strides", Severity.WARNING, where, {"count": reasons[Reason.DOUBT]})
+    if not reasons:
+        yield Finding("side_without_strides", Severity.WARNING, where)
+    elif not reasons[Reason.USED]:
+        reason, _ = reasons.most_common(1)[0]
+        yield Finding(
+            "strides_all_left_out", Severity.WARNING, where, {"count": reasons.total(), "reason": str(reason)}
+        )
+
+
+def _about_counts(walk: RecordingAnalysis) -> Iterator[Finding]:
+    """Sides with some strides, but too few for a mean or for a spread; where both have few it is said once."""
+    used = {side: int(np.count_nonzero(gait.strides.is_used)) for side, gait in walk.gait.items()}
+    few = {side: count for side, count in used.items() if MIN_STRIDES_FOR_MEAN <= count < MIN_STRIDES_FOR_SD}
+    for side, count in used.items():
+        if 0 < count < MIN_STRIDES_FOR_MEAN:
+            yield _count("no_mean", Severity.WARNING, walk, side, count, MIN_STRIDES_FOR_MEAN)
+        elif side in few and len(few) < len(Side):
+            yield _count("no_spread_of_side", Severity.INFO, walk, side, count, MIN_STRIDES_FOR_SD)
+    if len(few) == len(Side):
+        counts = {str(side): few[side] for side in Side}
+        yield Finding("no_spread", Severity.INFO, walk.name, {**counts, "wanted": MIN_STRIDES_FOR_SD})
+
+
+def _count(key: str, severity: Severity, walk: RecordingAnalysis, side: Side, count: int, wanted: int) -> Finding:
+    return Finding(key, severity, walk.name, {"side": str(side), "count": count, "wanted": wanted})
+
+
+def _about_peaks(walk: str, gait: SideGait) -> Iterator[Finding]:
+    """Peaks that no stride has, though its angle is known: the angle only passes through the window."""
+    for joint, cycles in gait.cycles.items():
+        is_known = gait.strides.is_used & np.isfinite(cycles).all(axis=1)
+        if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or joint in gait.sign_in_doubt:
+            continue
+        for window in KNEE_WINDOWS if joint.is_knee else ANKLE_WINDOWS:
+            if not np.isfinite(gait.parameters[f"{window.name}_rad"][is_known]).any():
+                yield Finding("no_peak", Severity.INFO, f"{walk}, {joint}", {"peak": window.name})

@@ -1,0 +1,88 @@
+"""Is it told where strides or peaks are missing or too few, once and at the right place?"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.findings import Finding, Severity
+from core.gait.strides import Reason, Strides, strides_of
+from core.results import RecordingAnalysis, SideGait
+from core.samples import RecordingKind
+from core.walk_findings import about_walk
+from devices.walker import Standing, Walk, WalkerSettings, simulate
+
+FEET: Mapping[Side, Site | None] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
+
+
+@pytest.fixture(scope="module")
+def walk() -> RecordingAnalysis:
+    return analyse(simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=13)))).session).recordings[0]
+
+
+def with_used(gait: SideGait, used: int, otherwise: Reason = Reason.TURN) -> SideGait:
+    reason = tuple(Reason.USED if k < used else otherwise for k in range(len(gait.strides)))
+    return replace(gait, strides=replace(gait.strides, reason=reason))
+
+
+def without_strides(gait: SideGait) -> SideGait:
+    nothing: Strides = strides_of(())
+    return replace(gait, strides=nothing, cycles={joint: np.empty((0, 101)) for joint in gait.cycles}, events=())
+
+
+def told(walk: RecordingAnalysis, left: SideGait, right: SideGait) -> list[Finding]:
+    return about_walk(replace(walk, gait={Side.LEFT: left, Side.RIGHT: right}), FEET)
+
+
+def test_a_walk_with_enough_good_strides_is_no_news(walk: RecordingAnalysis) -> None:
+    left, right = (with_used(walk.gait[side], 10) for side in Side)
+    assert told(walk, left, right) == []
+
+
+def test_few_strides_make_no_spread_and_fewer_no_mean(walk: RecordingAnalysis) -> None:
+    left, right = walk.gait[Side.LEFT], walk.gait[Side.RIGHT]
+    (both,) = told(walk, with_used(left, 4), with_used(right, 9))
+    assert (both.key, both.severity, both.where) == ("no_spread", Severity.INFO, "walk 1")
+    assert both.numbers == {"left": 4, "right": 9, "wanted": 10}
+    (one,) = told(walk, with_used(left, 10), with_used(right, 3))
+    assert (one.key, one.numbers) == ("no_spread_of_side", {"side": "right", "count": 3, "wanted": 10})
+    none, spread = told(walk, with_used(left, 2), with_used(right, 5))
+    assert (none.key, none.severity, none.numbers["side"]) == ("no_mean", Severity.WARNING, "left")
+    assert (spread.key, spread.numbers["side"]) == ("no_spread_of_side", "right")
+
+
+def test_all_strides_left_out_say_why(walk: RecordingAnalysis) -> None:
+    left, right = walk.gait[Side.LEFT], with_used(walk.gait[Side.RIGHT], 10)
+    (found,) = told(walk, with_used(left, 0, Reason.TURN), right)
+    assert (found.key, found.where) == ("strides_all_left_out", "walk 1, left_foot")
+    assert found.numbers == {"count": len(left.strides), "reason": "turn"}
+    doubt = told(walk, with_used(left, 0, Reason.DOUBT), right)
+    assert [finding.key for finding in doubt] == ["doubtful_strides", "strides_all_left_out"]
+
+
+def test_no_stride_at_all_is_told_of_the_walk_or_of_the_side(walk: RecordingAnalysis) -> None:
+    left, right = walk.gait[Side.LEFT], walk.gait[Side.RIGHT]
+    (of_walk,) = told(walk, without_strides(left), without_strides(right))
+    assert (of_walk.key, of_walk.where) == ("no_strides", "walk 1")
+    (of_side,) = told(walk, with_used(left, 10), without_strides(right))
+    assert (of_side.key, of_side.where) == ("side_without_strides", "walk 1, right_foot")
+    assert about_walk(replace(walk, gait={}), {}) == []  # without a sensor that could tell
+
+
+def test_a_peak_that_no_stride_has_is_named_unless_the_sign_is_in_doubt(walk: RecordingAnalysis) -> None:
+    left, right = (with_used(walk.gait[side], 10) for side in Side)
+    name = "ankle_push_off_plantarflexion_rad"
+    passing = replace(left, parameters={**left.parameters, name: np.full(len(left.strides), np.nan)})
+    (found,) = told(walk, passing, right)
+    assert (found.key, found.severity, found.where) == ("no_peak", Severity.INFO, "walk 1, left_ankle")
+    assert found.numbers == {"peak": "ankle_push_off_plantarflexion"}
+    assert told(walk, replace(passing, sign_in_doubt=frozenset({Joint.LEFT_ANKLE})), right) == []
+
+
+def test_standing_through_a_walk_is_no_walk() -> None:
+    stood = simulate(WalkerSettings(seed=4, recordings=(Standing(), Standing("walk 1", duration_s=6.0)))).session
+    walked = replace(stood, recordings=(stood.recordings[0], replace(stood.recordings[1], kind=RecordingKind.WALKING)))
+    assert "no_strides" in {finding.key for finding in analyse(walked).findings}
