@@ -4,14 +4,15 @@ One definition of each event, for any speed and sampling rate; levels follow eac
 
 - toe-off: the fast plantarflexion of push-off ends, its rate has fallen to TOE_OFF_SHARE of its peak;
 - initial contact: near the end of swing the floor turns the foot down; the rate reaches CONTACT_SHARE of the usual peak
-  of loading, after the last time the toes rose. The shock itself is no help: below 100 Hz it is aliased, and a jerk
-  threshold latches onto earlier peaks;
+  of loading, after the last time the toes rose. At 200 Hz the shock comes at this instant; below 100 Hz it is aliased,
+  and a jerk threshold latches onto earlier peaks;
 - full contact and heel rise: the rate comes to rest, and leaves it.
 
 Where a foot hardly rolls (shuffling, a flat landing) the pitch says nothing; its speed does, and the events are marked.
+Where the sensor shakes on its foot, the rate of one swing says little; the foot's mean swing does.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,12 +22,36 @@ from core.samples import BoolArray, FloatArray
 
 TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
-MAX_FALL_S = 0.04  # a foot whose toes come down that long has landed, whatever shakes the sensor
+LANDED_S = 0.02  # after half the peak of loading a foot has landed, whatever then shakes the sensor
+MAX_FALL_S = 0.04  # live: a foot whose toes come down that long has landed
 STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.1  # of the peak of push-off: below, the foot is flat
 ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
+SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
+MIN_SWINGS_TO_AVERAGE = 4
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor
+
+
+@dataclass(frozen=True, slots=True)
+class Usual:
+    """A foot's usual greatest pitch rates, toes down, in push-off and loading, and the rate below which it is flat."""
+
+    push_rad_s: float
+    load_rad_s: float
+    still_rad_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class MeanRate:
+    """Mean pitch rate (n,) of several swings around a mark, which lies at index `before`.
+
+    `unrest_rad_s` is how much the swings differ while the foot is flat.
+    """
+
+    rate_rad_s: FloatArray
+    before: int
+    unrest_rad_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,24 +100,23 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     rate, swings = motion.pitch_rate_rad_s, motion.swings
     speed = np.linalg.norm(motion.velocity_m_s, axis=1)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
-    push = [a + int(np.argmin(rate[a : m + 1])) for a, m, _ in spans]
-    load = [m + int(np.argmin(rate[m : b + 1])) for _, m, b in spans]
-    usual_push = float(np.median(-rate[push])) if spans else 0.0
-    usual_load = float(np.median(-rate[load])) if spans else 0.0
-    still = max(MIN_STILL_RAD_S, STILL_SHARE * usual_push)
+    push = -np.array([rate[a : m + 1].min() for a, m, _ in spans])
+    load = -np.array([rate[m : b + 1].min() for _, m, b in spans])
+    is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S)
+    usual = _usual(push, load)
     rows = np.full((len(spans), 4), np.nan)
-    is_rolling = np.zeros(len(spans), dtype=bool)
-    for k, ((a, m, b), p, q) in enumerate(zip(spans, push, load, strict=True)):
-        is_rolling[k] = -rate[p] > MIN_ROLL_RAD_S and -rate[q] > MIN_ROLL_RAD_S
+    for k, (a, m, b) in enumerate(spans):
+        rows[k, :2] = _leaving(rate[a : m + 1], usual) + a
+        rows[k, 2:] = _landing(rate[m : b + 1], usual, motion.step_s) + m
         flat = FLAT_SHARE * speed[m]
-        off = first_crossing(rate, p, m, TOE_OFF_SHARE * rate[p]) if -rate[p] > MIN_ROLL_RAD_S else np.nan
-        level = -CONTACT_SHARE * min(-rate[q], usual_load)
-        on = _contact(rate, m, q, level, MAX_FALL_S / motion.step_s) if -rate[q] > MIN_ROLL_RAD_S else np.nan
-        off = off if np.isfinite(off) else last_crossing(speed, a, m, flat)
-        on = on if np.isfinite(on) else first_crossing(speed, m, b, flat)
-        rise, full = _onset(-rate, p, a, still), _onset(-rate, q, b, LANDING_RATIO * still)
-        rows[k] = min(rise, off), off, on, max(full, on)
-    rows = np.where(np.isfinite(rows), rows, np.nan)
+        if not np.isfinite(rows[k, 1]):
+            rows[k, 1] = last_crossing(speed, a, m, flat)
+        if not np.isfinite(rows[k, 2]):
+            rows[k, 2] = first_crossing(speed, m, b, flat)
+    is_usual = is_rolling & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
+    _steady(rows, motion, spans, is_usual, usual)
+    rows[:, 0] = np.minimum(rows[:, 0], rows[:, 1])
+    rows[:, 3] = np.maximum(rows[:, 3], rows[:, 2])
     is_whole = np.isfinite(rows).all(axis=1)
     times = motion.time_of(rows[is_whole])
     missing = np.concatenate([[0], np.cumsum(~is_measured)])
@@ -108,6 +132,86 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
         is_certain=(is_rolling & motion.is_direction_certain)[is_whole],
         is_measured=is_heard[is_whole],
     )
+
+
+def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
+    """Heel rise and toe-off as indices of a pitch rate (n,) from rest to mid-swing; NaN: hardly rolled."""
+    push = int(np.argmin(rate))
+    if -rate[push] <= MIN_ROLL_RAD_S:
+        return np.array([_onset(-rate, push, 0, usual.still_rad_s), np.nan])
+    off = first_crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
+    return np.array([_onset(-rate, push, 0, usual.still_rad_s), off])
+
+
+def _landing(rate: FloatArray, usual: Usual, step_s: float) -> FloatArray:
+    """Initial and full contact as indices of a pitch rate (n,) from mid-swing to rest; NaN: hardly rolled."""
+    load = int(np.argmin(rate))
+    full = _onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
+    if -rate[load] <= MIN_ROLL_RAD_S:
+        return np.array([np.nan, full])
+    return np.array([_contact(rate, load, -CONTACT_SHARE * min(-rate[load], usual.load_rad_s), step_s), full])
+
+
+def _steady(
+    rows: FloatArray, motion: FootMotion, spans: list[tuple[int, int, int]], is_usual: BoolArray, usual: Usual
+) -> None:
+    """Time the usual swings' events, rows (k, 4), by the foot's mean swing if its sensor shakes; in place.
+
+    Integrated to a pitch, the shaking is small: where the pitch passes half its greatest, toes down and toes up, is
+    sure in every swing. How far from these marks the events lie is read off the mean rate of all swings. From stride to
+    stride the events then vary as the marks do.
+    """
+    marks = np.array([_marks(motion.pitch_rad, *span) for span in spans]).reshape(-1, 2)
+    chosen = np.flatnonzero(is_usual & np.isfinite(marks).all(axis=1))
+    if len(chosen) < MIN_SWINGS_TO_AVERAGE:
+        return
+    rate = motion.pitch_rate_rad_s
+    begin, middle, end = np.array(spans)[chosen].T
+    leave = _mean_rate([rate[a : m + 1] for a, m in zip(begin, middle, strict=True)], marks[chosen, 0] - begin, usual)
+    land = _mean_rate([rate[m : b + 1] for m, b in zip(middle, end, strict=True)], marks[chosen, 1] - middle, usual)
+    unrest = 0.5 * (leave.unrest_rad_s + land.unrest_rad_s)
+    if unrest < SHAKING_SHARE * usual.still_rad_s:
+        return
+    usual = replace(usual, still_rad_s=max(usual.still_rad_s, 3.0 * unrest / np.sqrt(len(chosen))))
+    leaving = _leaving(leave.rate_rad_s, usual) - leave.before
+    landing = _landing(land.rate_rad_s, usual, motion.step_s) - land.before
+    if np.isfinite(leaving).all() and np.isfinite(landing).all():
+        rows[chosen, :2] = marks[chosen, :1] + leaving
+        rows[chosen, 2:] = marks[chosen, 1:] + landing
+
+
+def _usual(push: FloatArray, load: FloatArray) -> Usual:
+    if not len(push):
+        return Usual(0.0, 0.0, MIN_STILL_RAD_S)
+    usual_push = float(np.median(push))
+    return Usual(usual_push, float(np.median(load)), max(MIN_STILL_RAD_S, STILL_SHARE * usual_push))
+
+
+def _marks(pitch: FloatArray, rest: int, fastest: int, next_rest: int) -> tuple[float, float]:
+    """Where the pitch (n,) first passes half its greatest toes down, and last half its greatest toes up; else NaN."""
+    lowest = rest + int(np.argmin(pitch[rest : fastest + 1]))
+    highest = fastest + int(np.argmax(pitch[fastest : next_rest + 1]))
+    return (
+        first_crossing(pitch, rest, lowest, 0.5 * pitch[lowest]),
+        last_crossing(pitch, highest, next_rest, 0.5 * pitch[highest]),
+    )
+
+
+def _mean_rate(rates: list[FloatArray], marks: FloatArray, usual: Usual) -> MeanRate:
+    """Mean of the rates of several swings, (n,) each, aligned at their `marks` (k,), as far as most of them reach."""
+    before = int(np.median(marks))
+    after = int(np.median([len(rate) - 1 - mark for rate, mark in zip(rates, marks, strict=True)]))
+    offsets = np.arange(-before, after + 1)
+    rows = np.stack(
+        [
+            np.interp(mark + offsets, np.arange(len(rate)), rate, left=np.nan, right=np.nan)
+            for rate, mark in zip(rates, marks, strict=True)
+        ]
+    )
+    mean = np.nanmean(rows, axis=0)
+    is_flat = np.abs(mean) < usual.still_rad_s
+    unrest = float(np.median(np.nanstd(rows[:, is_flat], axis=0))) if is_flat.any() else 0.0
+    return MeanRate(mean, before, unrest)
 
 
 def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
@@ -129,11 +233,13 @@ def _crossing(signal: FloatArray, first: int, last: int, level: float, which: in
     return first + k + float(above[k] / (above[k] - above[k + 1]))
 
 
-def _contact(rate: FloatArray, fastest: int, load: int, level: float, longest: float) -> float:
-    """Where the rate, on its last way down to the peak of loading, reaches `level`; `longest` samples at most."""
-    falls = last_crossing(rate, fastest, load, 0.0)
-    reached = first_crossing(rate, max(fastest, int(falls)), load, level) if np.isfinite(falls) else np.nan
-    return float(np.fmin(reached, falls + longest))
+def _contact(rate: FloatArray, load: int, level: float, step_s: float) -> float:
+    """Where the rate, on its last way down to the peak of loading, reaches `level`, LANDED_S after its half at most."""
+    falls = last_crossing(rate, 0, load, 0.0)
+    if not np.isfinite(falls):
+        return float("nan")
+    half, whole = (first_crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
+    return float(np.fmin(whole, half + LANDED_S / step_s))
 
 
 def _onset(rate: FloatArray, peak: int, rest: int, still: float) -> float:

@@ -1,11 +1,12 @@
 """How does a foot travel from one stance to the next? Its swings, its pitch and its velocity, in any mounting.
 
 Between two steps every foot comes to rest, or nearly so: the calmest instant of each stance anchors everything. From
-anchor to anchor the specific force is integrated and what velocity is left at the end is taken off
-(zero-velocity updates; Skog et al. 2010, doi 10.1109/TBME.2010.2060723, whose stance statistic is used too).
+stance to stance the specific force is integrated and what velocity is left in the next is taken off (zero-velocity
+updates; Skog et al. 2010, doi 10.1109/TBME.2010.2060723, whose stance statistic is used too).
 """
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -20,6 +21,8 @@ CALM_WINDOW_S = 0.1
 MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)
 MAX_CALM = 30.0  # a foot that moves more than this, in units of CALM squared, is not standing; loose straps come near
 CALM_FLOOR = 0.03  # the sensors' own noise
+REST_TILT_RAD = np.deg2rad(4.0)  # a foot that stands tilts no further; a sensor shaking on it may, by half of that
+MAX_REST_S = 0.8  # to either side; standing lasts longer, and the tilt then drifts
 MAX_TILT_ERROR_RAD = np.deg2rad(3.0)  # the filter is better than this; what is more, the foot's own wobble felt
 EVEN_M_S2 = 0.005  # what an accelerometer's bias leaves once a stance has shown the vertical, sample by sample
 BEND_SHARE = 0.2  # of a second difference is what the trapezoid may miss,
@@ -47,6 +50,19 @@ class Swings:
 
 
 @dataclass(frozen=True, slots=True)
+class Rest:
+    """One stance as zero velocity sees it: the calmest sample, the samples around it and how much each counts.
+
+    A sensor may shake on its foot. Over a stance that averages out, in one instant it does not. The weights fade
+    towards both ends, where the foot begins to roll.
+    """
+
+    anchor: int
+    span: slice
+    weights: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
 class FootMotion:
     """One foot over one track.
 
@@ -55,7 +71,7 @@ class FootMotion:
     pitch_axis : (3,)
         In sensor axes; turning about it lifts the toes.
     pitch_rate_rad_s, pitch_rad : (n,)
-        Toes up positive; the pitch is zero at the usual foot flat.
+        Toes up positive; the pitch is zero in the rest of each stance.
     velocity_m_s : (n, 3)
         Of the sensor, in earth axes.
     travel_m : (k, 2)
@@ -92,7 +108,9 @@ def follow(foot: OrientedTrack) -> FootMotion:
     acceleration = np.einsum("nij,nj->ni", earth_from_sensor, track.acc_m_s2) - [0.0, 0.0, GRAVITY_M_S2]
     up = earth_from_sensor[:, 2]  # in sensor axes
     anchors = _anchors(gyr, acceleration, up, step_s)
-    velocity = _velocity(acceleration, anchors, step_s)
+    rough = _velocity(acceleration, _instants(anchors, len(up), step_s), step_s)
+    rests = _stances(anchors, up, np.linalg.norm(rough, axis=1), step_s)
+    velocity = _velocity(acceleration, rests, step_s)
     path = _integral(velocity, step_s)
     swings = _swings(anchors, velocity, path)
     axis, is_certain = _pitch_axis(gyr, earth_from_sensor, anchors, swings, path, step_s)
@@ -106,7 +124,7 @@ def follow(foot: OrientedTrack) -> FootMotion:
         swings=swings,
         pitch_axis=axis,
         pitch_rate_rad_s=gyr @ axis,
-        pitch_rad=np.arcsin(np.clip(up @ forward, -1.0, 1.0)),
+        pitch_rad=_pitch(up @ forward, rests),
         velocity_m_s=velocity,
         travel_m=path[after, :2] - path[before, :2],
         height_m=_heights(path[:, 2], swings),
@@ -137,34 +155,74 @@ def _integral(rate: FloatArray, step_s: float) -> FloatArray:
     return total
 
 
-def _upright(acceleration: FloatArray, anchors: IntArray, step_s: float) -> FloatArray:
+def _instants(anchors: IntArray, n: int, step_s: float) -> list[Rest]:
+    """The shortest rests: no more than the calm around each anchor."""
+    reach = max(1, round(0.5 * CALM_WINDOW_S / step_s))
+    return [_rest(i, max(0, i - reach), min(n, i + reach + 1)) for i in anchors.tolist()]
+
+
+def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float) -> list[Rest]:
+    """The longest rests: all samples around each anchor in which the foot stands as it does there.
+
+    Parameters
+    ----------
+    speed_m_s : (n,)
+        Of the sensor, roughly: a rest ends two thirds of the way to its greatest, even if it slides flat.
+    """
+    most = round(MAX_REST_S / step_s)
+    fastest = [a + int(np.argmax(speed_m_s[a:b])) for a, b in pairwise(anchors.tolist())]
+    rests = []
+    for k, least in enumerate(_instants(anchors, len(up), step_s)):
+        i = least.anchor
+        begin = max(0, i - most) if k == 0 else max(i - most, (i + 2 * fastest[k - 1]) // 3)
+        end = min(len(up), i + most) if k == len(fastest) else min(i + most, (i + 2 * fastest[k]) // 3)
+        usual = least.weights @ up[least.span]
+        is_away = up[begin:end] @ usual < np.cos(REST_TILT_RAD) * np.linalg.norm(usual)
+        before, after = np.flatnonzero(is_away[: i - begin]), np.flatnonzero(is_away[i - begin :])
+        begin = begin + int(before[-1]) + 1 if len(before) else begin
+        end = i + int(after[0]) if len(after) else end
+        rests.append(_rest(i, min(begin, least.span.start), max(end, least.span.stop)))
+    return rests
+
+
+def _rest(anchor: int, begin: int, end: int) -> Rest:
+    weights = np.hanning(end - begin + 2)[1:-1]
+    return Rest(anchor, slice(begin, end), weights / weights.sum())
+
+
+def _at_rest(signal: FloatArray, rests: list[Rest]) -> FloatArray:
+    """Means (k, ...) of `signal` (n, ...) over each rest."""
+    return np.stack([rest.weights @ signal[rest.span] for rest in rests])
+
+
+def _upright(acceleration: FloatArray, rests: list[Rest]) -> FloatArray:
     """Take off the tilt of the earth's axes (n, 3) that a standing foot shows: there is nothing but gravity at rest."""
     gravity = np.array([0.0, 0.0, GRAVITY_M_S2])
-    reach = max(1, round(0.5 * CALM_WINDOW_S / step_s))
-    felt = np.stack([acceleration[max(0, i - reach) : i + reach + 1].mean(axis=0) for i in anchors]) + gravity
+    felt = _at_rest(acceleration, rests) + gravity
     tilt = np.cross(felt, [0.0, 0.0, 1.0]) / np.linalg.norm(felt, axis=1, keepdims=True)
     tilt *= np.minimum(1.0, MAX_TILT_ERROR_RAD / np.maximum(np.linalg.norm(tilt, axis=1, keepdims=True), 1e-9))
-    index = np.arange(len(acceleration))
+    index, anchors = np.arange(len(acceleration)), [rest.anchor for rest in rests]
     turned = np.stack([np.interp(index, anchors, tilt[:, k]) for k in range(3)], axis=1)
     return acceleration + np.cross(turned, acceleration + gravity)
 
 
-def _velocity(acceleration: FloatArray, anchors: IntArray, step_s: float) -> FloatArray:
-    """Velocity (n, 3) that is zero at every anchor.
+def _velocity(acceleration: FloatArray, rests: list[Rest], step_s: float) -> FloatArray:
+    """Velocity (n, 3) whose mean over every rest is zero.
 
-    What is left at an anchor is taken off where it most likely arose: evenly from a bias, and at once from an impact
+    What is left in a rest is taken off where it most likely arose: evenly from a bias, and at once from an impact
     too short for the sampling rate, where the force bends most from sample to sample.
     """
-    if not len(anchors):
+    if not rests:
         return _integral(acceleration, step_s)
-    upright = _upright(acceleration, anchors, step_s)
+    upright = _upright(acceleration, rests)
     velocity = _integral(upright, step_s)
     doubt = np.full(len(velocity), EVEN_M_S2**2 * step_s)
     bend = np.sum((upright[2:] - 2.0 * upright[1:-1] + upright[:-2]) ** 2, axis=1)
     doubt[1:-1] += (BEND_SHARE * step_s) ** 2 * np.maximum(bend - SMOOTH_M_S2**2, 0.0)
     blame = np.cumsum(doubt)
+    left, blamed = _at_rest(velocity, rests), _at_rest(blame, rests)
     for k in range(3):
-        velocity[:, k] -= np.interp(blame, blame[anchors], velocity[anchors, k])
+        velocity[:, k] -= np.interp(blame, blamed, left[:, k])
     return velocity
 
 
@@ -201,6 +259,13 @@ def _pitch_axis(
 
 def _spans(swings: Swings) -> list[tuple[int, int]]:
     return list(zip(swings.anchor_before.tolist(), swings.anchor_after.tolist(), strict=True))
+
+
+def _pitch(forward_up: FloatArray, rests: list[Rest]) -> FloatArray:
+    pitch = np.arcsin(np.clip(forward_up, -1.0, 1.0))
+    if not rests:
+        return pitch
+    return np.asarray(pitch - np.interp(np.arange(len(pitch)), [rest.anchor for rest in rests], _at_rest(pitch, rests)))
 
 
 def _heading(earth_from_sensor: FloatArray, forward: FloatArray) -> FloatArray:
