@@ -1,0 +1,84 @@
+"""A strap that slips is named, with its time; walking, turning and loose tissue are no slip."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from core.body import Joint, Site
+from core.measure import pairs_of
+from core.samples import ImuBlock, RateKind, Session
+from core.sensors import SensorTracks
+from core.strap import Slip, Turns, slips, turns_over
+from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+
+WALK = "walk 1"
+SLIP_S = 22.0
+
+
+@pytest.fixture(scope="module")
+def soft() -> SimulatedSession:
+    return patient(Tissue.SOFT, turn_rad=0.0)
+
+
+def patient(tissue: Tissue, turn_rad: float) -> SimulatedSession:
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32, turn_rad=turn_rad))
+    return simulate(WalkerSettings(seed=5, recordings=recordings, tissue=tissue))
+
+
+def slipped(session: Session, site: Site, angle_rad: float) -> Session:
+    """The same session, with the sensor turned about its limb from SLIP_S of the walk on."""
+    standing, free_motion, walk = session.recordings
+    up = standing.imu[site].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up)).as_matrix()
+    imu = {**walk.imu, site: turned(walk.imu[site], turn)}
+    return replace(session, recordings=(standing, free_motion, replace(walk, imu=imu)))
+
+
+def turned(block: ImuBlock, turn: np.ndarray) -> ImuBlock:
+    gyr, acc = block.gyr_rad_s.copy(), block.acc_m_s2.copy()
+    late = block.time_s >= SLIP_S
+    gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
+    return replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
+
+
+def found_in(session: Session, simulated: SimulatedSession) -> list[Slip]:
+    tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
+    walk = session.recordings[2]
+    turns = {}
+    for joint in Joint:
+        truth = simulated.truth.recordings[WALK].joints[joint]
+        (pair,) = pairs_of(tracks, walk, joint, tracks.blocks(walk)[0], 0.0)
+        turns[joint] = turns_over(pair, truth.functional_proximal, truth.functional_distal)
+    return slips(turns)
+
+
+@pytest.mark.parametrize("site", list(Site))
+@pytest.mark.parametrize("angle_deg", [12.0, -20.0])
+def test_names_the_strap_that_slipped_and_when(soft: SimulatedSession, site: Site, angle_deg: float) -> None:
+    (slip,) = found_in(slipped(soft.session, site, np.deg2rad(angle_deg)), soft)
+    assert slip.site is site
+    assert slip.from_s == pytest.approx(SLIP_S, abs=5.0)
+    assert np.rad2deg(slip.turn_rad) == pytest.approx(angle_deg, abs=0.25 * abs(angle_deg))
+
+
+def test_walking_with_a_turn_is_no_slip() -> None:
+    simulated = patient(Tissue.REAL, turn_rad=np.pi)
+    assert found_in(simulated.session, simulated) == []
+
+
+def test_a_slip_of_three_degrees_is_not_told(soft: SimulatedSession) -> None:
+    assert found_in(slipped(soft.session, Site.LEFT_SHANK, np.deg2rad(3.0)), soft) == []
+
+
+def test_too_little_walking_tells_nothing() -> None:
+    turns = Turns(np.array([0.0]), np.deg2rad([40.0]))
+    assert slips({Joint.LEFT_KNEE: turns}) == []
+
+
+def test_two_windows_far_from_the_calibration_are_a_slip_before_the_walk() -> None:
+    turns = Turns(np.array([0.0, 5.0, 10.0]), np.deg2rad([20.0, 21.0, 19.0]))
+    (slip,) = slips({Joint.RIGHT_KNEE: turns})
+    assert slip.from_s == 0.0
+    assert slip.site is Site.RIGHT_THIGH
