@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Mapping, Set
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -110,7 +110,7 @@ def _walk(
         "symmetry_index_percent": {
             name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
         },
-        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind)) for kind in KINDS},
+        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind, has_zero)) for kind in KINDS},
         "side_difference": {
             name: _side_difference(one, other, name, has_zero) for name in PARAMETERS if name.endswith("_deg")
         },
@@ -118,7 +118,7 @@ def _walk(
     return {**sides, "both": both}
 
 
-def _side(side: Side, gait: SideGait, has_zero: Set[Joint]) -> dict[str, Any]:
+def _side(side: Side, gait: SideGait, has_zero: set[Joint]) -> dict[str, Any]:
     used = int(np.count_nonzero(gait.strides.is_used))
     figures: dict[str, Any] = {"strides_used": used, "strides_left_out": len(gait.strides) - used}
     for name in PARAMETERS:
@@ -140,23 +140,26 @@ def _mean(gait: SideGait, name: str) -> MeanAndSd:
     return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
 
 
-def _difference_deg(left: SideGait, right: SideGait, kind: str) -> float:
-    means = [mean_of_used(gait, Joint(f"{side}_{kind}")).mean for side, gait in zip(Side, (left, right), strict=True)]
+def _difference_deg(left: SideGait, right: SideGait, kind: str, has_zero: set[Joint]) -> float:
+    joints = [Joint(f"{side}_{kind}") for side in Side]
+    if not has_zero.issuperset(joints):  # each would be told from a zero of its own
+        return math.nan
+    means = [mean_of_used(gait, joint).mean for gait, joint in zip((left, right), joints, strict=True)]
     return math.degrees(curve_difference(means[0], means[1]))
 
 
-def _side_difference(one: SideGait, other: SideGait, name: str, has_zero: Set[Joint]) -> dict[str, Any] | None:
+def _side_difference(one: SideGait, other: SideGait, name: str, has_zero: set[Joint]) -> dict[str, Any] | None:
     """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
 
     None where either side has no such angle, or no zero to tell it from.
     """
-    left, right = (Joint(f"{side}_{name.split('_')[0]}") for side in Side)
-    if not name.endswith("_range_deg") and not {left, right} <= has_zero:
+    joints = [Joint(f"{side}_{name.split('_')[0]}") for side in Side]
+    if not name.endswith("_range_deg") and not has_zero.issuperset(joints):
         return None
     means = _mean(one, name), _mean(other, name)
     if not all(mean.n for mean in means):
         return None
-    found = compare_new_attachment(left, *means)
+    found = compare_new_attachment(joints[0], *means)
     return {
         "difference_deg": _number(found.difference_deg),
         "error_deg": _number(found.error_deg),
