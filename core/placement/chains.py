@@ -1,0 +1,154 @@
+"""Which sensors make up a leg, which end of it is up, and which leg moved first? Found without any label."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.body import Segment, Side, Site, ankle_of, knee_of
+from core.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
+from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours, statures
+from core.placement.felt import Tracks, felt_together
+from core.samples import FloatArray
+
+MIN_MARGIN = 1.5  # right chains had 2 and more, wrong ones at most 1.3 (tests/benchmarks/placement.py)
+MIN_UPRIGHTNESS = 0.5  # flatter, the patient lay, and the vertical does not tell which end is up
+LIFTED_RAD_S = 0.7  # the leg that bears the weight sways less
+MIN_LEAD_S = 0.5
+
+# What a number of sensors is worn as: whole legs first, then a knee.
+USUAL_SITES = {
+    2: (Site.LEFT_THIGH, Site.LEFT_SHANK),
+    3: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT),
+    4: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
+    5: (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_THIGH, Site.RIGHT_SHANK),
+    6: tuple(Site),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Chain:
+    """The sensors of one leg by name. `foot` None: a knee alone.
+
+    Attributes
+    ----------
+    knee_margin, ankle_margin
+        Cost of the best arrangement without this joint over the cost of the best; infinite where there is no other.
+    stature
+        How much higher the thigh's sensor sits than the last one in standing, as the joints' places tell.
+    moved_at_s
+        When the leg was lifted first, None where it never was.
+    """
+
+    thigh: str
+    shank: str
+    foot: str | None
+    knee_margin: float
+    ankle_margin: float | None
+    stature: Stature
+    moved_at_s: float | None
+
+    @property
+    def is_direction_certain(self) -> bool:
+        return self.stature.uprightness > MIN_UPRIGHTNESS
+
+
+@dataclass(frozen=True, slots=True)
+class Chains:
+    """The legs in the order in which they were lifted. Left and right are not in the motion: one hint names them.
+
+    Attributes
+    ----------
+    margin
+        Cost of the best rival arrangement over the cost of this one; infinite where there is no rival.
+    lead_s
+        How much earlier the first leg was lifted than the second; None where one of them never was or is not there.
+    """
+
+    legs: tuple[Chain, ...]
+    margin: float
+    lead_s: float | None
+
+    @property
+    def is_certain(self) -> bool:
+        """Whether the sensors may be named without asking, but for left and right."""
+        return self.margin > MIN_MARGIN and all(leg.is_direction_certain for leg in self.legs)
+
+    @property
+    def is_first_certain(self) -> bool:
+        return self.lead_s is not None and self.lead_s > MIN_LEAD_S
+
+    def sites(self, first_moved: Side) -> dict[str, Site]:
+        """Name every sensor's site, given the side of the leg that was lifted first."""
+        other = Side.RIGHT if first_moved is Side.LEFT else Side.LEFT
+        named = {}
+        for side, leg in zip((first_moved, other), self.legs, strict=False):
+            for segment in Segment:
+                sensor = getattr(leg, segment.value)
+                if sensor is not None:
+                    named[sensor] = Site(f"{side}_{segment}")
+        return named
+
+
+def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None) -> Chains | None:
+    """Arrange two to six sensors to legs; None where they were not heard together.
+
+    Two sensors are taken for a knee, three for a leg, four for two knees, five for a leg and a knee.
+
+    Parameters
+    ----------
+    tracks
+        Of a free motion, by the sensor's name.
+    standing
+        Mean specific force (3,) of each sensor in standing. Without it the mean vertical of the motion serves, which
+        tells less of a patient who lies.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two sensors, or more than six.
+    """
+    if len(tracks) not in USUAL_SITES:
+        raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")
+    together = felt_together(tracks)
+    told = neighbours(together, standing or {}) if together else None
+    if told is None:
+        return None
+    arrangements = Arrangements(USUAL_SITES[len(tracks)], told)
+    best = arrangements.best()
+    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, told))
+    legs = [
+        _chain(side, arrangement, arrangements, told, tracks) for side in Side if Site(f"{side}_thigh") in arrangement
+    ]
+    legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
+    at_s = [leg.moved_at_s for leg in legs]
+    lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
+    return Chains(tuple(legs), arrangements.margin(best), lead_s)
+
+
+def _total_height_m(arrangement: Arrangement, told: Neighbours) -> float:
+    return sum(stature.height_m for stature in statures(arrangement, told).values())
+
+
+def _chain(side: Side, arrangement: Arrangement, arrangements: Arrangements, told: Neighbours, tracks: Tracks) -> Chain:
+    sensors = {site.segment: told.names[sensor] for site, sensor in arrangement.items() if site.side is side}
+    has_foot = Segment.FOOT in sensors
+    moved = [at_s for name in sensors.values() if (at_s := _lifted_at_s(tracks[name])) is not None]
+    return Chain(
+        thigh=sensors[Segment.THIGH],
+        shank=sensors[Segment.SHANK],
+        foot=sensors.get(Segment.FOOT),
+        knee_margin=arrangements.margin(arrangement, knee_of(side)),
+        ankle_margin=arrangements.margin(arrangement, ankle_of(side)) if has_foot else None,
+        stature=statures(arrangement, told)[side],
+        moved_at_s=min(moved, default=None),
+    )
+
+
+def _lifted_at_s(stretches: Sequence[OrientedTrack]) -> float | None:
+    for track in sorted((one.track for one in stretches), key=lambda track: track.start_s):
+        speed = np.linalg.norm(track.gyr_rad_s, axis=1)
+        is_lifted = moving_mean(speed, max(1, round(MOVING_WINDOW_S / track.step_s))) > LIFTED_RAD_S
+        if is_lifted.any():
+            return float(track.time_s[np.argmax(is_lifted)])
+    return None

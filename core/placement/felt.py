@@ -1,0 +1,132 @@
+"""What does every sensor feel at the same instants, smooth enough that neighbours can be told from strangers?
+
+Everything here is linear in the unknowns of a joint, so it may be averaged over time first. That takes away what
+tissue, impacts and small lags do between two neighbours, and leaves the slow swing of the limbs, which strangers do not
+share.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.pair import FAST_RAD_S, OrientedTrack, angular_acceleration, lever_matrix
+from core.rotations import matrix_from_quaternion
+from core.samples import FloatArray, IntArray
+from core.tracks import at_positions
+
+STEP_S = 0.05
+MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
+LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
+WINDOW_S = 10.0  # over which two headings hardly drift apart
+MAX_INSTANTS = 600
+BORDER_SAMPLES = 2  # without angular acceleration (eq 1)
+
+
+@dataclass(frozen=True, slots=True)
+class Felt:
+    """One sensor at even instants (n,); NaN where it was not heard.
+
+    With o the vector from a joint to the sensor and b the accelerometer's bias, both in sensor axes, the joint's
+    specific force in the sensor's own earth is terms @ (-o, -b, 1).
+
+    Attributes
+    ----------
+    terms : (n, 3, 7)
+    change : (n, 3, 7)
+        Their derivatives by time.
+    """
+
+    terms: FloatArray
+    change: FloatArray
+
+    @property
+    def up(self) -> FloatArray:
+        """Mean vertical (3,) in sensor axes."""
+        return np.asarray(np.nanmean(self.terms[:, 2, 3:6], axis=0))
+
+
+@dataclass(frozen=True, slots=True)
+class Together:
+    """All sensors at the same even instants; `index` (m,) are those to be used.
+
+    `window` (m,) numbers the stretches of one heading each.
+    """
+
+    sensors: Mapping[str, Felt]
+    index: IntArray
+    window: IntArray
+
+
+Tracks = Mapping[str, Sequence[OrientedTrack]]
+"""The oriented stretches of each sensor in one recording, by the sensor's name."""
+
+
+def felt_together(tracks: Tracks) -> Together | None:
+    """What all sensors felt in the liveliest minute they have in common; None where one was not heard for a second."""
+    if not all(tracks.values()):
+        return None
+    start_s = max(min(one.track.start_s for one in stretches) for stretches in tracks.values())
+    end_s = min(max(one.track.end_s for one in stretches) for stretches in tracks.values())
+    if end_s - start_s < 1.0:
+        return None
+    start_s, end_s = _liveliest(tracks, start_s, end_s)
+    time_s = np.arange(start_s, end_s, STEP_S)
+    sensors = {name: _felt(stretches, time_s) for name, stretches in tracks.items()}
+    if any(np.isnan(felt.terms).all() for felt in sensors.values()):
+        return None
+    index = np.arange(1, len(time_s) - 1, -(-len(time_s) // MAX_INSTANTS))
+    windows = max(1, round((end_s - start_s) / WINDOW_S))
+    return Together(sensors, index, index * windows // len(time_s))
+
+
+def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, float]:
+    if end_s - start_s <= LONGEST_S:
+        return start_s, end_s
+    energy = np.zeros(int(np.ceil(end_s - start_s)))
+    for stretches in tracks.values():
+        for one in stretches:
+            speed = np.minimum(np.sum(one.track.gyr_rad_s**2, axis=1), FAST_RAD_S**2)  # a jump is not a minute's worth
+            at = np.floor(one.track.time_s - start_s).astype(np.int64)
+            is_inside = (at >= 0) & (at < len(energy))
+            energy += one.track.step_s * np.bincount(at[is_inside], speed[is_inside], len(energy))
+    total = np.concatenate([[0.0], np.cumsum(energy)])
+    seconds = int(LONGEST_S)
+    first = int(np.argmax(total[seconds:] - total[:-seconds]))
+    return start_s + first, min(start_s + first + LONGEST_S, end_s)
+
+
+def _felt(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Felt:
+    rows = np.full((len(time_s), 21), np.nan)
+    for one in stretches:
+        reach_s = (2 * _half_width(one.track.step_s) + BORDER_SAMPLES + 2) * one.track.step_s
+        is_inside = (time_s >= one.track.start_s + reach_s) & (time_s <= one.track.end_s - reach_s)
+        if is_inside.any():
+            rows[is_inside] = _smooth_terms(one, time_s[is_inside])
+    terms = rows.reshape(-1, 3, 7)
+    return Felt(terms, np.gradient(terms, STEP_S, axis=0))
+
+
+def _smooth_terms(one: OrientedTrack, time_s: FloatArray) -> FloatArray:
+    """Terms row by row (n, 21), averaged around ascending instants inside a stretch."""
+    track = one.track
+    half = _half_width(track.step_s)
+    middle = (time_s - track.start_s) / track.step_s
+    first = int(middle[0]) - 2 * half - 1
+    near = slice(first, int(middle[-1]) + 2 * half + 3)
+    swing = lever_matrix(track.gyr_rad_s[near], angular_acceleration(track.gyr_rad_s, track.step_s)[near])
+    earth_from = matrix_from_quaternion(one.q_earth_from_sensor[near])
+    force = earth_from @ track.acc_m_s2[near][..., None]
+    terms = np.concatenate([earth_from @ swing, earth_from, force], axis=2).reshape(-1, 21)
+    smooth = _running_mean(_running_mean(terms, half), half)
+    return at_positions(smooth, middle - first - 2 * half)
+
+
+def _half_width(step_s: float) -> int:
+    return max(1, round(0.5 * MEAN_S / step_s))
+
+
+def _running_mean(values: FloatArray, half: int) -> FloatArray:
+    """Means (n - 2 half, k) of rows (n, k) and their `half` neighbours on each side."""
+    total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(values, axis=0)])
+    return (total[2 * half + 1 :] - total[: -2 * half - 1]) / (2 * half + 1)

@@ -1,0 +1,97 @@
+"""Do the labels contradict the motion? Then which sensors seem to have been exchanged?"""
+
+from collections.abc import Mapping
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.placement.arrangements import Arrangement, Arrangements, Neighbours, joints_between, neighbours, statures
+from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
+from core.placement.felt import Tracks, felt_together
+from core.samples import FloatArray, Recording, RecordingKind
+from core.sensors import SensorTracks
+
+
+def about_labels(tracks: SensorTracks) -> list[Finding]:
+    """A finding for every group of sites whose sensors seem exchanged, from the free motion, else from a walk."""
+    recording = _telling(tracks)
+    if recording is None:
+        return []
+    block = tracks.blocks(recording)[0]
+    sites = _joined_sites(tracks, recording)
+    by_site = {str(site): tracks.oriented(recording, site, block) for site in sites}
+    standing = {str(site): force for site in sites if (force := _standing_force(tracks, site)) is not None}
+    found = []
+    for group in exchanged_sites(by_site, standing):
+        where = ", ".join([recording.name, *group])
+        found.append(
+            Finding("labels_look_swapped" if len(group) == 2 else "labels_look_mixed", Severity.WARNING, where)
+        )
+    return found
+
+
+def _telling(tracks: SensorTracks) -> Recording | None:
+    """The recording with the most joints; free motion where that does not decide."""
+    moving = [r for r in tracks.span if r.kind is not RecordingKind.STANDING and _joined_sites(tracks, r)]
+    is_free = RecordingKind.FREE_MOTION
+    return max(moving, key=lambda r: (len(_joined_sites(tracks, r)), r.kind is is_free), default=None)
+
+
+def _joined_sites(tracks: SensorTracks, recording: Recording) -> list[Site]:
+    worn = tuple(site for site in Site if tracks.is_usable(recording, site))
+    return [site for site in worn if any(site in (j.proximal, j.distal) for j in joints_between(worn))]
+
+
+def _standing_force(tracks: SensorTracks, site: Site) -> FloatArray | None:
+    for recording in tracks.span:
+        if recording.kind is RecordingKind.STANDING and (rest := tracks.rest(recording, site)) is not None:
+            return rest.acc_m_s2
+    return None
+
+
+def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[tuple[Site, ...]]:
+    """Groups of sites whose sensors the motion wants exchanged; none where the labels may be right.
+
+    Whole legs cannot be told apart, so two exchanged legs are not found.
+
+    Parameters
+    ----------
+    tracks
+        Of a free motion or a walk, by site; every site with a neighbour among them.
+    standing
+        Mean specific force (3,) in standing, by site.
+    """
+    together = felt_together(tracks) if tracks else None
+    told = neighbours(together, standing) if together else None
+    if told is None:
+        return []
+    labelled = {Site(name): sensor for sensor, name in enumerate(told.names)}
+    arrangements = Arrangements(tuple(labelled), told)
+    best = arrangements.best()
+    if arrangements.ratio(labelled, best) < MIN_MARGIN:
+        best = labelled
+    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, told)]
+    nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
+    return _groups(nearest, labelled)
+
+
+def _is_upside_down(arrangement: Arrangement, told: Neighbours) -> bool:
+    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, told).values())
+
+
+def _changes(one: Arrangement, other: Arrangement) -> int:
+    return sum(one[site] != other[site] for site in one)
+
+
+def _groups(wanted: Arrangement, labelled: Arrangement) -> list[tuple[Site, ...]]:
+    """The cycles in which the sensors change places."""
+    site_of = {sensor: site for site, sensor in wanted.items()}
+    groups: list[tuple[Site, ...]] = []
+    left = [site for site in Site if site in wanted and wanted[site] != labelled[site]]
+    while left:
+        group, site = [], left[0]
+        while site in left:
+            left.remove(site)
+            group.append(site)
+            site = site_of[labelled[site]]
+        groups.append(tuple(sorted(group, key=list(Site).index)))
+    return groups
