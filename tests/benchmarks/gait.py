@@ -1,17 +1,20 @@
-"""How well are a foot's events, phases and strides found, against optics and on the project's own patient?
+"""How well and how fast are a foot's events and strides found, beside gaitmap, against optics?
 
-    python tests/benchmarks/gait.py [--seeds 3]
+    python -m tests.benchmarks.gait [--repeats 7]
 
-The optical recordings are used where GAITWRIGHT_TEST_DATA names the shared folder. Errors of events and phases in ms,
-mean and standard deviation; of lengths in percent and cm.
+The optical recordings are used where GAITWRIGHT_TEST_DATA names the shared folder. Every method is scored by
+foot_scoring.py. CPU seconds of one core, for a minute of the walker, by turns.
 """
 
 import argparse
 import csv
 import os
+import sys
 import time
 from collections import defaultdict
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,36 +22,46 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.events import FootEvents, gait_of
-from core.gait.foot import follow
-from core.gait.spatiotemporal import both_feet
+from core.gait.events import gait_of
 from core.gait.strides import strides_of
 from core.orientation import oriented
 from core.pair import OrientedTrack
-from core.rotations import matrix_from_quaternion
-from core.samples import FloatArray, ImuBlock, RateKind
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
-from devices.walker import FootTruth, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.walker import Standing, Walk, WalkerSettings, simulate
+from tests.benchmarks.foot_scoring import (
+    EventScore,
+    FoundEvents,
+    FoundStrides,
+    OpticalFoot,
+    OpticalStride,
+    Stretch,
+    StrideScore,
+    score_events,
+    score_strides,
+)
+from tests.benchmarks.peers.gaitmap_feet import GaitmapFeet
+from tests.benchmarks.speed import ONE_CORE, machine
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
-EVENTS = ("initial_contact_s", "full_contact_s", "heel_rise_s", "toe_off_s")
-PHASES = ("loading", "foot flat", "pre-swing", "swing")
-SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)
-RATES_HZ = (50.0, 60.0, 100.0, 200.0)
-SAME_S = 0.15  # an event further than this from every true one is invented
+NO_BIAS = np.zeros(3)
+OURS = "Gaitwright"
+STRIDES_SHOWN = ("gravity|BarthDtw", "gravity|by hand", "gravity|optical stances")  # the others hardly differ
 
+# from the sensors' axes to those gaitmap asks for (toes, left, up), as the makers of the recording mounted them
+TOES_LEFT_UP = {
+    Side.LEFT: np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]),
+    Side.RIGHT: np.array([[0.0, -1.0, 0.0], [0.0, 0.0, -1.0], [1.0, 0.0, 0.0]]),
+}
 
-@dataclass(frozen=True, slots=True)
-class OpticalStride:
-    """One stride of the optical recording, seconds and metres; the foot stands at `start_s` and `end_s`."""
-
-    start_s: float
-    end_s: float
-    initial_contact_s: float
-    toe_off_s: float
-    length_m: float
-    pitch_time_s: FloatArray
-    rotations: Rotation
+# stages of gaitmap that make a whole, but for the alignment; the first is what its documentation shows
+GAITMAP_BEFORE = ("body", "BarthDtw", "BarthDtw|Rampp")
+GAITMAP_AFTER = {
+    "stride by stride, gyroscope": "BarthDtw|stride, gyroscope",
+    "stride by stride, Madgwick": "BarthDtw|stride, Madgwick",
+    "stride by stride, RtsKalman": "BarthDtw|stride, RtsKalman",
+    "in one piece, RtsKalman": "BarthDtw|region, RtsKalman",
+}
 
 
 def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
@@ -56,14 +69,25 @@ def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
     return oriented(track, RateKind.INSTANTANEOUS, bias_rad_s)
 
 
-def optical_foot(data: Path, side: Side) -> tuple[OrientedTrack, list[OpticalStride]]:
+def without_bias(block: ImuBlock, standing: ImuBlock) -> ImuBlock:
+    rest = rest_of(standing)
+    assert rest is not None
+    return replace(block, gyr_rad_s=block.gyr_rad_s - rest.gyr_rad_s)
+
+
+def recorded_foot(data: Path, side: Side) -> ImuBlock:
+    with np.load(data / "feet_mocap_events" / "healthy_feet.npz") as arrays:
+        gyr, acc = (arrays[f"{side}_foot_{kind}"].astype(np.float64) for kind in ("gyr", "acc"))
+        time_s = np.arange(len(gyr)) / float(arrays["fs"])
+    block = ImuBlock(f"{side} foot", time_s, gyr, acc)
+    return without_bias(block, block)
+
+
+def optical_foot(data: Path, side: Side) -> OpticalFoot:
     folder = data / "feet_mocap_events"
     with np.load(folder / "healthy_feet.npz") as arrays:
         rate_hz, mocap_hz = float(arrays["fs"]), float(arrays["mocap_fs"])
-        gyr, acc = (arrays[f"{side}_foot_{kind}"].astype(np.float64) for kind in ("gyr", "acc"))
-    block = ImuBlock(f"{side} foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
-    rest = rest_of(block)
-    assert rest is not None
+        heel_m = arrays[f"mocap_{side.name[0]}_FCC_m"].astype(np.float64)[:, :2]
     place, turned = (_by_stride(folder / f"{name}_sample.csv", side) for name in ("position", "orientation"))
     strides = []
     for row in _rows(folder / "stride_events_sample.csv"):
@@ -77,11 +101,10 @@ def optical_foot(data: Path, side: Side) -> tuple[OrientedTrack, list[OpticalStr
                     initial_contact_s=float(row["ic"]) / rate_hz,
                     toe_off_s=float(row["tc"]) / rate_hz,
                     length_m=float(np.linalg.norm(path[-1, :2] - path[0, :2])),
-                    pitch_time_s=start_s + np.arange(len(path)) / mocap_hz,
-                    rotations=Rotation.from_quat(turned[number]),
+                    stretch=Stretch(start_s + np.arange(len(path)) / mocap_hz, Rotation.from_quat(turned[number])),
                 )
             )
-    return foot_of(block, rest.gyr_rad_s), strides
+    return OpticalFoot(strides, np.arange(len(heel_m)) / mocap_hz, heel_m)
 
 
 def _rows(path: Path) -> list[dict[str, str]]:
@@ -98,156 +121,184 @@ def _by_stride(path: Path, side: Side) -> dict[int, FloatArray]:
     return {number: np.array(values) for number, values in found.items()}
 
 
-def heel_travel_m(data: Path, side: Side, from_s: FloatArray, to_s: FloatArray) -> FloatArray:
-    """How far the heel's marker went over the floor (k,) between instants (k,)."""
-    with np.load(data / "feet_mocap_events" / "healthy_feet.npz") as arrays:
-        marker, rate_hz = arrays[f"mocap_{side.name[0]}_FCC_m"].astype(np.float64), float(arrays["mocap_fs"])
-    at = [np.clip(np.round(t * rate_hz).astype(int), 0, len(marker) - 1) for t in (from_s, to_s)]
-    return np.linalg.norm(marker[at[1], :2] - marker[at[0], :2], axis=1)
-
-
-def optics(data: Path) -> None:
-    """The optical list leaves out first and last steps, and runs two swings of a turn together as one stride.
-
-    A swing that is not in it is therefore invented only if the heel's marker did not travel.
-    """
-    errors: dict[str, list[float]] = defaultdict(list)
+def told_to_gaitmap(data: Path) -> dict[str, FloatArray]:
+    """The borders labelled by hand, and the optical strides, as GaitmapFeet takes them."""
+    told = {}
     for side in Side:
-        foot, strides = optical_foot(data, side)
-        events = gait_of(foot)
-        nearest = [int(np.argmin(np.abs(events.initial_contact_s - s.initial_contact_s))) for s in strides]
-        travel_m = heel_travel_m(data, side, events.heel_rise_s, events.full_contact_s)
-        more = sorted(set(range(len(events))) - set(nearest))
-        is_invented = [travel_m[k] < 0.5 * events.length_m[k] for k in more]
-        for stride, k in zip(strides, nearest, strict=True):
-            errors["initial contact"].append(1000.0 * (events.initial_contact_s[k] - stride.initial_contact_s))
-            offs = 1000.0 * (events.toe_off_s - stride.toe_off_s)
-            errors["toe-off"].append(float(offs[np.argmin(np.abs(offs))]))
-            errors["length"].append(float(events.length_m[k] - stride.length_m))
-            errors["true length"].append(stride.length_m)
-        found = sum(abs(ms) < 1000.0 * SAME_S for ms in errors["initial contact"][-len(strides) :])
-        print(f"optics {side}: {found} of {len(strides)} found, {len(more)} more, {sum(is_invented)} of them invented")
-        errors["pitch"] += _pitch_errors_deg(foot, strides)
-    for name in ("initial contact", "toe-off"):
-        ms = np.array(errors[name])
-        worst = np.max(np.abs(ms - ms.mean()))
-        print(f"optics {name:15s} offset {ms.mean():6.1f} ms, sd {ms.std(ddof=1):4.1f}, worst {worst:.0f}")
-    error, mean = np.array(errors["length"]), float(np.mean(errors["true length"]))
-    print(f"optics stride length   bias {100 * error.mean() / mean:6.2f} %, sd {100 * error.std(ddof=1):4.2f} cm")
-    pitch = np.array(errors["pitch"])
-    pooled = float(np.sqrt(np.mean(pitch**2)))
-    print(
-        f"optics pitch           RMSE {pooled:.2f} deg, median {np.median(pitch):.2f}, worst stride {pitch.max():.2f}"
+        for name, file in (("borders", "stride_borders_sample.csv"), ("stances", "stride_events_sample.csv")):
+            columns = ["s_id", "start", "end"] + (["ic", "tc", "min_vel", "pre_ic"] if name == "stances" else [])
+            rows = [row for row in _rows(data / "feet_mocap_events" / file) if row["foot"] == side]
+            told[f"{side}_{name}"] = np.array([[float(row[column]) for column in columns] for row in rows])
+    return told
+
+
+def optics(data: Path, gaitmap: GaitmapFeet | None) -> Iterator[str]:
+    """Tables of events and of strides, every method beside ours on the strides that both found."""
+    blocks = {side: recorded_foot(data, side) for side in Side}
+    truth = {side: optical_foot(data, side) for side in Side}
+    events: dict[str, dict[Side, FoundEvents]] = defaultdict(dict)
+    strides: dict[str, dict[Side, FoundStrides]] = defaultdict(dict)
+    for side, block in blocks.items():
+        foot = foot_of(block, NO_BIAS)
+        found = gait_of(foot)
+        turned = Stretch(foot.track.time_s, Rotation.from_quat(foot.q_earth_from_sensor, scalar_first=True))
+        events[OURS][side] = FoundEvents(found.toe_off_s, found.initial_contact_s)
+        strides[OURS][side] = FoundStrides(found.initial_contact_s, found.length_m, (turned,))
+    if gaitmap is not None:
+        mounted = {
+            side: replace(b, acc_m_s2=b.acc_m_s2 @ axes.T, gyr_rad_s=b.gyr_rad_s @ axes.T)
+            for side, b, axes in ((side, blocks[side], TOES_LEFT_UP[side]) for side in Side)
+        }
+        theirs = gaitmap.find(mounted, ("gravity", "heading"), told_to_gaitmap(data))
+        events |= theirs.events
+        strides |= {name: found for name, found in theirs.strides.items() if name.startswith(STRIDES_SHOWN)}
+    event_scores = {k: EventScore.joined([score_events(f[s], truth[s]) for s in Side]) for k, f in events.items()}
+    stride_scores = {k: StrideScore.joined([score_strides(f[s], truth[s]) for s in Side]) for k, f in strides.items()}
+    yield from event_table(event_scores)
+    yield ""
+    yield from stride_table(stride_scores)
+
+
+def event_table(scores: Mapping[str, EventScore]) -> Iterator[str]:
+    yield (
+        "| method | aligned by | borders | found | more | invented | contact, ms | sd, ms | our sd there "
+        "| toe-off, ms | sd, ms | our sd there |"
     )
-
-
-def _pitch_errors_deg(foot: OrientedTrack, strides: list[OpticalStride]) -> list[float]:
-    """RMSE of each stride of the turn about the foot's pitch axis since the stride began, both less their means."""
-    motion = follow(foot)
-    turned = Rotation.from_matrix(matrix_from_quaternion(foot.q_earth_from_sensor))
-    errors = []
-    for stride in strides:
-        at = np.clip((stride.pitch_time_s - motion.start_s) / motion.step_s, 0, len(turned) - 1)
-        ours = turned[np.round(at).astype(int)]
-        angles = []
-        for rotations in (ours, stride.rotations):
-            since = (rotations[0].inv() * rotations).as_rotvec()
-            main = np.linalg.eigh(since.T @ since)[1][:, -1]
-            angle = since @ main
-            angles.append(np.rad2deg(angle * np.sign(angle[np.argmax(np.abs(angle))])))
-        difference = angles[0] - angles[1]
-        errors.append(float(np.std(difference)))
-    return errors
-
-
-def phases_of(events: FootEvents | FootTruth) -> list[FloatArray]:
-    """Durations of loading, foot flat, pre-swing and swing, the swing last, as in PHASES."""
-    told = events.events if isinstance(events, FootTruth) else events
-    return [
-        told.full_contact_s[:-1] - told.initial_contact_s[:-1],
-        told.heel_rise_s[1:] - told.full_contact_s[:-1],
-        told.toe_off_s[1:] - told.heel_rise_s[1:],
-        told.initial_contact_s[1:] - told.toe_off_s[1:],
-    ]
-
-
-def walker(speed_m_s: float, rate_hz: float, tissue: Tissue, seeds: int) -> None:
-    """The first swing leaves standing and the last arrives there: counted as found, but not timed."""
-    errors: dict[str, list[FloatArray]] = defaultdict(list)
-    found, expected, speeds, times = 0, 0, [], []
-    for seed in range(seeds):
-        recordings = (Standing(), Walk(speed_m_s=speed_m_s))
-        made = simulate(
-            WalkerSettings(seed=seed, recordings=recordings, sites=tuple(FEET.values()), tissue=tissue, rate_hz=rate_hz)
+    yield "|---" * 12 + "|"
+    ours = scores[OURS]
+    for name, score in scores.items():
+        both = score.is_found & ours.is_found
+        contact_ms, off_ms = (1000.0 * late[score.is_found] for late in (score.contact_s, score.off_s))
+        beside_ms = (1000.0 * late[both] for late in (ours.contact_s, ours.off_s))
+        our_contact, our_off = ("" if name == OURS else f"{_sd(late):.1f}" for late in beside_ms)
+        yield (
+            f"| {_named(name)} | {np.sum(score.is_found)} of {len(score.is_found)} | {score.more} | {score.invented} "
+            f"| {np.mean(contact_ms):.1f} | {_sd(contact_ms):.1f} | {our_contact} "
+            f"| {np.mean(off_ms):.1f} | {_sd(off_ms):.1f} | {our_off} |"
         )
-        standing, walk = made.session.recordings
-        told = made.truth.recordings["walk 1"]
-        strides = {}
-        for side, site in FEET.items():
-            rest, truth = rest_of(standing.imu[site]), told.feet[side]
-            assert rest is not None
-            events = gait_of(foot_of(walk.imu[site], rest.gyr_rad_s))
-            strides[side] = strides_of([events])
-            expected += len(truth.events.toe_off_s)
-            found += len(events)
-            if len(events) != len(truth.events.toe_off_s):
-                continue
-            for name in EVENTS:
-                errors[name].append((getattr(events, name) - getattr(truth.events, name))[1:-1])
-            for name, ours, true in zip(PHASES, phases_of(events), phases_of(truth), strict=True):
-                errors[name].append((ours - true)[:-1])
-            errors["length"].append((events.length_m / truth.stride_lengths_m - 1.0)[1:-1])
-            contact = truth.events.initial_contact_s
-            ours_s, is_used = strides[side].time_s, strides[side].is_used
-            if len(ours_s) == len(contact) - 1 and is_used.any():
-                times.append(float(ours_s[is_used].mean() / np.diff(contact)[is_used].mean() - 1.0))
-        speeds.append(both_feet(strides[Side.LEFT], strides[Side.RIGHT]).speed_m_s / told.speed_m_s - 1.0)
-    figures = [f"{found}/{expected}"]
-    for name in (*EVENTS, *PHASES):
-        ms = 1000.0 * np.concatenate([np.empty(0), *errors[name]])
-        label = "".join(word[0] for word in name.removesuffix("_s").replace("-", " ").replace("_", " ").split())
-        figures.append(f"{label} {ms.mean():4.0f}±{ms.std():3.0f}")
-    length = 100.0 * np.concatenate([np.empty(0), *errors["length"]])
-    figures.append(f"length {length.mean():5.2f}±{length.std():4.2f} %")
-    figures.append(f"speed {100 * np.mean(speeds):5.2f}, stride time {100 * np.mean(times):5.2f} %")
-    print(f"{speed_m_s:4.2f} m/s {rate_hz:3.0f} Hz {tissue:5s} | " + " | ".join(figures), flush=True)
 
 
-def speed() -> None:
-    """CPU of one core for a minute of both feet, the orientation filter apart."""
+def stride_table(scores: Mapping[str, StrideScore]) -> Iterator[str]:
+    yield (
+        "| method | borders | lengths | bias, % | sd, cm | our bias there, % | our sd there, cm "
+        "| pitches | RMSE, deg | clock, ms | our RMSE there |"
+    )
+    yield "|---" * 11 + "|"
+    ours = scores[OURS]
+    for name, score in scores.items():
+        long, turned = score.has_length, score.has_pitch
+        pitch_rad, clock_s = score.pooled_pitch_rad(turned)
+        beside = "|  | " if name == OURS else f"| {_length_cells(ours, long & ours.has_length)} "
+        our_pitch_rad, _ = ours.pooled_pitch_rad(turned & ours.has_pitch)
+        method, _, borders = _named(name).split(" | ")
+        yield (
+            f"| {method} | {borders} | {np.sum(long)} | {_length_cells(score, long)} {beside}"
+            f"| {np.sum(turned)} | {np.rad2deg(pitch_rad):.2f} | {1000.0 * clock_s:.1f} "
+            f"| {'' if name == OURS else f'{np.rad2deg(our_pitch_rad):.2f}'} |"
+        )
+
+
+def _named(name: str) -> str:
+    """Method, alignment and borders as cells."""
+    if name == OURS:
+        return f"{OURS} |  | its own"
+    alignment, borders, method = name.split("|")
+    return f"gaitmap {method} | {alignment} | {borders}"
+
+
+def _length_cells(score: StrideScore, which: BoolArray) -> str:
+    """Bias and sd."""
+    error_m = score.error_m[which]
+    return f"{100.0 * np.mean(error_m) / np.mean(score.true_m[which]):.2f} | {100.0 * _sd(error_m):.2f}"
+
+
+def _sd(values: FloatArray) -> float:
+    return float(np.std(values, ddof=1))
+
+
+def speed(gaitmap: GaitmapFeet | None, repeats: int) -> Iterator[str]:
+    """A table of CPU for a minute of both feet of the walker, the methods by turns, each ratio taken within a turn.
+
+    gaitmap is warm: its first run, in which it compiles, is not counted; nor is its alignment in its wholes.
+    """
     made = simulate(WalkerSettings(recordings=(Standing(), Walk(strides=52)), sites=tuple(FEET.values())))
-    feet = []
-    for site in FEET.values():
-        rest = rest_of(made.session.recordings[0].imu[site])
-        assert rest is not None
-        feet.append((made.session.recordings[1].imu[site], rest.gyr_rad_s))
-    tracks = [foot_of(*foot) for foot in feet]
-    minutes = float(np.ptp(feet[0][0].time_s)) / 60.0
+    standing, walk = made.session.recordings
+    feet = {side: without_bias(walk.imu[site], standing.imu[site]) for side, site in FEET.items()}
+    minutes = float(np.ptp(feet[Side.LEFT].time_s)) / 60.0
+    if gaitmap is not None:
+        swings = sum(len(told.events.toe_off_s) for told in made.truth.recordings["walk 1"].feet.values())
+        warm = gaitmap.find(feet, ("heading",))
+        ours = sum(len(gait_of(foot_of(foot, NO_BIAS))) for foot in feet.values())
+        theirs = sum(len(events.toe_off_s) for events in warm.events["heading|BarthDtw|Rampp"].values())
+        versions = " ".join(f"{name} {number}" for name, number in warm.versions.items())
+        yield f"Of {swings} swings, {OURS} found {ours}, gaitmap (BarthDtw, Rampp) {theirs}. Its side: {versions}."
+        yield ""
+    turns = []
+    for _ in range(repeats):
+        turn = our_costs(list(feet.values()))
+        if gaitmap is not None:
+            turn |= gaitmap_costs(gaitmap.find(feet, ("heading",)).cpu_s)
+        turns.append(turn)
+    yield "| what | ms | of all of Gaitwright |"
+    yield "|---|---|---|"
+    whole = f"{OURS}, all"
+    for name in turns[0]:
+        cost_ms = 1000.0 * float(np.median([turn[name] for turn in turns])) / minutes
+        yield f"| {name} | {cost_ms:.1f} | {np.median([turn[name] / turn[whole] for turn in turns]):.2f} |"
 
-    costs = []
-    for _ in range(7):
-        begun = time.process_time()
-        for track in tracks:
-            strides_of([gait_of(track)])
-        costs.append(time.process_time() - begun)
-    print(f"a minute of both feet at 100 Hz: {1000.0 * min(costs) / minutes:.1f} ms of CPU")
+
+def our_costs(feet: Sequence[ImuBlock]) -> dict[str, float]:
+    begun_s = time.process_time()
+    tracks = [foot_of(foot, NO_BIAS) for foot in feet]
+    turned_s = time.process_time()
+    for track in tracks:
+        strides_of([gait_of(track)])
+    ended_s = time.process_time()
+    return {f"{OURS}, all": ended_s - begun_s, f"{OURS}, without the orientation filter": ended_s - turned_s}
+
+
+def gaitmap_costs(cpu_s: Mapping[str, float]) -> dict[str, float]:
+    """CPU seconds of gaitmap's parts and wholes, from those of its stages."""
+    stage_s = {name.removeprefix("heading|"): cost_s for name, cost_s in cpu_s.items()}
+    before_s = sum(stage_s[name] for name in GAITMAP_BEFORE)
+    after_s = {name: stage_s[key] + stage_s[f"{key}|parameters"] for name, key in GAITMAP_AFTER.items()}
+    return {
+        "gaitmap, alignment to gravity and heading": stage_s["gravity"] + stage_s["heading"],
+        "gaitmap, BarthDtw, Rampp, no trajectory": before_s,
+        "gaitmap, BarthDtw": stage_s["BarthDtw"],
+        "gaitmap, ConstrainedBarthDtw": stage_s["ConstrainedBarthDtw"],
+        "gaitmap, Rampp events": stage_s["BarthDtw|Rampp"],
+        "gaitmap, Herzer events": stage_s["BarthDtw|Herzer"],
+        **{f"gaitmap, trajectory {name}, and parameters": cost_s for name, cost_s in after_s.items()},
+        **{f"gaitmap, BarthDtw, Rampp, {name}": before_s + cost_s for name, cost_s in after_s.items()},
+    }
+
+
+def peers_gaitmap(stack: ExitStack) -> GaitmapFeet | None:
+    try:
+        return stack.enter_context(GaitmapFeet())
+    except RuntimeError as error:
+        print(f"gaitmap is left out: {error}", file=sys.stderr)
+        return None
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=2)
-    seeds = parser.parse_args().seeds
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--repeats", type=int, default=7, help="turns of the speed comparison")
+    repeats = parser.parse_args().repeats
     told = os.environ.get("GAITWRIGHT_TEST_DATA")
-    if told:
-        optics(Path(told))
-    else:
-        print("GAITWRIGHT_TEST_DATA is not set: the optical recordings are left out.")
-    speed()
-    for tissue in Tissue:
-        for speed_m_s in SPEEDS_M_S:
-            for rate_hz in RATES_HZ:
-                walker(speed_m_s, rate_hz, tissue, seeds)
+    with ExitStack() as stack:
+        gaitmap = peers_gaitmap(stack)
+        print(f"On {machine()}", end="\n\n")
+        if told:
+            print("\n".join(optics(Path(told), gaitmap)), end="\n\n", flush=True)
+        else:
+            print("GAITWRIGHT_TEST_DATA is not set: the optical recordings are left out.", file=sys.stderr)
+        print("\n".join(speed(gaitmap, repeats)))
 
 
 if __name__ == "__main__":
+    if any(os.environ.get(name) != "1" for name in ONE_CORE):  # NumPy reads these when it is imported
+        again = [sys.executable, "-m", "tests.benchmarks.gait", *sys.argv[1:]]
+        os.execve(sys.executable, again, {**os.environ, **ONE_CORE})
     main()

@@ -4,8 +4,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from core.samples import FloatArray
+from tests.benchmarks.foot_scoring import (
+    FoundEvents,
+    FoundStrides,
+    OpticalFoot,
+    OpticalStride,
+    Stretch,
+    StrideScore,
+    score_events,
+    score_strides,
+)
+from tests.benchmarks.gait import gaitmap_costs
 from tests.benchmarks.peers import vqf_angle
 from tests.benchmarks.scoring import Estimate, Score, score
 from tests.benchmarks.speed import Contender, Outcome, accuracy_table, compete, speed_table
@@ -128,3 +140,107 @@ def test_a_further_minute_is_what_the_longer_recording_costs_more() -> None:
     names = ("Gaitwright robust, whole analysis", "Gaitwright as published, its stages")
     rows = list(speed_table({n: of(0.1) for n in names}, {n: of(0.1) for n in names}, {n: of(0.2) for n in names}))
     assert rows[-1] == f"| {names[1]} | 100.0 | 1.00 | 1.00 | 20.0 |"
+
+
+STRIDE_S = 1.2  # standing 0.5, toe-off, swing 0.4, contact, standing 0.3
+
+
+def pitched(time_s: FloatArray, share: float = 1.0) -> Rotation:
+    """A foot that turns about its y axis, once up and down in every stride."""
+    angle_rad = share * 0.8 * (1.0 - np.cos(2 * np.pi * time_s / STRIDE_S))
+    return Rotation.from_rotvec(angle_rad[:, None] * [0.0, 1.0, 0.0])
+
+
+def optical_stride(start_s: float, swing_s: float = 0.4) -> OpticalStride:
+    time_s = start_s + np.arange(0.0, STRIDE_S, 0.01)
+    contact_s = start_s + 0.9
+    return OpticalStride(
+        start_s, start_s + STRIDE_S, contact_s, contact_s - swing_s, 1.3, Stretch(time_s, pitched(time_s))
+    )
+
+
+STARTS_S = STRIDE_S * np.arange(1, 6)
+HEEL_S = np.arange(0.0, 12.0, 0.01)  # the heel travels 1.3 m in each swing, and rests from 7.2 s on
+SWINGS = np.interp(HEEL_S % STRIDE_S, [0.5, 0.9], [0.0, 1.0]) + HEEL_S // STRIDE_S
+WALKED = OpticalFoot(
+    strides=[optical_stride(start_s) for start_s in STARTS_S.tolist()],
+    time_s=HEEL_S,
+    heel_m=np.stack([1.3 * np.minimum(SWINGS, 6.0), np.zeros_like(HEEL_S)], axis=1),
+)
+SEEN = FoundEvents(toe_off_s=STARTS_S + 0.5, initial_contact_s=STARTS_S + 0.9)
+
+
+def measured(error_m: float = 0.0, share: float = 1.0, late_s: float = 0.0, until_s: float = 12.0) -> StrideScore:
+    time_s = np.arange(0.0, until_s, 0.005)
+    stretch = Stretch(time_s, Rotation.from_euler("x", 0.3) * pitched(time_s - late_s, share))
+    return score_strides(FoundStrides(SEEN.initial_contact_s, np.full(5, 1.3 + error_m), (stretch,)), WALKED)
+
+
+def test_events_found_have_no_error_and_none_is_invented() -> None:
+    found = score_events(SEEN, WALKED)
+    assert found.contact_s == pytest.approx(np.zeros(5))
+    assert found.off_s == pytest.approx(np.zeros(5))
+    assert [found.more, found.invented] == [0, 0]
+
+
+def test_who_calls_an_event_later_loses_none() -> None:
+    wavering_s = 0.14 + 0.03 * np.array([-1.0, 1.0, 0.0, 1.0, -1.0])
+    found = score_events(replace(SEEN, initial_contact_s=SEEN.initial_contact_s + wavering_s), WALKED)
+    assert found.contact_s == pytest.approx(wavering_s)
+
+
+def test_an_event_elsewhere_is_missed_and_another_one_found() -> None:
+    elsewhere_s = SEEN.initial_contact_s + np.array([0.0, 0.0, 0.2, 0.0, 0.0])
+    found = score_events(replace(SEEN, initial_contact_s=elsewhere_s), WALKED)
+    assert found.is_found.tolist() == [True, True, False, True, True]
+    assert [found.more, found.invented] == [1, 0]
+
+
+def test_a_swing_beside_the_list_is_invented_if_the_heel_did_not_travel_or_it_was_found_before() -> None:
+    def with_swing(off_s: float, contact_s: float) -> list[int]:
+        events = FoundEvents(np.append(SEEN.toe_off_s, off_s), np.append(SEEN.initial_contact_s, contact_s))
+        found = score_events(events, WALKED)
+        assert found.is_found.all()
+        return [found.more, found.invented]
+
+    assert with_swing(0.5, 0.9) == [1, 0]  # made before the first stride of the list
+    assert with_swing(8.0, 8.4) == [1, 1]
+    assert with_swing(STARTS_S[2] + 0.6, STARTS_S[2] + 1.1) == [1, 1]
+
+
+def test_no_events_at_all_are_all_missed() -> None:
+    found = score_events(FoundEvents(np.empty(0), np.empty(0)), WALKED)
+    assert not found.is_found.any()
+    assert [found.more, found.invented] == [0, 0]
+
+
+def test_a_length_is_scored_by_its_error_but_not_where_optics_run_two_swings_together() -> None:
+    assert measured(error_m=0.02).error_m == pytest.approx(np.full(5, 0.02))
+    strides = [*WALKED.strides[:4], optical_stride(float(STARTS_S[4]), swing_s=1.5)]
+    found = FoundStrides(SEEN.initial_contact_s, np.full(5, 1.3), ())
+    assert score_strides(found, replace(WALKED, strides=strides)).has_length.tolist() == [True] * 4 + [False]
+
+
+def test_pitch_is_scored_in_any_mounting_and_on_any_clock() -> None:
+    everywhere = np.ones(5, dtype=bool)
+    assert measured().pooled_pitch_rad(everywhere) == pytest.approx((0.0, 0.0), abs=1e-4)
+    assert measured(late_s=0.005).pooled_pitch_rad(everywhere) == pytest.approx((0.0, -0.005), abs=1e-4)
+    small, _ = measured(share=0.9).pooled_pitch_rad(everywhere)
+    assert small == pytest.approx(0.1 * 0.8 / np.sqrt(2), rel=0.02)
+
+
+def test_a_stride_whose_orientation_is_not_known_has_no_pitch() -> None:
+    found = measured(until_s=float(STARTS_S[4]) + 0.3)
+    assert found.has_pitch.tolist() == [True] * 4 + [False]
+    assert found.has_length.all()
+
+
+def test_gaitmaps_wholes_are_the_sums_of_their_stages() -> None:
+    stages = {"gravity": 100.0, "heading": 200.0, "heading|body": 1.0, "heading|BarthDtw": 2.0}
+    stages |= {"heading|ConstrainedBarthDtw": 7.0, "heading|BarthDtw|Rampp": 4.0, "heading|BarthDtw|Herzer": 5.0}
+    for name in ("stride, gyroscope", "stride, Madgwick", "stride, RtsKalman", "region, RtsKalman"):
+        stages |= {f"heading|BarthDtw|{name}": 8.0, f"heading|BarthDtw|{name}|parameters": 16.0}
+    costs = gaitmap_costs(stages)
+    assert costs["gaitmap, BarthDtw, Rampp, no trajectory"] == 7.0
+    assert costs["gaitmap, BarthDtw, Rampp, in one piece, RtsKalman"] == 31.0
+    assert costs["gaitmap, alignment to gravity and heading"] == 300.0
