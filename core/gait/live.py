@@ -1,39 +1,56 @@
 """When does a foot land and leave, as it walks? The events of `core.gait.events`, causally and within MAX_DELAY_S.
 
-The definitions and their constants are those of the offline events; what offline reads off the whole walk, the usual
-peaks and the pitch axis, is learnt from the steps so far. The first step teaches the axis and tells nothing.
+The definitions and their constants are those of the offline events. What offline reads off the whole walk is learnt
+on the way: the usual peaks from the last steps, the pitch axis from all turning so far. As long as the delay allows,
+an event waits until its peak has passed, so that it is the same peak as offline.
+
+A rate alone does not tell a push-off from a heel lifted on the spot: from stance to stance the specific force is
+integrated, and a foot that gains no speed has not left the floor. Two things cannot be known in time and are told
+late (`LiveEvent.is_late`): the heel rise of a step from standing, which is told with its toe-off, since one who shifts
+weight lifts the heel as well; and steps of a foot that hardly rolls.
 """
 
+import math
 from collections import deque
 from dataclasses import dataclass
 from enum import StrEnum
-
-import numpy as np
+from itertools import pairwise
+from statistics import median
 
 from core.gait.events import (
     CONTACT_SHARE,
+    FLAT_SHARE,
+    LANDED_S,
     LANDING_RATIO,
-    MAX_FALL_S,
     MIN_ROLL_RAD_S,
     MIN_STILL_RAD_S,
     ONSET_RATIO,
     STILL_SHARE,
     TOE_OFF_SHARE,
 )
-from core.gait.foot import MOVING_RAD_S
+from core.gait.foot import MIN_SWING_M, MIN_SWING_M_S
+from core.gait.live_motion import LiveMotion, Vector, dot
 from core.gait.phases import Phase
+from core.gait.strides import MAX_STRIDE_S
 from core.samples import FloatArray
+from core.tracks import MAX_REPORTED_GAP_S
 
-MAX_DELAY_S = 0.1
-MEMORY = 5  # steps whose peaks say what is usual
+MAX_DELAY_S = 0.095
+MEMORY = 5  # steps whose peaks and times say what is usual
+PASSED_SHARE = 0.6  # of its peak: a rate that has fallen so far has passed it
+SURE_RATIO = 5.0  # times the level of rest: a heel that turns so fast has risen
+EARLY_RATIO = 1.8  # times the level of rest, where the double would be too late
+GROWTH = 1.75  # of the rate, a power of time; see ONSET_RATIO
 MIN_FLAT_S = 0.06  # a foot stays flat longer; a loading shock does not
-MIN_STEP_S = 0.3  # from foot flat to foot flat; less is a twitch
-VOTE_MEMORY = 0.7  # of one step's word on which way the toes are, in the next
-MIN_SWING_S = 0.15
-PASSED_SHARE = 0.6  # of the peak of push-off: a rate that has fallen so far will not grow again
-FALLING_SHARE = 0.15  # of the peak of loading: a rate that is lower only wavers
+STANDING_S = 1.5  # flat for longer, and the foot stands; at 0.3 m/s a foot is flat for 0.7 s of each stride
+MAX_PUSH_S = 0.3  # from the end of push-off until the foot has speed; longer, and the heel was lifted on the spot
 FIRST_LOAD = 0.7  # of the peak of push-off is the peak of loading, until one has been seen
-FORGETTING_S = 20.0  # a strap slips; the axis follows
+MIN_SWING_S = 0.12
+SWAY_RATIO, SWAY_MEMORY = 2.0, 0.85  # a heel rise is faster than the sways of the last stances
+MAX_SWING_S = 1.5
+LANDING_SHARE = 0.7  # of its greatest speed: a foot that is faster is in mid-swing
+
+Sample = tuple[float, float]  # time, rate
 
 
 class FootEvent(StrEnum):
@@ -51,144 +68,339 @@ class LiveEvent:
     time_s: float
     told_s: float
 
+    @property
+    def is_late(self) -> bool:
+        return self.told_s - self.time_s > MAX_DELAY_S
+
 
 class LiveEvents:
-    """Events of one foot, sample by sample. Rates must be free of the gyroscope's bias."""
+    """Events, phase and cadence of one foot, fed sample by sample or in blocks of any size, in any mounting.
 
-    def __init__(self, step_s: float) -> None:
-        self._step_s = step_s
+    Parameters
+    ----------
+    pitch_axis : (3,) or None
+        About which the foot mostly turns, in sensor axes, either sign, if a calibration tells; it is followed on.
+    """
+
+    def __init__(self, pitch_axis: FloatArray | None = None) -> None:
+        self._motion = LiveMotion(pitch_axis)
+        self._time_s, self._step_s = math.nan, math.nan
+        self._told: list[LiveEvent] = []
         self._phase = Phase.UNKNOWN
-        self._moment = np.zeros((3, 3))
-        self._axis: FloatArray | None = None
-        self._votes = 0.0
-        self._turned, self._tilted = np.zeros(3), np.zeros(3)
-        self._since_flat_s = 0.0
-        self._flat_s = 0.0
+        self._path: list[Sample] = []  # since the phase began, or since the rate last said that it cannot end yet
         self._pushes: deque[float] = deque(maxlen=MEMORY)
         self._loads: deque[float] = deque(maxlen=MEMORY)
-        self._last: tuple[float, float] | None = None
-        self._rise: float | None = None
+        self._contacts_s: deque[float] = deque(maxlen=MEMORY + 1)
+        self._still = MIN_STILL_RAD_S
+        self._flat_since_s = -math.inf
         self._peak = 0.0
-        self._off: float | None = None
-        self._fell: float | None = None
-        self._half: float | None = None
+        self._is_rise_told = self._is_walking = self._has_swung = False
+        self._off_s: float | None = None
+        self._fastest_m_s = 0.0
+        self._left_s = self._slow_s = self._contact_s = math.nan
+        self._dip: list[Sample] = []
+        self._sway = 0.0  # how fast the standing foot has turned toes down without leaving
+        self._half_s: float | None = None
+        self._full_s: float | None = None
+        self._waiting: list[tuple[float, Vector, float]] = []  # time, rate, speed, while there is no axis
 
     @property
     def phase(self) -> Phase:
-        """The foot's phase, as far as told."""
+        """The foot's phase now, as far as known: pre-swing is shown at once and may turn out to be a sway."""
         return self._phase
 
-    def update(self, time_s: float, gyr_rad_s: FloatArray) -> list[LiveEvent]:
-        """Take one sample, its rate (3,) in sensor axes; returns what it tells."""
-        self._learn_axis(gyr_rad_s)
-        if self._axis is None:
-            return []
-        now = (time_s, float(gyr_rad_s @ self._axis))
-        last, self._last = self._last, now
-        if last is None:
-            return []
-        if self._flat_s > 2.0 * MIN_FLAT_S and self._phase is not Phase.FOOT_FLAT:
-            self._phase, self._rise = Phase.FOOT_FLAT, None  # whatever was missed, the foot stands
-        told = self._step(last, now)
-        return [] if told is None else [LiveEvent(told[0], told[1], time_s)]
+    @property
+    def cadence_steps_min(self) -> float:
+        """From this foot's last strides, two steps each; NaN before two contacts and when it no longer walks."""
+        if len(self._contacts_s) < 2 or self._time_s - self._contacts_s[-1] > MAX_STRIDE_S:
+            return math.nan
+        return 120.0 / median(end - start for start, end in pairwise(self._contacts_s))
 
-    def _learn_axis(self, gyr: FloatArray) -> None:
-        """The principal axis of the moving foot, anew after each step, in which the toes were mostly down."""
-        speed = float(np.linalg.norm(gyr))
-        if speed > MOVING_RAD_S:
-            self._moment = self._moment * (1.0 - self._step_s / FORGETTING_S) + np.outer(gyr, gyr)
-        self._turned = self._turned + gyr * self._step_s
-        self._tilted = self._tilted + self._turned * self._step_s
-        self._since_flat_s += self._step_s
-        self._flat_s = self._flat_s + self._step_s if speed < 2.0 * self._still() else 0.0
-        if self._flat_s <= MIN_FLAT_S:
+    def update(self, time_s: FloatArray, gyr_rad_s: FloatArray, acc_m_s2: FloatArray) -> list[LiveEvent]:
+        """Take the next samples; returns what they tell, in the order of telling.
+
+        Parameters
+        ----------
+        time_s : (n,)
+            Ascending stamps; a step longer than MAX_REPORTED_GAP_S is a gap, after which the foot has to stand first.
+        gyr_rad_s, acc_m_s2 : (n, 3)
+            In sensor axes, NaN where a sample is missing; the rates free of the gyroscope's bias.
+        """
+        self._told = []
+        for now_s, gyr, acc in zip(time_s.tolist(), gyr_rad_s.tolist(), acc_m_s2.tolist(), strict=True):
+            step_s = now_s - self._time_s
+            if not math.isfinite(sum(gyr) + sum(acc)) or step_s <= 0.0:
+                continue
+            self._time_s, self._step_s = now_s, step_s
+            if step_s <= MAX_REPORTED_GAP_S:
+                self._take(gyr, acc)
+            else:  # so does the first sample of all, whose step is NaN
+                self._forget_the_step()
+        return self._told
+
+    def _forget_the_step(self) -> None:
+        self._phase, self._path, self._waiting, self._flat_since_s = Phase.UNKNOWN, [], [], -math.inf
+        self._contacts_s.clear()
+        self._motion.start_anew()
+
+    def _take(self, gyr: Vector, acc: Vector) -> None:
+        motion = self._motion
+        motion.add(self._time_s, self._step_s, gyr, acc, 2.0 * self._still)
+        if motion.travelled:
+            self._arrive(motion.travelled)
+        if self._phase is Phase.UNKNOWN and motion.calm_s > MIN_FLAT_S:
+            self._stand(-math.inf)
+        if motion.flat_s > MIN_FLAT_S:
+            self._rest()
+        if motion.pitch_axis is not None:
+            self._advance((self._time_s, dot(gyr, motion.pitch_axis)), motion.speed_m_s)
             return
-        if self._since_flat_s > MIN_STEP_S and self._moment.any():
-            axis = np.linalg.eigh(self._moment)[1][:, -1]
-            if self._axis is not None:
-                axis = axis * np.sign(axis @ self._axis)
-            self._votes = VOTE_MEMORY * self._votes - float(np.sign(self._tilted @ axis))
-            self._axis = axis * (1.0 if self._votes >= 0 else -1.0)
-            self._votes = abs(self._votes)
-        self._since_flat_s, self._turned, self._tilted = 0.0, np.zeros(3), np.zeros(3)
+        self._waiting.append((self._time_s, gyr, motion.speed_m_s))
+        if len(self._waiting) > MAX_STRIDE_S / self._step_s:
+            del self._waiting[0]
+        axis = motion.find_axis()
+        if axis is not None:
+            waiting, self._waiting = self._waiting, []
+            for then_s, rate, speed_m_s in waiting:
+                self._advance((then_s, dot(rate, axis)), speed_m_s)
 
-    def _still(self) -> float:
-        return max(MIN_STILL_RAD_S, STILL_SHARE * float(np.median(self._pushes))) if self._pushes else MIN_STILL_RAD_S
-
-    def _step(self, last: tuple[float, float], now: tuple[float, float]) -> tuple[FootEvent, float] | None:
+    def _arrive(self, travelled: list[tuple[float, Vector]]) -> None:
+        """The foot is calm again. Had it hardly rolled, its speed tells when it left and landed."""
+        speeds = _speeds(travelled)
+        fastest = max(range(len(speeds)), key=lambda k: speeds[k][1])
+        level = FLAT_SHARE * speeds[fastest][1]
+        on_s = next((_crossing(a, b, level) for a, b in pairwise(speeds[fastest:]) if b[1] <= level), self._time_s)
         if self._phase is Phase.SWING:
-            return self._land(last, now)
-        if self._phase is Phase.LOADING:
-            return self._settle(last, now)
-        if self._phase is Phase.PRE_SWING:
-            return self._leave(last, now)
-        return self._lift(last, now)
+            self._slow_s = on_s
+            return
+        is_told = self._contact_s >= travelled[0][0]
+        if is_told or speeds[fastest][1] < MIN_SWING_M_S or _way_m(travelled) < MIN_SWING_M:
+            return
+        rises = [pair for pair in pairwise(speeds[: fastest + 1]) if pair[0][1] <= level < pair[1][1]]
+        self._tell(FootEvent.TOE_OFF, _crossing(*rises[-1], level) if rises else speeds[0][0])
+        self._tell(FootEvent.INITIAL_CONTACT, on_s)
+        self._stand(self._time_s)
 
-    def _lift(self, last: tuple[float, float], now: tuple[float, float]) -> tuple[FootEvent, float] | None:
-        """Foot flat until the rate, toes down, has passed the level of rest and its double."""
-        still = self._still()
-        passed = _passes(last, now, -still)
-        if passed is not None:
-            self._rise = passed if now[1] < last[1] else None
-        doubled = _passes(last, now, -2.0 * still)
-        if self._rise is None or doubled is None:
-            return None
-        rise_s = self._rise - ONSET_RATIO * (doubled - self._rise)
-        self._phase, self._peak, self._off = Phase.PRE_SWING, 0.0, None
-        return FootEvent.HEEL_RISE, max(rise_s, now[0] - MAX_DELAY_S)
+    def _rest(self) -> None:
+        """The foot lies flat: whatever was missed, it stands."""
+        if not self._pushes:
+            self._motion.forget_axis()
+        elif self._motion.begin_step(self._has_swung):
+            self._pushes.clear()
+            self._loads.clear()
+        self._has_swung = False
+        if self._motion.flat_s > 2.0 * MIN_FLAT_S and self._phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
+            if self._phase is Phase.SWING and self._dip:
+                self._touch_down(self._contact(self._dip, -self._peak), self._dip)
+            elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
+                self._tell(FootEvent.INITIAL_CONTACT, self._slow_s)
+            if self._phase is Phase.LOADING and self._full_s is not None:
+                self._tell(FootEvent.FULL_CONTACT, self._full_s)
+            is_landing = self._phase in (Phase.SWING, Phase.LOADING)
+            self._stand(self._time_s if is_landing else self._flat_since_s)
 
-    def _leave(self, last: tuple[float, float], now: tuple[float, float]) -> tuple[FootEvent, float] | None:
-        """Pre-swing until the rate has well passed the peak of push-off."""
-        if now[1] > -self._still() and -self._peak < MIN_ROLL_RAD_S:
-            self._phase = Phase.FOOT_FLAT  # a sway, no push-off
-            return None
+    def _stand(self, since_s: float) -> None:
+        self._phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
+
+    def _tell(self, event: FootEvent, time_s: float) -> None:
+        self._told.append(LiveEvent(event, time_s, self._time_s))
+        if event is FootEvent.INITIAL_CONTACT:
+            if time_s - self._contact_s > MAX_STRIDE_S:
+                self._contacts_s.clear()
+            self._contact_s = time_s
+            self._contacts_s.append(time_s)
+
+    def _is_due(self, time_s: float) -> bool:
+        """Would the next sample be too late to tell?"""
+        return self._time_s + self._step_s - time_s > MAX_DELAY_S
+
+    def _advance(self, now: Sample, speed_m_s: float) -> None:
+        if self._phase is Phase.SWING:
+            self._land(now, speed_m_s)
+        elif self._phase is Phase.LOADING:
+            self._settle(now)
+        elif self._phase is Phase.PRE_SWING:
+            self._leave(now, speed_m_s)
+        elif self._phase is Phase.FOOT_FLAT:
+            self._lift(now)
+
+    def _lift(self, now: Sample) -> None:
+        """Foot flat until the rate, toes down, has passed the level of rest and its double, or time is up."""
+        self._follow(now, -self._still)
+        if len(self._path) < 2:
+            return
+        is_walking = now[0] - self._flat_since_s < STANDING_S
+        is_early = is_walking and now[1] < -EARLY_RATIO * self._still and self._is_due(self._rise(self._still))
+        if is_early or now[1] < -2.0 * self._still:
+            self._phase, self._peak, self._off_s = Phase.PRE_SWING, now[1], None
+            self._is_walking, self._is_rise_told = is_walking, False
+            self._watch_rise(now)
+
+    def _follow(self, now: Sample, above: float) -> None:
+        """Keep the samples since the rate was last above a level, and the one before."""
+        if now[1] > above:
+            self._path = [now]
+        else:
+            self._path.append(now)
+
+    def _leave(self, now: Sample, speed_m_s: float) -> None:
+        """Pre-swing until the rate has well passed the peak of push-off, and the foot has speed."""
+        last = self._path[-1]
+        self._path.append(now)
+        is_old = self._off_s is not None and now[0] - self._off_s > MAX_PUSH_S
+        if now[1] > -self._still and (is_old or -self._peak < MIN_ROLL_RAD_S):
+            if self._is_walking:
+                self._sway = max(self._sway, -self._peak)
+            self._stand(self._flat_since_s)  # no push-off
+            return
         if now[1] <= self._peak:
-            self._peak, self._off = now[1], None
-            return None
-        if self._off is None:
-            self._off = _passes(last, now, TOE_OFF_SHARE * self._peak)
-        usual = float(np.median(self._pushes)) if self._pushes else MIN_ROLL_RAD_S
-        if self._off is None or -self._peak < 0.4 * usual:
-            return None
-        if now[1] < PASSED_SHARE * self._peak and now[0] - self._off < MAX_DELAY_S - self._step_s:
-            return None
+            self._peak, self._off_s = now[1], None
+        elif self._off_s is None:
+            self._off_s = _passes(last, now, TOE_OFF_SHARE * self._peak)
+        if is_old:
+            self._peak, self._off_s = 0.0, None
+        self._watch_rise(now)
+        if self._off_s is None or -self._peak < MIN_ROLL_RAD_S or speed_m_s < MIN_SWING_M_S:
+            return
+        if now[1] < PASSED_SHARE * self._peak and not self._is_due(self._off_s):
+            return
         self._pushes.append(-self._peak)
-        self._phase, self._peak, self._fell = Phase.SWING, 0.0, None
-        return FootEvent.TOE_OFF, self._off
+        self._sway *= SWAY_MEMORY
+        self._still = max(MIN_STILL_RAD_S, STILL_SHARE * median(self._pushes))
+        if not self._is_rise_told:
+            self._tell_rise(self._rise(self._still))
+        self._tell(FootEvent.TOE_OFF, self._off_s)
+        self._phase, self._path, self._has_swung = Phase.SWING, [], True
+        self._left_s, self._slow_s, self._fastest_m_s = self._off_s, math.nan, 0.0
+        self._peak, self._dip = 0.0, []
 
-    def _land(self, last: tuple[float, float], now: tuple[float, float]) -> tuple[FootEvent, float] | None:
+    def _watch_rise(self, now: Sample) -> None:
+        if not self._is_walking or self._is_rise_told or -now[1] < SWAY_RATIO * self._sway:
+            return
+        rise_s = self._rise(self._still)
+        if -now[1] > SURE_RATIO * self._still or self._is_due(rise_s):
+            self._tell_rise(rise_s)
+
+    def _rise(self, still: float) -> float:
+        """Where a rate that falls to the peak of push-off began to, extrapolated from two low levels.
+
+        While it has not reached the second, its growth with the power 1.75 of time tells as well.
+        """
+        low, high = self._path[0][0], None
+        for last, now in pairwise(self._path):
+            if last[1] > -still >= now[1]:
+                low = _crossing(last, now, -still)
+            if last[1] > -2.0 * still >= now[1]:
+                high = _crossing(last, now, -2.0 * still)
+            if now[1] <= self._peak:
+                break
+        if high is None:
+            end_s, end_rate = self._path[-1]
+            reach_s = (end_s - low) / ((max(-end_rate / still, 1.1)) ** (1.0 / GROWTH) - 1.0)
+        else:
+            reach_s = ONSET_RATIO * (high - low)
+        return max(low - reach_s, self._flat_since_s)
+
+    def _tell_rise(self, rise_s: float) -> None:
+        self._tell(FootEvent.HEEL_RISE, rise_s)
+        self._is_rise_told = True
+
+    def _land(self, now: Sample, speed_m_s: float) -> None:
         """Swing until the toes, having come up, are turned down by the floor."""
-        self._peak = max(self._peak, now[1])
+        self._fastest_m_s = max(self._fastest_m_s, speed_m_s)
+        since_s = now[0] - self._left_s
+        if since_s > MAX_SWING_S:
+            self._phase, self._path = Phase.UNKNOWN, []
+            return
+        self._path.append(now)
+        is_near = since_s > MIN_SWING_S and speed_m_s < LANDING_SHARE * self._fastest_m_s
+        lowest = min(rate for _, rate in self._path)
+        if self._path[0][1] <= 0.0 or -lowest < MIN_ROLL_RAD_S or not is_near:
+            lowest = 0.0
         if now[1] > 0.0:
-            self._fell = None
-        elif last[1] > 0.0:
-            self._fell = _passes(last, now, 0.0)
-        if self._fell is None or self._off is None or self._fell - self._off < MIN_SWING_S:
-            return None
-        load = float(np.median(self._loads)) if self._loads else FIRST_LOAD * self._pushes[-1]
-        reached = _passes(last, now, -CONTACT_SHARE * load)
-        if reached is None and (now[0] < self._fell + MAX_FALL_S or now[1] > -FALLING_SHARE * load):
-            return None
-        contact = self._fell + MAX_FALL_S if reached is None else min(reached, self._fell + MAX_FALL_S)
-        self._phase, self._peak, self._half = Phase.LOADING, now[1], None
-        return FootEvent.INITIAL_CONTACT, contact
+            if lowest < self._peak:
+                self._peak, self._dip = lowest, self._path  # this was the landing, if the foot turns out to lie flat
+            self._path = [now]
+        if now[1] > 0.0 or lowest == 0.0:
+            return
+        usual = median(self._loads) if self._loads else FIRST_LOAD * self._pushes[-1]
+        contact_s = self._contact(self._path, -lowest)
+        if now[1] > PASSED_SHARE * lowest:
+            is_slow = speed_m_s < FLAT_SHARE * self._fastest_m_s
+            is_told = is_slow or -lowest > PASSED_SHARE * usual or self._is_due(contact_s)
+        else:  # the peak is to come: at least the usual one, or it passes in time
+            contact_s = self._contact(self._path, usual)
+            is_told = self._is_due(contact_s)
+        if is_told:
+            self._touch_down(contact_s, self._path)
 
-    def _settle(self, last: tuple[float, float], now: tuple[float, float]) -> tuple[FootEvent, float] | None:
+    def _contact(self, path: list[Sample], load: float) -> float:
+        """Where a rate that falls through zero reaches its share of the peak of loading; infinite before."""
+        load = min(load, median(self._loads)) if self._loads else load
+        half_s = whole_s = math.inf
+        for last, now in pairwise(path):
+            if math.isinf(half_s) and now[1] <= -0.5 * load:
+                half_s = _crossing(last, now, -0.5 * load)
+            if now[1] <= -CONTACT_SHARE * load:
+                whole_s = _crossing(last, now, -CONTACT_SHARE * load)
+                break
+        return min(whole_s, half_s + LANDED_S)
+
+    def _touch_down(self, contact_s: float, path: list[Sample]) -> None:
+        self._tell(FootEvent.INITIAL_CONTACT, contact_s)
+        self._phase, self._path = Phase.LOADING, []
+        self._peak, self._half_s, self._full_s = 0.0, None, None
+        for sample in path:
+            if self._phase is Phase.LOADING:
+                self._settle(sample)
+
+    def _settle(self, now: Sample) -> None:
         """Loading until the rate has come to rest."""
-        self._peak = min(self._peak, now[1])
-        still = LANDING_RATIO * self._still()
-        self._half = _passes(last, now, -2.0 * still) if now[1] > -2.0 * still >= last[1] else self._half
-        full = _passes(last, now, -still) if now[1] > -still >= last[1] else None
-        if full is None:
-            return None
-        self._loads.append(-self._peak)
-        self._phase, self._rise = Phase.FOOT_FLAT, None
-        onset = full if self._half is None else full + ONSET_RATIO * (full - self._half)
-        return FootEvent.FULL_CONTACT, min(onset, now[0] + MAX_DELAY_S)
+        last = self._path[-1] if self._path else now
+        self._path = [now]
+        still = LANDING_RATIO * self._still
+        if now[1] < self._peak:
+            self._peak, self._half_s, self._full_s = now[1], None, None
+        if self._half_s is None and last[1] <= -2.0 * still < now[1]:
+            self._half_s = _crossing(last, now, -2.0 * still)
+        if self._full_s is None and last[1] <= -still < now[1]:
+            full_s = _crossing(last, now, -still)
+            self._full_s = full_s + ONSET_RATIO * (full_s - self._half_s) if self._half_s is not None else full_s
+        if self._full_s is None:
+            return
+        usual = median(self._loads) if self._loads else math.inf
+        is_sure = -self._peak > PASSED_SHARE * usual and now[0] > self._full_s
+        if is_sure or self._is_due(self._full_s):
+            self._loads.append(-self._peak)
+            self._tell(FootEvent.FULL_CONTACT, self._full_s)
+            self._stand(self._full_s)
 
 
-def _passes(last: tuple[float, float], now: tuple[float, float], level: float) -> float | None:
-    """When the straight line between two samples (time, value) passes `level`; None where it does not."""
-    if (last[1] > level) == (now[1] > level):
-        return None
+def _crossing(last: Sample, now: Sample, level: float) -> float:
+    """When the straight line between two samples is at `level`."""
     return last[0] + (now[0] - last[0]) * (level - last[1]) / (now[1] - last[1])
+
+
+def _passes(last: Sample, now: Sample, level: float) -> float | None:
+    """When the straight line between two samples passes `level`; None where it does not."""
+    return None if (last[1] > level) == (now[1] > level) else _crossing(last, now, level)
+
+
+def _speeds(travelled: list[tuple[float, Vector]]) -> list[Sample]:
+    """Of a foot that is calm at the end: what velocity is left there has crept in evenly."""
+    start_s, (end_s, (ex, ey, ez)) = travelled[0][0], travelled[-1]
+    lasts_s = max(end_s - start_s, 1e-9)
+    return [
+        (t, math.hypot(x - share * ex, y - share * ey, z - share * ez))
+        for t, (x, y, z) in travelled
+        for share in ((t - start_s) / lasts_s,)
+    ]
+
+
+def _way_m(travelled: list[tuple[float, Vector]]) -> float:
+    """How far a foot went that hardly turned, and is calm at the end."""
+    total = [0.0, 0.0, 0.0]
+    for (a, v), (b, w) in pairwise(travelled):
+        total = [s + 0.5 * (b - a) * (p + q) for s, p, q in zip(total, v, w, strict=True)]
+    half_s = 0.5 * (travelled[-1][0] - travelled[0][0])
+    return math.hypot(*(s - half_s * e for s, e in zip(total, travelled[-1][1], strict=True)))
