@@ -1,0 +1,1 @@
+"""What is kept, and kept private: keys, journals, the library's database, audit, backup."""

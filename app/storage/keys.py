@@ -1,0 +1,296 @@
+"""Who may open the library? One random data key, wrapped once for every operator and once for the recovery key.
+
+A slot's wrapping key comes from a passphrase by Argon2id (RFC 9106), the wrapping is AES-256-GCM and is bound to the
+slot's own words. The slots' file holds nothing that opens without a passphrase, and no names: operators have short
+codes. Nothing here limits what an operator may do; roles are the application's, not cryptography's.
+"""
+
+import base64
+import json
+import os
+import secrets
+import unicodedata
+from collections.abc import Callable
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from cryptography.exceptions import InvalidTag
+from cryptography.hazmat.primitives.ciphers.aead import AESGCM
+from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
+
+from app.storage.files import replace_file
+
+FORMAT = "gaitwright-keys/1"
+KEY_BYTES = 32
+MIN_PASSPHRASE = 10
+RECOVERY_BYTES = 20
+GROUP = 4  # letters of the recovery key that stand together
+LETTERS = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"  # Crockford's: no I, L, O, U to be misread
+MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
+FREE_TRIES = 3
+FIRST_DELAY_S, LONGEST_DELAY_S = 2.0, 300.0
+RECOVERY = "recovery"
+
+
+class KeyRefusedError(Exception):
+    """The library does not open, or the slots cannot be changed as asked. Says what and what to do."""
+
+    def __init__(self, what: str, remedy: str) -> None:
+        super().__init__(f"{what}. {remedy}.")
+        self.what, self.remedy = what, remedy
+
+
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What one guess at a passphrase costs (Argon2id): passes over `memory_kib` of memory."""
+
+    passes: int = 3
+    memory_kib: int = 64 * 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Slot:
+    """The data key, wrapped for one operator (`code`) or for the recovery key. Bytes are base64."""
+
+    code: str
+    salt: str
+    nonce: str
+    wrapped: str
+    passes: int
+    memory_kib: int
+
+    def opened(self, secret: bytes) -> bytes | None:
+        """The data key; None when `secret` is not this slot's."""
+        try:
+            return AESGCM(self._wrapping_key(secret)).decrypt(_bytes(self.nonce), _bytes(self.wrapped), self._bound())
+        except InvalidTag:
+            return None
+
+    def _wrapping_key(self, secret: bytes) -> bytes:
+        kdf = Argon2id(
+            salt=_bytes(self.salt),
+            length=KEY_BYTES,
+            iterations=self.passes,
+            lanes=1,
+            memory_cost=self.memory_kib,
+        )
+        return kdf.derive(secret)
+
+    def _bound(self) -> bytes:
+        return f"{FORMAT} {self.code} {self.salt} {self.passes} {self.memory_kib}".encode()
+
+    @classmethod
+    def wrapping(cls, data_key: bytes, code: str, secret: bytes, cost: Cost) -> "Slot":
+        salt, nonce = _text(secrets.token_bytes(16)), _text(secrets.token_bytes(12))
+        empty = cls(code, salt, nonce, "", cost.passes, cost.memory_kib)
+        wrapped = AESGCM(empty._wrapping_key(secret)).encrypt(_bytes(empty.nonce), data_key, empty._bound())
+        return replace(empty, wrapped=_text(wrapped))
+
+
+class KeySlots:
+    """The slots' file of one library. Every change replaces the file as a whole."""
+
+    def __init__(self, path: Path, cost: Cost = Cost()) -> None:
+        self._path, self._cost = path, cost
+
+    @property
+    def exists(self) -> bool:
+        return self._path.exists()
+
+    @property
+    def codes(self) -> tuple[str, ...]:
+        """The operators that can log in."""
+        return tuple(code for code in self._read() if code != RECOVERY)
+
+    def create(self, code: str, passphrase: str) -> tuple[bytes, str]:
+        """Make the first operator's slot and the recovery key's; returns the data key and the recovery key's text.
+
+        Raises
+        ------
+        KeyRefusedError
+            There are slots already, or the passphrase is too short.
+        """
+        if self.exists:
+            raise KeyRefusedError("This library has its keys already", "Log in, or use the recovery key")
+        data_key, text = secrets.token_bytes(KEY_BYTES), new_recovery_key()
+        own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase), self._cost)
+        self._write({own.code: own, RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
+        return data_key, text
+
+    def open(self, code: str, passphrase: str) -> bytes:
+        """The data key.
+
+        Raises
+        ------
+        KeyRefusedError
+            No such operator, or not this passphrase; the two are not told apart.
+        """
+        slot = self._read().get(_normal(code))
+        data_key = slot.opened(_secret(passphrase)) if slot is not None and slot.code != RECOVERY else None
+        if data_key is None:
+            raise KeyRefusedError("This passphrase does not open the library", "Type it again, or use the recovery key")
+        return data_key
+
+    def open_with_recovery_key(self, text: str) -> bytes:
+        """The data key.
+
+        Raises
+        ------
+        KeyRefusedError
+            Mistyped, or another library's.
+        """
+        secret = _recovery_bytes(text)
+        slot = self._read().get(RECOVERY)
+        data_key = slot.opened(secret) if slot is not None else None
+        if data_key is None:
+            raise KeyRefusedError("This recovery key belongs to another library", "Look for the sheet of this one")
+        return data_key
+
+    def add(self, data_key: bytes, code: str, passphrase: str) -> None:
+        """Give an operator a slot.
+
+        Raises
+        ------
+        KeyRefusedError
+            The code is taken, or the passphrase too short.
+        """
+        slots = self._read()
+        if _checked_code(code) in slots:
+            raise KeyRefusedError(f"{_normal(code)} is taken", "Choose another code")
+        own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+        self._write({**slots, own.code: own})
+
+    def set_passphrase(self, data_key: bytes, code: str, passphrase: str) -> None:
+        """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
+
+        Raises
+        ------
+        KeyRefusedError
+            No such operator, or the passphrase is too short.
+        """
+        slots = self._read()
+        if _checked_code(code) not in slots:
+            raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+        own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+        self._write({**slots, own.code: own})
+
+    def remove(self, code: str) -> None:
+        """Take an operator's slot away.
+
+        Raises
+        ------
+        KeyRefusedError
+            It is the last one.
+        """
+        slots = self._read()
+        slots.pop(_normal(code), None)
+        if set(slots) <= {RECOVERY}:
+            raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
+        self._write(slots)
+
+    def renew_recovery_key(self, data_key: bytes) -> str:
+        """Make a new recovery key and end the old one; returns its text."""
+        text = new_recovery_key()
+        self._write({**self._read(), RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
+        return text
+
+    def _read(self) -> dict[str, Slot]:
+        try:
+            content = json.loads(self._path.read_bytes())
+            if content["format"] != FORMAT:
+                raise ValueError(content["format"])
+            slots = [Slot(**slot) for slot in content["slots"]]
+        except FileNotFoundError:
+            raise KeyRefusedError(f"{self._path.name} is not there", "Restore the library from a backup") from None
+        except (ValueError, KeyError, TypeError):
+            raise KeyRefusedError(f"{self._path.name} is damaged", "Restore it from a backup of this library") from None
+        return {slot.code: slot for slot in slots}
+
+    def _write(self, slots: dict[str, Slot]) -> None:
+        content = {"format": FORMAT, "slots": [asdict(slot) for slot in slots.values()]}
+        replace_file(self._path, json.dumps(content, indent=1).encode())
+
+
+class LoginDelay:
+    """After three wrong passphrases the next try has to wait, twice as long after each further one."""
+
+    def __init__(self, now_s: Callable[[], float]) -> None:
+        self._now_s = now_s
+        self._wrong: dict[str, int] = {}
+        self._free_at_s: dict[str, float] = {}
+
+    def left_s(self, code: str) -> float:
+        return max(0.0, self._free_at_s.get(_normal(code), 0.0) - self._now_s())
+
+    def count_wrong(self, code: str) -> None:
+        code = _normal(code)
+        self._wrong[code] = wrong = self._wrong.get(code, 0) + 1
+        if wrong >= FREE_TRIES:
+            delay_s = min(LONGEST_DELAY_S, FIRST_DELAY_S * 2.0 ** (wrong - FREE_TRIES))
+            self._free_at_s[code] = self._now_s() + delay_s
+
+    def forget(self, code: str) -> None:
+        self._wrong.pop(_normal(code), None)
+        self._free_at_s.pop(_normal(code), None)
+
+
+def new_recovery_key() -> str:
+    """160 random bits and a check letter, in groups to be copied by hand."""
+    number = int.from_bytes(os.urandom(RECOVERY_BYTES), "big")
+    letters = "".join(LETTERS[number >> (5 * k) & 31] for k in reversed(range(RECOVERY_BYTES * 8 // 5)))
+    letters += LETTERS[number % 31]
+    return "-".join(letters[k : k + GROUP] for k in range(0, len(letters), GROUP))
+
+
+def is_same_recovery_key(typed: str, printed: str) -> bool:
+    """Whether what was typed back is what was printed; spaces, dashes and misread letters do not count."""
+    return secrets.compare_digest(_letters(typed), _letters(printed))
+
+
+def _letters(text: str) -> str:
+    return "".join(c for c in text.upper().translate(MISREAD) if c.isalnum() and c.isascii())
+
+
+def _recovery_bytes(text: str) -> bytes:
+    letters = _letters(text)
+    count = RECOVERY_BYTES * 8 // 5
+    if len(letters) != count + 1 or any(c not in LETTERS for c in letters):
+        raise KeyRefusedError(
+            f"A recovery key has {count + 1} letters, this has {len(letters)}", "Compare with the sheet"
+        )
+    number = 0
+    for c in letters[:-1]:
+        number = number << 5 | LETTERS.index(c)
+    if LETTERS[number % 31] != letters[-1]:
+        raise KeyRefusedError("A letter of the recovery key is mistyped", "Compare with the sheet")
+    return number.to_bytes(RECOVERY_BYTES, "big")
+
+
+def _normal(code: str) -> str:
+    return code.strip().casefold()
+
+
+def _checked_code(code: str) -> str:
+    code = _normal(code)
+    if not (code.isalnum() and len(code) <= 12) or code == RECOVERY:
+        raise KeyRefusedError(f"{code or 'An empty code'} cannot be a code", "Take up to 12 letters and figures")
+    return code
+
+
+def _checked(passphrase: str) -> bytes:
+    if len(passphrase.strip()) < MIN_PASSPHRASE:
+        raise KeyRefusedError(f"A passphrase has {MIN_PASSPHRASE} letters or more", "Take a few words")
+    return _secret(passphrase)
+
+
+def _secret(passphrase: str) -> bytes:
+    # the same letters from another keyboard may come as other code points
+    return unicodedata.normalize("NFKC", passphrase.strip()).encode()
+
+
+def _bytes(text: str) -> bytes:
+    return base64.b64decode(text)
+
+
+def _text(data: bytes) -> str:
+    return base64.b64encode(data).decode()

@@ -1,0 +1,212 @@
+"""Passphrases and the recovery key open the library, nothing else does, and a kill never locks anyone out."""
+
+import json
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from app.storage.files import replace_file
+from app.storage.keys import (
+    Cost,
+    KeyRefusedError,
+    KeySlots,
+    LoginDelay,
+    Slot,
+    is_same_recovery_key,
+    new_recovery_key,
+)
+
+OLD, NEW = "four short words here", "another four short words"
+CHEAP = Cost(passes=1, memory_kib=64)
+CHANGE = """
+import sys
+from pathlib import Path
+from app.storage.keys import Cost, KeySlots
+slots = KeySlots(Path(sys.argv[1]), Cost(passes=1, memory_kib=64))
+data_key = slots.open("hk", sys.argv[2])
+print("ready", flush=True)
+while True:
+    slots.set_passphrase(data_key, "hk", sys.argv[3])
+    slots.set_passphrase(data_key, "hk", sys.argv[2])
+"""
+
+
+@pytest.fixture
+def slots(tmp_path: Path) -> KeySlots:
+    return KeySlots(tmp_path / "keys.json", CHEAP)
+
+
+def test_the_passphrase_and_the_recovery_key_give_the_same_key(slots: KeySlots) -> None:
+    data_key, recovery = slots.create("HK", OLD)
+    assert len(data_key) == 32
+    assert slots.open("hk", OLD) == data_key
+    assert slots.open_with_recovery_key(recovery.lower().replace("-", " ")) == data_key
+    assert slots.codes == ("hk",)
+
+
+def test_no_other_passphrase_code_or_recovery_key_opens(slots: KeySlots, tmp_path: Path) -> None:
+    _, recovery = slots.create("hk", OLD)
+    for code, passphrase in (("hk", NEW), ("hk", ""), ("xx", OLD), ("recovery", recovery)):
+        with pytest.raises(KeyRefusedError, match="does not open"):
+            slots.open(code, passphrase)
+    _, foreign = KeySlots(tmp_path / "other.json", CHEAP).create("hk", OLD)
+    with pytest.raises(KeyRefusedError, match="another library"):
+        slots.open_with_recovery_key(foreign)
+
+
+def test_a_passphrase_means_its_letters_not_their_code_points(slots: KeySlots) -> None:
+    data_key, _ = slots.create("hk", "Gr\u00fc\u00dfe aus Z\u00fcrich")
+    assert slots.open("hk", " Gru\u0308\u00dfe aus Zu\u0308rich ") == data_key
+
+
+def test_operators_come_and_go_but_the_last_one_stays(slots: KeySlots) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    slots.add(data_key, "ab", NEW)
+    assert slots.open("ab", NEW) == data_key
+    with pytest.raises(KeyRefusedError, match="taken"):
+        slots.add(data_key, "AB", NEW)
+    slots.remove("hk")
+    with pytest.raises(KeyRefusedError, match="does not open"):
+        slots.open("hk", OLD)
+    with pytest.raises(KeyRefusedError, match="last operator"):
+        slots.remove("ab")
+
+
+def test_a_new_recovery_key_ends_the_old_one(slots: KeySlots) -> None:
+    data_key, old = slots.create("hk", OLD)
+    new = slots.renew_recovery_key(data_key)
+    assert slots.open_with_recovery_key(new) == data_key
+    with pytest.raises(KeyRefusedError):
+        slots.open_with_recovery_key(old)
+
+
+@pytest.mark.parametrize("passphrase", ["short", "          ", ""])
+def test_short_passphrases_are_refused(slots: KeySlots, passphrase: str) -> None:
+    with pytest.raises(KeyRefusedError, match="letters or more"):
+        slots.create("hk", passphrase)
+    assert not slots.exists
+
+
+@pytest.mark.parametrize("code", ["", "recovery", "a name", "x" * 13])
+def test_codes_that_could_be_names_or_nothing_are_refused(slots: KeySlots, code: str) -> None:
+    with pytest.raises(KeyRefusedError, match="cannot be a code"):
+        slots.create(code, OLD)
+
+
+def test_the_file_holds_neither_key_nor_passphrase(slots: KeySlots, tmp_path: Path) -> None:
+    data_key, recovery = slots.create("hk", OLD)
+    content = (tmp_path / "keys.json").read_bytes()
+    assert data_key not in content
+    assert OLD.encode() not in content
+    assert recovery.encode() not in content
+    assert (tmp_path / "keys.json").stat().st_mode & 0o077 == 0
+
+
+def test_a_slot_whose_words_were_changed_does_not_open(slots: KeySlots, tmp_path: Path) -> None:
+    slots.create("hk", OLD)
+    path = tmp_path / "keys.json"
+    content = json.loads(path.read_bytes())
+    content["slots"][0]["code"] = "ab"
+    path.write_text(json.dumps(content))
+    with pytest.raises(KeyRefusedError):
+        slots.open("ab", OLD)
+
+
+@pytest.mark.parametrize("content", [b"", b"{}", b"[1]", b'{"format": "gaitwright-keys/9", "slots": []}'])
+def test_a_damaged_file_is_said_to_be_damaged(slots: KeySlots, tmp_path: Path, content: bytes) -> None:
+    (tmp_path / "keys.json").write_bytes(content)
+    with pytest.raises(KeyRefusedError, match="damaged"):
+        slots.open("hk", OLD)
+
+
+def test_a_missing_file_says_where_to_find_it(slots: KeySlots) -> None:
+    with pytest.raises(KeyRefusedError, match="backup"):
+        slots.open("hk", OLD)
+
+
+def test_a_mistyped_letter_of_the_recovery_key_is_noticed() -> None:
+    key = new_recovery_key()
+    slots = KeySlots(Path("nowhere"))  # what is mistyped is noticed before the file is read
+    for k, letter in enumerate(key):
+        if letter != "-":
+            wrong = key[:k] + ("2" if letter != "2" else "3") + key[k + 1 :]
+            with pytest.raises(KeyRefusedError, match="mistyped"):
+                slots.open_with_recovery_key(wrong)
+    assert is_same_recovery_key(key.lower().replace("0", "o").replace("1", "l"), key)
+    assert not is_same_recovery_key(key[:-1], key)
+
+
+def test_wrong_passphrases_make_the_next_try_wait() -> None:
+    now = [0.0]
+    delay = LoginDelay(lambda: now[0])
+    for _ in range(2):
+        delay.count_wrong("hk")
+    assert delay.left_s("HK") == 0.0
+    delay.count_wrong("hk")
+    assert delay.left_s("hk") == 2.0
+    now[0] = 2.0
+    assert delay.left_s("hk") == 0.0
+    delay.count_wrong("hk")
+    assert delay.left_s("hk") == 4.0
+    for _ in range(50):
+        delay.count_wrong("hk")
+    assert delay.left_s("hk") == 300.0
+    assert delay.left_s("ab") == 0.0
+    delay.forget("hk")
+    assert delay.left_s("hk") == 0.0
+
+
+def test_wrapping_the_same_key_twice_shows_no_likeness() -> None:
+    one, other = (Slot.wrapping(b"k" * 32, "hk", b"same secret", CHEAP) for _ in range(2))
+    assert one.salt != other.salt
+    assert one.wrapped != other.wrapped
+
+
+def test_a_file_that_cannot_be_replaced_stays(tmp_path: Path) -> None:
+    path = tmp_path / "keys.json"
+    replace_file(path, b"old")
+    (tmp_path / "keys.json.new").mkdir()
+    with pytest.raises(OSError, match="keys"):
+        replace_file(path, b"new")
+    assert path.read_bytes() == b"old"
+
+
+def kill_while_changing(path: Path, rng: random.Random) -> None:
+    child = subprocess.Popen([sys.executable, "-c", CHANGE, str(path), OLD, NEW], stdout=subprocess.PIPE)
+    assert child.stdout is not None
+    child.stdout.readline()
+    time.sleep(rng.uniform(0.0, 0.6))
+    child.kill()
+    child.wait()
+    child.stdout.close()
+
+
+def check_kills(folder: Path, count: int) -> None:
+    slots = KeySlots(folder / "keys.json")
+    data_key, recovery = slots.create("hk", OLD)
+    rng = random.Random(7)
+    for _ in range(count):
+        kill_while_changing(folder / "keys.json", rng)
+        opened = []
+        for passphrase in (OLD, NEW):
+            try:
+                opened.append(slots.open("hk", passphrase))
+            except KeyRefusedError:
+                continue
+        assert opened == [data_key]
+        assert slots.open_with_recovery_key(recovery) == data_key
+        slots.set_passphrase(data_key, "hk", OLD)
+
+
+def test_a_kill_during_a_change_leaves_the_old_or_the_new_passphrase(tmp_path: Path) -> None:
+    check_kills(tmp_path, 2)
+
+
+@pytest.mark.endurance
+def test_a_hundred_kills_during_changes(tmp_path: Path) -> None:
+    """T11 of the reliability targets, at its full size."""
+    check_kills(tmp_path, 100)
