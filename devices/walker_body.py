@@ -35,6 +35,17 @@ class Motion(StrEnum):
     SIDE_LYING = "side_lying"
 
 
+class Manner(StrEnum):
+    """How the feet are used in walking.
+
+    SHUFFLING: short steps, the foot put down and lifted nearly flat. TOES: the heels never touch the floor.
+    """
+
+    ORDINARY = "ordinary"
+    SHUFFLING = "shuffling"
+    TOES = "toes"
+
+
 @dataclass(frozen=True, slots=True)
 class Standing:
     name: str = "standing"
@@ -67,6 +78,7 @@ class Walk:
     standing_before_s: float = 0.5
     standing_after_s: float = 0.5
     turn_rad: float = 0.0
+    manner: Manner = Manner.ORDINARY
     is_restrapped_before: bool = False
 
 

@@ -6,14 +6,14 @@ In swing the ankle's curve and the hip's path are bridged from toe-off to the ne
 Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can tell.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import BPoly, PchipInterpolator
 
 from core.body import Side
 from core.samples import FloatArray, IntArray
-from devices.walker_body import HEEL_M, TOE_M, Leg, Walk
+from devices.walker_body import HEEL_M, TOE_M, Leg, Manner, Walk
 from devices.walker_motion import (
     Y_AXIS,
     Z_AXIS,
@@ -56,7 +56,11 @@ ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class Gait:
-    """What speed decides: stride length and time, the shares of the stride, the size of the curves."""
+    """What speed and manner decide: stride length and time, the shares of the stride, the size of the curves.
+
+    `flat_pitch_rad` is the foot's pitch in the middle of stance; `toe_off_pitch_rad`, where not NaN, its pitch at
+    toe-off, else the ankle's plantarflexion decides.
+    """
 
     speed_m_s: float
     stride_m: float
@@ -70,10 +74,41 @@ class Gait:
     knee_loading: float
     knee_swing: float
     shock: float
+    clearance_m: float = LEAST_CLEARANCE_M
+    lifted_rad: float = np.deg2rad(4.5)
+    flat_pitch_rad: float = 0.0
+    toe_off_pitch_rad: float = np.nan
 
 
-def gait_at(speed_m_s: float) -> Gait:
+def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
     """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640)."""
+    ordinary = _ordinary_gait(speed_m_s)
+    if manner is Manner.SHUFFLING:
+        return replace(
+            ordinary,
+            stride_m=0.55 * ordinary.stride_m,
+            stride_s=0.55 * ordinary.stride_s,
+            stance=ordinary.stance + 0.05,
+            full_contact=0.06,
+            heel_rise=ordinary.stance - 0.07,
+            contact_pitch_rad=np.deg2rad(2.0),
+            knee_swing=0.3,
+            shock=0.3 * ordinary.shock,
+            clearance_m=0.004,
+            lifted_rad=np.deg2rad(2.0),
+            toe_off_pitch_rad=np.deg2rad(-6.0),
+        )
+    if manner is Manner.TOES:
+        return replace(
+            ordinary,
+            contact_pitch_rad=np.deg2rad(-6.0),
+            lifted_rad=np.deg2rad(-15.0),
+            flat_pitch_rad=np.deg2rad(-25.0),
+        )
+    return ordinary
+
+
+def _ordinary_gait(speed_m_s: float) -> Gait:
     relative = speed_m_s / 1.19
     stride_m = 1.28 * relative**0.55
     stance = 0.605 - 0.048 * (speed_m_s - 1.19) + 0.05 * max(0.0, 0.8 - speed_m_s)
@@ -121,7 +156,7 @@ def plan_walk(
     walk: Walk, time_s: FloatArray, first: Side, prosthetic_side: Side | None, rng: np.random.Generator
 ) -> WalkPlan:
     """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording."""
-    gait = gait_at(walk.speed_m_s)
+    gait = gait_at(walk.speed_m_s, walk.manner)
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
     first_off = walk.standing_before_s + 0.3 * stride_s
     steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides)
@@ -193,7 +228,7 @@ def walk_leg(
         _bridge(ahead, swing, step_s)
     lean = _shank_lean(leg, ahead, knee)
     ankle = pitch + lean
-    lifted = np.deg2rad(2.0 if leg.is_prosthetic else 4.5)
+    lifted = np.deg2rad(2.0) if leg.is_prosthetic else gait.lifted_rad
     for swing in swings:
         _bridge(ankle, swing, step_s, lifted)
 
@@ -212,7 +247,7 @@ def walk_leg(
     hip = _stand(place[stance], yaw[stance], rolled_x, rolled_z) - hanging[2]
     for swing in swings:
         _bridge(hip, swing, step_s)
-        _lift_hip(hip, foot, hanging[2], swing)
+        _lift_hip(hip, foot, hanging[2], swing, gait.clearance_m)
     rotations, origins = hang_from_hip(leg, thigh, hip, angles)
     events = FootEvents(steps.contact_s[1:], steps.full_contact_s[1:], steps.heel_rise_s[:-1], steps.toe_off_s[:-1])
     return LegMotion(time_s, angles, rotations, origins, events, place)
@@ -261,28 +296,31 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
 
 
 def _stance_pitch(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> FloatArray:
-    """Pitch of the foot (n,), toes up positive, zero in foot flat; in swing it means nothing."""
+    """Pitch of the foot (n,), toes up positive, zero when the sole is flat; in swing it means nothing."""
     steps, w = plan.steps[leg.side], PITCH_WIDTH_S
     beyond_s = MARGIN_S + 2.5 * w  # what smoothing spoils is further away than what swing looks at
-    pitch = np.zeros_like(time_s)
+    rest = plan.gait.flat_pitch_rad
+    pitch = np.full_like(time_s, rest)
     for i in range(1, len(steps.contact_s)):
         on, flat = steps.contact_s[i], steps.full_contact_s[i] - w
         here = slice(*np.searchsorted(time_s, [on - beyond_s, flat]))
         contact = _contact_pitch(leg, plan.gait, float(np.interp(on, time_s, plan.hip_path_m)) - steps.ankle_m[i])
         u = (flat - time_s[here]) / (flat - on)
-        pitch[here] = contact * u**2 * (2.0 - u)
+        pitch[here] = rest + contact * u**2 * (2.0 - u)
     for i in range(len(steps.contact_s) - 1):
         rise, end = steps.heel_rise_s[i] + w, steps.toe_off_s[i]
         here = slice(*np.searchsorted(time_s, [rise, end + beyond_s]))
-        off = _toe_off_pitch(leg, plan.gait, float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i])
+        off = _toe_off_pitch(leg, plan.gait, float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i]) - rest
         u = (time_s[here] - rise) / (end - rise)
         # a stiff ankle turns the foot with the shank, a human one holds it down for longer
-        pitch[here] = off * (0.3 * u + 0.7 * u**2 if leg.is_prosthetic else 0.6 * u**2 + 1.4 * u**3 - u**4)
+        pitch[here] = rest + off * (0.3 * u + 0.7 * u**2 if leg.is_prosthetic else 0.6 * u**2 + 1.4 * u**3 - u**4)
     return pitch
 
 
 def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
-    """The pitch that lands the heel with the ankle at about zero; the last step before standing lands nearly flat."""
+    """The pitch over that of mid-stance that lands the heel with the ankle at about zero; the last step nearly flat."""
+    if gait.contact_pitch_rad < 0.0:  # on the toes
+        return gait.contact_pitch_rad
     wanted = np.deg2rad(-3.0 if leg.is_prosthetic else 1.0)
     lean = _shank_lean(leg, np.array([hip_ahead_m]), np.deg2rad(np.array([4.0])))
     return float(np.clip(wanted - lean[0], np.deg2rad(2.0), gait.contact_pitch_rad))
@@ -290,6 +328,8 @@ def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
 
 def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
     """The pitch that gives the ankle its plantarflexion at toe-off, when the hip is `hip_ahead_m` of the foothold."""
+    if np.isfinite(gait.toe_off_pitch_rad):
+        return gait.toe_off_pitch_rad
     knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing]))
     wanted = np.deg2rad(-2.0) if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain
     pitch = np.array([-0.5])
@@ -397,7 +437,9 @@ def _stand(place: FloatArray, yaw: FloatArray, rolled_x: FloatArray, rolled_z: F
     return np.stack([x, place[:, 1] + np.sin(yaw) * rolled_x, rolled_z], axis=-1)
 
 
-def _lift_hip(hip: FloatArray, foot: FloatArray, ankle_below_hip: FloatArray, swing: tuple[int, int]) -> None:
+def _lift_hip(
+    hip: FloatArray, foot: FloatArray, ankle_below_hip: FloatArray, swing: tuple[int, int], clearance_m: float
+) -> None:
     """Raise the hip in mid-swing by what heel or toe would lack over the floor, in place."""
     span = slice(swing[0], swing[1] + 1)
     u = np.linspace(0.0, 1.0, swing[1] - swing[0] + 1)
@@ -405,5 +447,5 @@ def _lift_hip(hip: FloatArray, foot: FloatArray, ankle_below_hip: FloatArray, sw
     ankle_z = hip[span, 2] + ankle_below_hip[span, 2]
     lowest = ankle_z + np.minimum(foot[span] @ HEEL_M, foot[span] @ TOE_M)[:, 2]
     inner = slice(len(u) // 5, len(u) - len(u) // 5)
-    lack = (LEAST_CLEARANCE_M - lowest[inner]) / bump[inner]
+    lack = (clearance_m - lowest[inner]) / bump[inner]
     hip[span, 2] += max(0.0, float(lack.max())) * bump

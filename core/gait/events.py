@@ -8,6 +8,10 @@ One definition of each event, for any speed and sampling rate; levels follow eac
   and a jerk threshold latches onto earlier peaks;
 - full contact and heel rise: the rate comes to rest, and leaves it.
 
+A foot that lands with its forefoot is turned the other way by the floor: toes up, by a heel that comes down. Its full
+contact is where it ceases to sink, be the heel on the floor or not.
+
+
 Where a foot hardly rolls (shuffling, a flat landing) the pitch says nothing; its speed does, and the events are marked.
 Where the sensor shakes on its foot, the rate of one swing says little; the foot's mean swing does.
 """
@@ -28,6 +32,7 @@ STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.1  # of the peak of push-off: below, the 
 ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
+FOREFOOT_RAD = np.deg2rad(3.0)  # heels first, real feet go 2 deg below their rest
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
 MIN_SWINGS_TO_AVERAGE = 4
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor
@@ -100,20 +105,23 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     rate, swings = motion.pitch_rate_rad_s, motion.swings
     speed = np.linalg.norm(motion.velocity_m_s, axis=1)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
-    push = -np.array([rate[a : m + 1].min() for a, m, _ in spans])
-    load = -np.array([rate[m : b + 1].min() for _, m, b in spans])
+    leaving = [rate[a : m + 1] for a, m, _ in spans]
+    lowered = [_lowered_from(motion.pitch_rad, m, b) for _, m, b in spans]
+    is_forefoot = np.array([begin > m for begin, (_, m, _) in zip(lowered, spans, strict=True)], dtype=bool)
+    landing = [(-rate if begin > m else rate)[begin : b + 1] for begin, (_, m, b) in zip(lowered, spans, strict=True)]
+    push, load = (-np.array([part.min() for part in parts]) for parts in (leaving, landing))
     is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S)
     usual = _usual(push, load)
     rows = np.full((len(spans), 4), np.nan)
     for k, (a, m, b) in enumerate(spans):
-        rows[k, :2] = _leaving(rate[a : m + 1], usual) + a
-        rows[k, 2:] = _landing(rate[m : b + 1], usual, motion.step_s) + m
+        rows[k, :2] = _leaving(leaving[k], usual) + a
+        rows[k, 2:] = _landing(landing[k], usual, motion.step_s) + lowered[k]
         flat = FLAT_SHARE * speed[m]
         if not np.isfinite(rows[k, 1]):
             rows[k, 1] = last_crossing(speed, a, m, flat)
         if not np.isfinite(rows[k, 2]):
             rows[k, 2] = first_crossing(speed, m, b, flat)
-    is_usual = is_rolling & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
+    is_usual = is_rolling & ~is_forefoot & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
     _steady(rows, motion, spans, is_usual, usual)
     rows[:, 0] = np.minimum(rows[:, 0], rows[:, 1])
     rows[:, 3] = np.maximum(rows[:, 3], rows[:, 2])
@@ -134,6 +142,15 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     )
 
 
+def _lowered_from(pitch: FloatArray, fastest: int, rest: int) -> int:
+    """From where on a foot that lands with its forefoot is lowered, its highest pitch (n,); `fastest` for any other.
+
+    A forefoot that lands first has its toes further down than in stance.
+    """
+    highest = fastest + int(np.argmax(pitch[fastest : rest + 1]))
+    return highest if np.min(pitch[highest : rest + 1]) < -FOREFOOT_RAD else fastest
+
+
 def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
     """Heel rise and toe-off as indices of a pitch rate (n,) from rest to mid-swing; NaN: hardly rolled."""
     push = int(np.argmin(rate))
@@ -144,7 +161,7 @@ def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
 
 
 def _landing(rate: FloatArray, usual: Usual, step_s: float) -> FloatArray:
-    """Initial and full contact as indices of a pitch rate (n,) from mid-swing to rest; NaN: hardly rolled."""
+    """Initial and full contact as indices of a pitch rate (n,) which the floor makes negative; NaN: hardly rolled."""
     load = int(np.argmin(rate))
     full = _onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
     if -rate[load] <= MIN_ROLL_RAD_S:

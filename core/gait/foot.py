@@ -21,7 +21,9 @@ CALM_WINDOW_S = 0.1
 MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)
 MAX_CALM = 30.0  # a foot that moves more than this, in units of CALM squared, is not standing; loose straps come near
 CALM_FLOOR = 0.03  # the sensors' own noise
-REST_TILT_RAD = np.deg2rad(4.0)  # a foot that stands tilts no further; a sensor shaking on it may, by half of that
+REST_TILT_RAD = np.deg2rad(
+    2.2
+)  # a sensor that shakes by CALM more than an ordinary one tilts so far on a standing foot
 MAX_REST_S = 0.8  # to either side; standing lasts longer, and the tilt then drifts
 MAX_TILT_ERROR_RAD = np.deg2rad(3.0)  # the filter is better than this; what is more, the foot's own wobble felt
 EVEN_M_S2 = 0.005  # what an accelerometer's bias leaves once a stance has shown the vertical, sample by sample
@@ -107,9 +109,11 @@ def follow(foot: OrientedTrack) -> FootMotion:
     earth_from_sensor = matrix_from_quaternion(foot.q_earth_from_sensor)
     acceleration = np.einsum("nij,nj->ni", earth_from_sensor, track.acc_m_s2) - [0.0, 0.0, GRAVITY_M_S2]
     up = earth_from_sensor[:, 2]  # in sensor axes
-    anchors = _anchors(gyr, acceleration, up, step_s)
+    restless = _restlessness(gyr, acceleration, step_s)
+    anchors = _anchors(restless, up)
+    shaking = max(0.0, float(np.median(restless[anchors])) - 1.0) if len(anchors) else 0.0
     rough = _velocity(acceleration, _instants(anchors, len(up), step_s), step_s)
-    rests = _stances(anchors, up, np.linalg.norm(rough, axis=1), step_s)
+    rests = _stances(anchors, up, np.linalg.norm(rough, axis=1), step_s, np.sqrt(shaking) * REST_TILT_RAD)
     velocity = _velocity(acceleration, rests, step_s)
     path = _integral(velocity, step_s)
     swings = _swings(anchors, velocity, path)
@@ -133,10 +137,14 @@ def follow(foot: OrientedTrack) -> FootMotion:
     )
 
 
-def _anchors(gyr: FloatArray, acceleration: FloatArray, up: FloatArray, step_s: float) -> IntArray:
-    """The calmest sample of every stance."""
+def _restlessness(gyr: FloatArray, acceleration: FloatArray, step_s: float) -> FloatArray:
+    """How much the foot moves (n,), about 1 in the middle of an ordinary stance."""
     restless = np.sum(gyr**2, axis=1) / CALM_RAD_S**2 + np.sum(acceleration**2, axis=1) / CALM_M_S2**2
-    restless = moving_mean(restless, max(3, round(CALM_WINDOW_S / step_s)))
+    return moving_mean(restless, max(3, round(CALM_WINDOW_S / step_s)))
+
+
+def _anchors(restless: FloatArray, up: FloatArray) -> IntArray:
+    """The calmest sample of every stance."""
     calm = -np.log(restless + CALM_FLOOR)
     edge = [calm.min() - 1.0]  # a recording may begin and end in standing
     found, _ = find_peaks(np.concatenate([edge, calm, edge]), prominence=np.log(MIN_CALM_RATIO))
@@ -161,7 +169,7 @@ def _instants(anchors: IntArray, n: int, step_s: float) -> list[Rest]:
     return [_rest(i, max(0, i - reach), min(n, i + reach + 1)) for i in anchors.tolist()]
 
 
-def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float) -> list[Rest]:
+def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float, tilt_rad: float) -> list[Rest]:
     """The longest rests: all samples around each anchor in which the foot stands as it does there.
 
     Parameters
@@ -177,7 +185,7 @@ def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: f
         begin = max(0, i - most) if k == 0 else max(i - most, (i + 2 * fastest[k - 1]) // 3)
         end = min(len(up), i + most) if k == len(fastest) else min(i + most, (i + 2 * fastest[k]) // 3)
         usual = least.weights @ up[least.span]
-        is_away = up[begin:end] @ usual < np.cos(REST_TILT_RAD) * np.linalg.norm(usual)
+        is_away = up[begin:end] @ usual < np.cos(tilt_rad) * np.linalg.norm(usual)
         before, after = np.flatnonzero(is_away[: i - begin]), np.flatnonzero(is_away[i - begin :])
         begin = begin + int(before[-1]) + 1 if len(before) else begin
         end = i + int(after[0]) if len(after) else end

@@ -1,6 +1,6 @@
 """Do events, phases, time and distance of the project's own patient reach what is asked of them?
 
-    python -m tests.benchmarks.gait_simulated [--seeds 2] [--rates 50 60 100 200] [--gaits ordinary prosthesis]
+    python -m tests.benchmarks.gait_simulated [--seeds 2] [--rates 50 60 100 200] [--gaits ordinary toes]
 
 One line for each gait, tissue, speed and sampling rate. Events (IC initial contact, FC full contact, HR heel rise, TO
 toe-off) and phases: error in ms, mean and standard deviation. The first swing, out of standing, and the last, into it,
@@ -10,7 +10,7 @@ used less the mean of the true ones, in percent of it. What misses its target ca
 
 import argparse
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -24,7 +24,7 @@ from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
-from devices.walker import FootTruth, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.walker import FootTruth, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
 FEET = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 EVENTS = {"IC": "initial_contact_s", "FC": "full_contact_s", "HR": "heel_rise_s", "TO": "toe_off_s"}
@@ -35,10 +35,12 @@ SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)
 RATES_HZ = (50.0, 60.0, 100.0, 200.0)
 SAME_S = 0.15  # an event further than this from every true one is invented
 EVENT_SD_S, TIME_PERCENT, LENGTH_PERCENT = 0.010, 1.0, 2.0  # the targets
-GAITS: Mapping[str, Callable[[WalkerSettings], WalkerSettings]] = {
-    "ordinary": lambda settings: settings,
-    "prosthesis": lambda settings: replace(settings, prosthetic_side=Side.LEFT),
-    "stiff knee": lambda settings: replace(settings, stiff_knee_side=Side.LEFT),
+GAITS: Mapping[str, tuple[WalkerSettings, Walk]] = {
+    "ordinary": (WalkerSettings(), Walk()),
+    "prosthesis": (WalkerSettings(prosthetic_side=Side.LEFT), Walk()),
+    "stiff knee": (WalkerSettings(stiff_knee_side=Side.LEFT), Walk()),
+    "shuffling": (WalkerSettings(), Walk(manner=Manner.SHUFFLING)),
+    "toes": (WalkerSettings(), Walk(manner=Manner.TOES)),
 }
 
 
@@ -203,8 +205,9 @@ def main() -> None:
         for tissue in asked.tissues:
             for speed_m_s in asked.speeds:
                 for rate_hz in asked.rates:
-                    settings = GAITS[gait](WalkerSettings(tissue=tissue, rate_hz=rate_hz))
-                    score = score_walks(settings, Walk(speed_m_s=speed_m_s), range(asked.seeds))
+                    settings, walk = GAITS[gait]
+                    settings = replace(settings, tissue=tissue, rate_hz=rate_hz)
+                    score = score_walks(settings, replace(walk, speed_m_s=speed_m_s), range(asked.seeds))
                     print(f"{gait} | {tissue:5s} | {speed_m_s:4.2f} | {rate_hz:3.0f} | {line(score)}", flush=True)
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.samples import FloatArray
-from devices.walker import NO_ERRORS, SimulatedSession, Walk, WalkerSettings, simulate
+from devices.walker import NO_ERRORS, Manner, SimulatedSession, Walk, WalkerSettings, simulate
 from devices.walker_body import HEEL_M, TOE_M, make_leg
 from devices.walker_gait import plan_walk, walk_leg
 
@@ -180,3 +180,31 @@ def test_every_recording_starts_at_a_compass_direction_of_its_own() -> None:
     ways = [np.subtract(*r.feet[Side.LEFT].footholds_m[[-1, 0]]) for r in recordings]
     headings = np.sort([np.arctan2(w[1], w[0]) for w in ways])
     assert np.ptp(headings) > 1.0
+
+
+@pytest.mark.parametrize("manner", [Manner.SHUFFLING, Manner.TOES])
+@pytest.mark.parametrize("speed_m_s", [0.3, 0.8, 1.19])
+def test_a_shuffling_foot_and_one_on_its_toes_stand_still_and_stay_above_the_floor(
+    manner: Manner, speed_m_s: float
+) -> None:
+    settings = WalkerSettings()
+    walk = Walk(speed_m_s=speed_m_s, strides=6, manner=manner)
+    time_s = np.arange(0.0, 16.0, 0.001)
+    plan = plan_walk(walk, time_s, Side.LEFT, None, np.random.default_rng(1))
+    leg = make_leg(settings, Side.LEFT)
+    motion = walk_leg(leg, plan, walk, time_s, np.zeros((len(time_s), 2)), np.random.default_rng(2))
+    foot, ankle_m = motion.rotations[2], motion.origins_m[2]
+    heel_m, toe_m = (ankle_m + foot @ point_m for point_m in (HEEL_M, TOE_M))
+    assert min(heel_m[:, 2].min(), toe_m[:, 2].min()) > -1e-6
+    for on, flat, rise, off in zip(
+        motion.events.initial_contact_s[:-1],
+        motion.events.full_contact_s[:-1],
+        motion.events.heel_rise_s[1:],
+        motion.events.toe_off_s[1:],
+        strict=True,
+    ):
+        here = (time_s > flat) & (time_s < rise)
+        np.testing.assert_allclose(np.ptp(ankle_m[here], axis=0), 0.0, atol=1e-6)
+        assert (heel_m[here, 2] > 0.05).all() if manner is Manner.TOES else (heel_m[here, 2] < 1e-6).all()
+        rolls = (time_s > (on if manner is Manner.TOES else rise)) & (time_s < off)
+        np.testing.assert_allclose(toe_m[rolls, 2], 0.0, atol=1e-6)

@@ -16,7 +16,7 @@ from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
-from devices.walker import FootTruth, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from devices.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
 FOOT = Site.LEFT_FOOT
 PHASES = {  # from which event to which, and whether the latter is of the next swing
@@ -119,6 +119,27 @@ def test_a_prosthesis_and_a_stiff_knee_gain_and_lose_no_event(settings: WalkerSe
     late = (found.initial_contact_s - truth.events.initial_contact_s)[1:-1]
     assert np.abs(late).max() < 0.02
     assert np.std(late) < 0.01
+
+
+@pytest.mark.parametrize(
+    ("manner", "speed_m_s"), [(Manner.SHUFFLING, 0.3), (Manner.SHUFFLING, 1.0), (Manner.TOES, 0.8)]
+)
+@pytest.mark.parametrize("tissue", list(Tissue))
+def test_shuffling_and_walking_on_toes_gain_and_lose_no_event(manner: Manner, speed_m_s: float, tissue: Tissue) -> None:
+    walk = Walk(speed_m_s=speed_m_s, manner=manner)
+    found, truth = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk), tissue=tissue))
+    assert len(found) == len(truth.events.toe_off_s)
+    late = (found.initial_contact_s - truth.events.initial_contact_s)[1:-1]
+    assert np.abs(late).max() < 0.05
+    np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=0.05)
+
+
+def test_a_forefoot_that_lands_first_is_turned_up_by_the_floor() -> None:
+    walk = Walk(speed_m_s=0.8, manner=Manner.TOES)
+    found, truth = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk)))
+    for name in EVENTS:
+        late = (getattr(found, name) - getattr(truth.events, name))[1:-1]
+        assert np.abs(late).max() < 0.010, name
 
 
 def test_standing_and_free_motion_hold_no_strides() -> None:
