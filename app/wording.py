@@ -174,6 +174,10 @@ SENTENCES = {
     ),
     # what the session is made of
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
+    "strap_slipped": (
+        "the strap slipped at {from_s} s, by about {turn_deg}°. Strides of this leg after it are left out; tighten it "
+        "and repeat the free motion."
+    ),
     "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
     "calibration_after_walk": (
         "was calibrated with a recording made after the walk, as there is none before. It holds only if no sensor "
@@ -201,6 +205,7 @@ NAMES = {
         "start": "starting",
         "stop": "stopping",
         "outlier": "unlike the others",
+        "strap_slipped": "after a strap slipped",
     },
     "peak": {
         "knee_loading_peak": "loading peak",

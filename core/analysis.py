@@ -13,6 +13,7 @@ from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.findings import Finding, Severity
+from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
 from core.measure import Twist, measure
@@ -34,6 +35,7 @@ from core.robust import robust_sd
 from core.rotations import wrap
 from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
+from core.strap import slips_in_walks
 from core.validity import Basis, basis_of, spans_of_validity
 from core.walk_findings import about_walk
 from core.walking import gait_in, site_of_events
@@ -95,9 +97,13 @@ def analyse(
             joint = basis.joint
             turned, is_zero_typed = session.turned_sign.get(joint), joint in session.zero_rad
             findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
-        calibrations += _by_walk(span, bases, calibrated)
+        by_walk = _by_walk(span, bases, calibrated)
+        calibrations += by_walk
+        slipped, told = _slipped(tracks, by_walk, lags)
+        findings += told
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
+            found = replace(found, gait=_before_slips(found, slipped))
             recordings.append(found)
             findings += about_angles(found)
             findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
@@ -288,6 +294,8 @@ def _calibration(
         standing_from=basis.standing if standing is not None else None,
         free_motion_from=basis.free_motion if basis.free_motion in found.recordings else None,
         walks_from=tuple(name for name in found.recordings if name in basis.walks),
+        acc_bias_proximal_m_s2=found.geometry.unknowns[6:9] if robust else None,
+        acc_bias_distal_m_s2=found.geometry.unknowns[9:12] if robust else None,
     )
 
 
@@ -372,6 +380,36 @@ def _angles(
             for side, found in gait_in(tracks, recording, time_s, joints, offsets).items()
         }
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
+
+
+Slipped = dict[tuple[str, Side], float]
+"""From when on a side's straps are not to be trusted, by the walk's name, on its clock."""
+
+
+def _slipped(
+    tracks: SensorTracks, calibrations: list[Calibration], lags: dict[tuple[str, Joint], float]
+) -> tuple[Slipped, list[Finding]]:
+    slipped: Slipped = {}
+    findings = []
+    for calibration in calibrations:
+        walks = [recording for recording in tracks.span if recording.name in calibration.walks]
+        for walk, slip in slips_in_walks(tracks, walks, calibration.joints, lags):
+            numbers = {"from_s": round(slip.from_s, 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
+            findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
+            slipped[walk.name, slip.site.side] = slip.from_s
+            for later in walks[walks.index(walk) + 1 :]:
+                slipped[later.name, slip.site.side] = -np.inf
+    return slipped, findings
+
+
+def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> dict[Side, SideGait]:
+    """The gait, without the strides of a side after its strap slipped."""
+    return {
+        side: replace(gait, strides=gait.strides.left_out_from(slipped[recording.name, side], Reason.SLIPPED))
+        if (recording.name, side) in slipped
+        else gait
+        for side, gait in recording.gait.items()
+    }
 
 
 def _clock_offset_s(

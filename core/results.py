@@ -34,7 +34,8 @@ class ZeroKind(StrEnum):
 class JointCalibration:
     """How two sensors sit on one joint, and how sure that is. None: could not be found.
 
-    Axes are unit vectors, centres point from the joint to the sensor (eq 7), each in its own sensor's axes.
+    Axes are unit vectors, centres point from the joint to the sensor (eq 7), each in its own sensor's axes, as are the
+    biases; those of the accelerometers were found together with the centres.
     `clinical_sign` (1 or -1) turns the twist about the axes (distal against proximal) into flexion or dorsiflexion;
     where `is_sign_certain` is False it is no more than the likelier one. `zero_rad` is subtracted from the twist
     before the sign, `offset_rad` (the goniometer's value) added after it.
@@ -65,6 +66,8 @@ class JointCalibration:
     standing_from: str | None
     free_motion_from: str | None
     walks_from: tuple[str, ...] = ()
+    acc_bias_proximal_m_s2: FloatArray | None = None
+    acc_bias_distal_m_s2: FloatArray | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,18 +5,21 @@ so alike in both sensors of the joint. What one of them has turned against the o
 three degrees, and jumps when a strap slips.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration.joint_axis import loss_and_weights, residuals
 from core.datasets import Datasets, gather
+from core.measure import pairs_of
 from core.pair import Pair
+from core.results import JointCalibration
 from core.robust import robust_sd
 from core.rotations import joint_frame
-from core.samples import FloatArray, IntArray
+from core.samples import FloatArray, IntArray, Recording
+from core.sensors import SensorTracks
 
 WINDOW_S = 5.0  # some four strides
 SAMPLES_PER_S = 10.0
@@ -124,6 +127,44 @@ def slips(turns: Mapping[Joint, Turns]) -> list[Slip]:
         if starts:
             found.append(_named(side, min(starts), mine))
     return found
+
+
+def slips_in_walks(
+    tracks: SensorTracks,
+    walks: Sequence[Recording],
+    calibration: Mapping[Joint, JointCalibration],
+    lags_s: Mapping[tuple[str, Joint], float],
+) -> list[tuple[Recording, Slip]]:
+    """Slips in walks that one calibration measures, each with the walk it happened in; times are that walk's own.
+
+    Parameters
+    ----------
+    walks
+        In order of time; what is usual in one holds in the next.
+    lags_s
+        What is added to the distal clock, by the recording's name and the joint.
+    """
+    starts_s = np.cumsum([0.0, *(last - first for first, last in map(tracks.span_of, walks))])
+    turns = {}
+    for joint, found in calibration.items():
+        parts = []
+        for walk, start_s in zip(walks, starts_s[:-1], strict=True):
+            if not tracks.is_usable(walk, joint.proximal, joint.distal):
+                continue
+            offset_s = start_s - tracks.span_of(walk)[0]  # the walks are laid end to end
+            for block in tracks.blocks(walk):
+                for pair in pairs_of(tracks, walk, joint, block, lags_s.get((walk.name, joint), 0.0)):
+                    part = turns_over(pair, found.axis_proximal, found.axis_distal)
+                    is_mine = (part.time_s >= block.core_from_s) & (part.time_s < block.core_to_s)
+                    parts.append(Turns(part.time_s[is_mine] + offset_s, part.turn_rad[is_mine]))
+        if parts:
+            turns[joint] = Turns(*(np.concatenate([getattr(p, name) for p in parts]) for name in Turns.__slots__))
+    located = []
+    for slip in slips(turns):
+        k = int(np.searchsorted(starts_s[1:-1], slip.from_s, side="right"))
+        from_s = slip.from_s - starts_s[k] + tracks.span_of(walks[k])[0]
+        located.append((walks[k], replace(slip, from_s=from_s)))
+    return located
 
 
 def _start_of_jump(turns: Turns) -> float | None:

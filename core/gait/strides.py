@@ -5,7 +5,7 @@ events and outliers keep their stride out of averages, each with its reason; not
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
@@ -33,6 +33,7 @@ class Reason(StrEnum):
     START = "start"
     STOP = "stop"
     OUTLIER = "outlier"
+    SLIPPED = "strap_slipped"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +73,11 @@ class Strides:
     @property
     def speed_m_s(self) -> FloatArray:
         return self.length_m / self.time_s
+
+    def left_out_from(self, time_s: float, reason: Reason) -> "Strides":
+        """The same strides; those used so far that end after `time_s` are left out."""
+        is_out = self.is_used & (self.end_s > time_s)
+        return replace(self, reason=tuple(reason if out else r for out, r in zip(is_out, self.reason, strict=True)))
 
 
 def strides_of(stretches: Sequence[FootEvents]) -> Strides:

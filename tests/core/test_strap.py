@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from core.body import Joint, Site
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.gait.strides import Reason
 from core.measure import pairs_of
 from core.samples import ImuBlock, RateKind, Session
 from core.sensors import SensorTracks
@@ -82,3 +84,34 @@ def test_two_windows_far_from_the_calibration_are_a_slip_before_the_walk() -> No
     (slip,) = slips({Joint.RIGHT_KNEE: turns})
     assert slip.from_s == 0.0
     assert slip.site is Site.RIGHT_THIGH
+
+
+def test_an_analysis_names_the_slip_and_leaves_out_the_strides_after_it(soft: SimulatedSession) -> None:
+    analysis = analyse(slipped(soft.session, Site.RIGHT_SHANK, np.deg2rad(20.0)))
+    (finding,) = [one for one in analysis.findings if one.key == "strap_slipped"]
+    assert finding.where == f"{WALK}, right_shank"
+    assert finding.numbers["from_s"] == pytest.approx(SLIP_S, abs=5.0)
+    walk = next(recording for recording in analysis.recordings if recording.name == WALK)
+    right, left = walk.gait[Side.RIGHT].strides, walk.gait[Side.LEFT].strides
+    assert right.is_used.sum() > 5
+    assert right.end_s[right.is_used].max() <= finding.numbers["from_s"]
+    assert Reason.SLIPPED in right.reason
+    assert Reason.SLIPPED not in left.reason
+
+
+def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
+    session = slipped(soft.session, Site.LEFT_FOOT, np.deg2rad(25.0))
+    standing, free_motion, walk = session.recordings
+    late = {site: part_of(block, 25.0, 45.0) for site, block in walk.imu.items()}
+    early = {site: part_of(block, 0.0, 25.0) for site, block in walk.imu.items()}
+    walks = (replace(walk, imu=early), replace(walk, name="walk 2", folder="walk_2", imu=late))
+    analysis = analyse(replace(session, recordings=(standing, free_motion, *walks)))
+    assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == [f"{WALK}, left_foot"]
+    second = next(recording for recording in analysis.recordings if recording.name == "walk 2")
+    assert not second.gait[Side.LEFT].strides.is_used.any()
+    assert second.gait[Side.RIGHT].strides.is_used.any()
+
+
+def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
+    keep = (block.time_s >= from_s) & (block.time_s < to_s)
+    return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])
