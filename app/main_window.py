@@ -56,7 +56,6 @@ _log = logging.getLogger(__name__)
 FIRST_SIZE = (1280, 800)
 FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
-COMPACT_BELOW = (1180, 720)
 NARROW_BELOW = 800
 BAR = 72
 DROP_EDGE = 2.5
@@ -199,7 +198,7 @@ class MainWindow(QWidget):
         elif page is self.empty:
             self.empty.open_folder.setFocus()
         elif self._results is not None:
-            self._results.methods.focus()
+            self._results.focus()
         self._fit()
 
     def _fit(self) -> None:
@@ -210,7 +209,7 @@ class MainWindow(QWidget):
         self.empty.set_narrow(is_narrow)
         self.bar.set_narrow(is_narrow)
         if self._results is not None:
-            self._results.set_room(width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1], is_narrow)
+            self._results.set_room(width, height)
 
     def _open_dropped(self, urls: list[QUrl]) -> None:
         paths = [Path(url.toLocalFile()) for url in urls if url.isLocalFile()]
@@ -299,12 +298,12 @@ class _ActionBar(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.open_folder = Button(look, "Open a session folder", Kind.SECONDARY, Icon.FOLDER, "Ctrl O")
         self.open_demonstration = Button(look, "Open the demonstration", Kind.QUIET, Icon.PLAY, "Ctrl D")
-        self._purpose = Text(look, "Research use. Not a medical device.", size=12, tone="ink2")
+        self._purpose = Text(look, "Research use. Not a medical device.", size=12, tone="ink2", wraps=True)
+        self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.open_folder)
         self._row.addWidget(self.open_demonstration)
-        self._row.addStretch(1)
-        self._row.addWidget(self._purpose)
+        self._row.addWidget(self._purpose, 1)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 

@@ -21,7 +21,8 @@ CARD_RADIUS = 10
 
 @dataclass(frozen=True, slots=True)
 class Colours:
-    """The tokens of one scheme. `left_*` and `right_*` belong to the legs, `caution_*` to what needs a look."""
+    """The tokens of one scheme. `left_*` and `right_*` belong to the legs, `caution_*` to what needs a look,
+    `band_*` to the reference group."""
 
     ground: str
     surface: str
@@ -47,6 +48,8 @@ class Colours:
     right_text: str
     right_pale: str
     right_soft: str
+    band_1sd: str
+    band_2sd: str
     disabled: str
 
 
@@ -75,6 +78,8 @@ LIGHT = Colours(
     right_text="#00629A",
     right_pale="#E0EEF7",
     right_soft="#A3CCE5",
+    band_1sd="#C3CBD3",
+    band_2sd="#E3E8EC",
     disabled="#9AA6B1",
 )
 
@@ -103,6 +108,8 @@ DARK = Colours(
     right_text="#67B6EC",
     right_pale="#11293A",
     right_soft="#1D5275",
+    band_1sd="#414D58",
+    band_2sd="#29333C",
     disabled="#5F6D79",
 )
 
@@ -138,9 +145,12 @@ class Theme:
     def text(self, side: Side) -> QColor:
         return QColor(self.colours.left_text if side is Side.LEFT else self.colours.right_text)
 
+    def soft(self, side: Side) -> QColor:
+        return QColor(self.colours.left_soft if side is Side.LEFT else self.colours.right_soft)
+
     def band(self, side: Side) -> QColor:
         """Give the fill of a band of certainty, clear enough for the other leg's band to show through."""
-        colour = QColor(self.colours.left_soft if side is Side.LEFT else self.colours.right_soft)
+        colour = self.soft(side)
         colour.setAlphaF(0.55 if self.is_dark else 0.45)
         return colour
 

@@ -6,24 +6,25 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QPainter, QPainterPath, QPolygonF
+from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
+from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
 from app.theme import Look
 from core.body import Side
 from core.samples import FloatArray
 
-LEAST_SIZE = (320, 100)  # what can just be read; the page gives more where it has more
-AXIS_WIDTH = 40  # fixed, so that charts above one another align
-AXIS_HEIGHT = 24
+LEAST_SIZE = (320, 88)  # what can just be read; the page gives more where it has more
+AXIS_HEIGHT, BARE_AXIS_HEIGHT = 24, 6
 CURVE_PX = 2.0
 HAIR_PX = 1.0
 DENSE_FROM = 3.0  # samples per column from which on wide, smooth lines take seconds and show no more than hairlines
+DASHED_UP_TO = 15.0  # samples per column; beyond, a swing is too narrow for its dashes, which would take seconds
+BAND_PIECE = 32  # points of a dense band that are filled at a time
 SECOND_PX = 1.0  # the thin curve of another method beside the result
 TICK_DEG = 20
 SHORTEST_VIEW_S = 0.2
-WIDEN_TO_DEG = 10  # a range that is left is widened to the next full ten
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,13 +39,16 @@ class Curve:
 class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
     """Axes that stay `lowest_deg` to `highest_deg` unless a curve leaves them.
 
+    Above another chart on the same time, `has_times` is False: its times would say the same twice.
+
     It is put together from its parts, because a `PlotItem` brings menus and forty controls that nobody would see.
     """
 
     view_moved = Signal()
 
-    def __init__(self, look: Look, lowest_deg: float, highest_deg: float) -> None:
+    def __init__(self, look: Look, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
         super().__init__(useOpenGL=False)
+        self._has_times = has_times
         self._look = look
         self._fixed = (lowest_deg, highest_deg)
         self.range_deg = self._fixed
@@ -73,12 +77,14 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         for item in (self._zero, *self._items.values(), self._cursor):
             self._view.addItem(item, ignoreBounds=True)
         self._view.sigXRangeChanged.connect(self._on_x_range_changed)
+        self._view.sigResized.connect(self._redraw)  # no finer than the screen: its width has changed
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+        less = 0 if self._has_times else AXIS_HEIGHT - BARE_AXIS_HEIGHT
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1] - less))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
@@ -103,7 +109,8 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
     def show_curves(self, time_s: FloatArray, curves: Mapping[Side, Curve]) -> None:
         """Draw `curves` over `time_s`, and widen the axis where they leave it."""
         self._time_s, self.curves = time_s, curves
-        self.range_deg = self._range_for(curves)
+        drawn = [values for curve in curves.values() for values in (curve.angle_deg, curve.second_deg)]
+        self.range_deg = range_for(self._fixed, [values for values in drawn if values is not None])
         self._view.setYRange(*self.range_deg, padding=0)
         first, last = self.whole_s
         self._view.setLimits(xMin=first, xMax=last, minXRange=SHORTEST_VIEW_S)
@@ -135,15 +142,6 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         item = self._items[side]
         return item.time_s, item.angle_deg
 
-    def _range_for(self, curves: Mapping[Side, Curve]) -> tuple[float, float]:
-        lowest, highest = self._fixed
-        for curve in curves.values():
-            for values in (curve.angle_deg, curve.second_deg):
-                if values is not None and np.isfinite(values).any():
-                    lowest = min(lowest, WIDEN_TO_DEG * np.floor(np.nanmin(values) / WIDEN_TO_DEG))
-                    highest = max(highest, WIDEN_TO_DEG * np.ceil(np.nanmax(values) / WIDEN_TO_DEG))
-        return float(lowest), float(highest)
-
     def _redraw(self) -> None:
         """Hand the items what is in sight, no finer than the screen."""
         first, last = np.searchsorted(self._time_s, self.visible_s)
@@ -161,12 +159,13 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         c = theme.colours
         self.setBackground(c.surface)
         self._angle_axis.setWidth(theme.px(AXIS_WIDTH))
-        self._time_axis.setHeight(theme.px(AXIS_HEIGHT))
+        self._time_axis.setHeight(theme.px(AXIS_HEIGHT if self._has_times else BARE_AXIS_HEIGHT))
+        self._time_axis.setStyle(showValues=self._has_times)
         for axis in (self._angle_axis, self._time_axis):
             axis.setPen(theme.pen(c.control, 1))
             axis.setTextPen(QColor(c.ink2))
             axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
-        self._layout.setContentsMargins(0, theme.px(6), theme.px(16), 0)
+        self._layout.setContentsMargins(0, theme.px(6), theme.px(RIGHT_MARGIN), 0)
         self._zero.setPen(pg.mkPen(c.control, width=1))
         self._cursor.setPen(pg.mkPen(c.ink, width=1))
         for item in self._items.values():
@@ -198,17 +197,19 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self.angle_deg: FloatArray = np.zeros(0)
         self._line = QPainterPath()
         self._second = QPainterPath()
-        self._band = QPainterPath()
+        self._bands: list[QPainterPath] = []
         self._bounds = QRectF()
         self._is_dense = False
+        self._is_dashed = True
         # moving the cursor over it must not paint thousands of dashes again
         self.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)
 
     def setData(self, time_s: FloatArray, curve: Curve | None, part: slice, columns: int) -> None:
         self.prepareGeometryChange()
-        self._line, self._second, self._band = QPainterPath(), QPainterPath(), QPainterPath()
+        self._line, self._second, self._bands = QPainterPath(), QPainterPath(), []
         self.time_s, self.angle_deg = np.zeros(0), np.zeros(0)
         self._is_dense = len(time_s) > DENSE_FROM * columns
+        self._is_dashed = len(time_s) <= DASHED_UP_TO * columns
         if curve is not None:
             self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], columns)
             self._line = _line_path(self.time_s, self.angle_deg)
@@ -216,9 +217,11 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
                 self._second = _line_path(*thin(time_s, curve.second_deg[part], columns))
             if curve.sd_deg is not None:
                 angle_deg, reach_deg = curve.angle_deg[part], 2 * curve.sd_deg[part]
-                self._band = _band_path(*envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, columns))
-        paths = (self._line, self._second, self._band)
-        self._bounds = paths[0].boundingRect().united(paths[1].boundingRect()).united(paths[2].boundingRect())
+                band = envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, columns)
+                self._bands = _band_paths(*band, BAND_PIECE if self._is_dense else len(time_s))
+        self._bounds = QRectF()
+        for path in (self._line, self._second, *self._bands):
+            self._bounds = self._bounds.united(path.boundingRect())
         self.update()
 
     def boundingRect(self) -> QRectF:
@@ -233,9 +236,17 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
     def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, _widget: QWidget | None = None) -> None:
         theme = self._look.theme
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_dense)
-        painter.fillPath(self._band, theme.band(self._side))
-        painter.strokePath(self._second, theme.side_pen(self._side, SECOND_PX))
-        painter.strokePath(self._line, theme.side_pen(self._side, CURVE_PX if not self._is_dense else HAIR_PX))
+        for band in self._bands:
+            painter.fillPath(band, theme.band(self._side))
+        painter.strokePath(self._second, self._pen(SECOND_PX))
+        painter.strokePath(self._line, self._pen(CURVE_PX if not self._is_dense else HAIR_PX))
+
+    def _pen(self, width: float) -> QPen:
+        pen = self._look.theme.side_pen(self._side, width)
+        if not self._is_dashed:
+            pen.setStyle(Qt.PenStyle.SolidLine)
+            pen.setWidthF(0)
+        return pen
 
 
 def _runs(values: FloatArray) -> list[slice]:
@@ -256,10 +267,15 @@ def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
     return path
 
 
-def _band_path(time_s: FloatArray, low: FloatArray, high: FloatArray) -> QPainterPath:
-    path = QPainterPath()
+def _band_paths(time_s: FloatArray, low: FloatArray, high: FloatArray, most: int) -> list[QPainterPath]:
+    """Give the band in pieces of at most `most` points: the time to fill one grows with the square of its points."""
+    paths = []
     for run in _runs(low):
-        x = np.concatenate([time_s[run], time_s[run][::-1]])
-        path.addPolygon(_polygon(x, np.concatenate([low[run], high[run][::-1]])))
-        path.closeSubpath()
-    return path
+        for first in range(run.start, max(run.stop - 1, run.start + 1), max(most, 1)):
+            part = slice(first, min(first + most + 1, run.stop))  # pieces meet on one point
+            path = QPainterPath()
+            x = np.concatenate([time_s[part], time_s[part][::-1]])
+            path.addPolygon(_polygon(x, np.concatenate([low[part], high[part][::-1]])))
+            path.closeSubpath()
+            paths.append(path)
+    return paths

@@ -8,18 +8,20 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.plots.angle_chart import AngleChart, Curve
+from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
+from app.plots.phase_lanes import PhaseFrame
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from core.body import Joint, Side, ankle_of, knee_of
-from core.samples import FloatArray
+from core.results import SideGait
+from core.samples import FloatArray, IntArray
 
-KNEE_DEG = (-10.0, 80.0)
-ANKLE_DEG = (-30.0, 30.0)
 ZOOM = 0.6  # what one press of + leaves of the time in sight
 NO_VALUE = "no value"
+NO_GAIT: Mapping[Side, SideGait] = {}
 
 
 class JointCharts(QWidget):
@@ -36,14 +38,23 @@ class JointCharts(QWidget):
         self._time_s: FloatArray = np.zeros(0)
         self._cursor_s: float | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.knee = ChartFrame(look, "Knee", "flexion + (°)", AngleChart(look, *KNEE_DEG), tells_time=True)
+        self.knee = ChartFrame(
+            look, "Knee", "flexion + (°)", AngleChart(look, *KNEE_DEG, has_times=False), tells_time=True
+        )
         self.ankle = ChartFrame(look, "Ankle", "dorsiflexion + (°)", AngleChart(look, *ANKLE_DEG))
         self._frames = (self.knee, self.ankle)
+        self.phases = PhaseFrame(look)
+        self._event_rows: IntArray = np.zeros(0, dtype=np.int64)
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         for frame in self._frames:
             self._column.addWidget(frame, 1)
             frame.chart.scene().sigMouseMoved.connect(self._on_mouse_moved)
+        self._column.addWidget(self.phases)
+        self.phases.hide()
+        self.phases.lanes.pointed.connect(self._read_at)
+        self.phases.lanes.zoomed.connect(self.zoom)
+        self.phases.lanes.dragged.connect(self.go_on)
         self.ankle.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
         look.changed.connect(self._on_look_changed)
@@ -59,9 +70,22 @@ class JointCharts(QWidget):
         shown = self.visible_s
         return bool(np.allclose(shown, (first, last), atol=1e-3 * (last - first)))
 
-    def show_recording(self, name: str, time_s: FloatArray, is_simulated: bool) -> None:
-        """Make the charts ready for another recording, all of it in sight; `show_joints` then draws."""
+    def show_recording(
+        self, name: str, time_s: FloatArray, is_simulated: bool, gait: Mapping[Side, SideGait] = NO_GAIT
+    ) -> None:
+        """Make the charts ready for another recording, all of it in sight; `show_joints` then draws.
+
+        Parameters
+        ----------
+        time_s : (n,)
+            The recording's clock.
+        gait
+            Of the legs that walked, whose phases stand under the curves.
+        """
         self._time_s = time_s
+        self.phases.show_gait(time_s, gait, is_simulated)
+        rows = [row for lane in self.phases.lanes.lanes.values() for row in lane.event_rows]
+        self._event_rows = np.unique(np.array(rows, dtype=np.int64))
         self.setAccessibleName(f"Knee and ankle angles of {name}")
         for frame in self._frames:
             frame.set_simulated(is_simulated)
@@ -73,7 +97,8 @@ class JointCharts(QWidget):
         """Draw the joints' curves, all on the time of `show_recording`; the stretch in sight stays."""
         for frame, joint_of in ((self.knee, knee_of), (self.ankle, ankle_of)):
             frame.show_curves(self._time_s, {side: curves[joint_of(side)] for side in Side if joint_of(side) in curves})
-        self.setAccessibleDescription(" ".join(frame.in_words() for frame in self._frames))
+        told = [*(frame.in_words() for frame in self._frames), self.phases.in_words()]
+        self.setAccessibleDescription(" ".join(filter(None, told)))
         self._read_at(self._cursor_s)
 
     def show_whole(self) -> None:
@@ -94,6 +119,18 @@ class JointCharts(QWidget):
         step = min(max(share * (last - first), whole[0] - first), whole[1] - last)
         self._see(first + step, last + step)
 
+    def go_to_event(self, is_later: bool) -> None:
+        """Put the reading line on the next contact or toe-off of either foot, earlier or later."""
+        if not len(self._event_rows):
+            return
+        first, last = self.visible_s
+        at = self._cursor_s if self._cursor_s is not None else (first if is_later else last)
+        here = int(np.argmin(np.abs(self._time_s - at)))
+        passed = int(np.searchsorted(self._event_rows, here, side="right" if is_later else "left"))
+        following = passed if is_later else passed - 1
+        if 0 <= following < len(self._event_rows):
+            self._go_to(int(self._event_rows[following]))
+
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
             super().keyPressEvent(event)
@@ -112,6 +149,8 @@ class JointCharts(QWidget):
             case Qt.Key.Key_Left | Qt.Key.Key_Right:
                 pixels = 10 if event.modifiers() & Qt.KeyboardModifier.ShiftModifier else 1
                 self._step(pixels if event.key() == Qt.Key.Key_Right else -pixels)
+            case Qt.Key.Key_BracketLeft | Qt.Key.Key_BracketRight:
+                self.go_to_event(is_later=event.key() == Qt.Key.Key_BracketRight)
             case _:
                 super().keyPressEvent(event)
 
@@ -125,12 +164,17 @@ class JointCharts(QWidget):
         there = int(np.searchsorted(self._time_s, at + pixels * (last - first) / max(self.knee.chart.width(), 1)))
         if there == here:
             there += 1 if pixels > 0 else -1
-        self._read_at(float(self._time_s[min(max(there, 0), len(self._time_s) - 1)]))
-        assert self._cursor_s is not None
-        if not first <= self._cursor_s <= last:
-            self.go_on(0.5 if self._cursor_s > last else -0.5)
-        said = " ".join(frame.reading_in_words() for frame in self._frames)
-        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, f"{self._cursor_s:.2f} s. {said}"))
+        self._go_to(min(max(there, 0), len(self._time_s) - 1))
+
+    def _go_to(self, row: int) -> None:
+        """Read sample `row`, bring it in sight and say what stands there."""
+        time_s = float(self._time_s[row])
+        self._read_at(time_s)
+        first, last = self.visible_s
+        if not first <= time_s <= last:
+            self.go_on((time_s - (first + last) / 2) / (last - first))
+        said = " ".join(frame.reading_in_words() for frame in (*self._frames, self.phases))
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, f"{time_s:.2f} s. {said}".strip()))
 
     def _see(self, first_s: float, last_s: float) -> None:
         first, last = self.knee.chart.whole_s
@@ -143,7 +187,7 @@ class JointCharts(QWidget):
             row = int(np.argmin(np.abs(self._time_s - time_s)))
             time_s = float(self._time_s[row])
         self._cursor_s = time_s
-        for frame in self._frames:
+        for frame in (*self._frames, self.phases):
             frame.read(row, time_s)
 
     def _on_mouse_moved(self, position: QPointF) -> None:
@@ -155,6 +199,7 @@ class JointCharts(QWidget):
 
     def _on_view_moved(self) -> None:
         first, last = self.visible_s
+        self.phases.lanes.see(first, last)
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
         shown = f"{first:.1f} to {last:.1f} s of {length:.1f} s".replace("-", "\N{MINUS SIGN}")
         self.view_changed.emit(self.is_whole, f"Whole recording, {length:.1f} s" if self.is_whole else shown)
@@ -240,7 +285,7 @@ class ChartFrame(Card):
             part = f"{side.capitalize()} {self._name.lower()}"
             if np.isfinite(curve.angle_deg).any():
                 lowest, highest = np.nanmin(curve.angle_deg), np.nanmax(curve.angle_deg)
-                said.append(f"{part} from {_degrees(lowest)} to {_degrees(highest)}.")
+                said.append(f"{part} from {degrees_in_words(lowest)} to {degrees_in_words(highest)}.")
             else:
                 said.append(f"{part} has no values.")
         return " ".join(said) or f"No {self._name.lower()} angles."
@@ -264,7 +309,7 @@ class ChartFrame(Card):
 
     def _set_widened(self) -> None:
         lowest, highest = self.chart.range_deg
-        self._wide.setText(f"Axis widened: {_degrees(lowest, 0)} to {_degrees(highest, 0)}")
+        self._wide.setText(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}")
         self._wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
 
@@ -277,11 +322,7 @@ def _reading(curve: Curve, row: int) -> str:
     angle = curve.angle_deg[row]
     if not np.isfinite(angle):
         return NO_VALUE
-    said = _degrees(angle)
+    said = degrees_in_words(angle)
     if curve.sd_deg is not None and np.isfinite(curve.sd_deg[row]):
         said += f" ± {2 * curve.sd_deg[row]:.1f}°"
     return said
-
-
-def _degrees(value: float | np.floating, decimals: int = 1) -> str:
-    return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")

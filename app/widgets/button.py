@@ -45,6 +45,10 @@ class Button(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         look.changed.connect(self._on_look_changed)
 
+    @property
+    def key(self) -> str:
+        return self._key
+
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
         widths = [width for width in (self._icon_width(), self._text_width(), self._key_width()) if width]

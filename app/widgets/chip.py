@@ -37,6 +37,31 @@ def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> Non
     painter.restore()
 
 
+class Chip(QWidget):
+    """The chip alone, before words about that leg."""
+
+    def __init__(self, look: Look, side: Side) -> None:
+        super().__init__()
+        self._look, self._side = look, side
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(f"{side} leg")
+        look.changed.connect(self._on_look_changed)
+
+    def sizeHint(self) -> QSize:
+        chip = self._look.theme.px(CHIP)
+        return QSize(chip, chip)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        paint_chip(QPainter(self), QRectF(self.rect()), self._side, self._look.theme)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
 class SideKey(QWidget):
     """Chip and line of one leg: the key to the curves."""
 

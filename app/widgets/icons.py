@@ -19,6 +19,7 @@ class Icon(StrEnum):
     CLOSE = "close"
     WHOLE = "whole"
     CHECK = "check"
+    UNCHECKED = "unchecked"
     INFO = "info"
     WARNING = "warning"
     GRAVE = "grave"
@@ -109,6 +110,10 @@ def _check(painter: QPainter, _ink: QColor) -> None:
     _lines(painter, (5, 12.5), (10, 17.5), (19, 7))
 
 
+def _unchecked(painter: QPainter, _ink: QColor) -> None:
+    painter.drawEllipse(QPointF(12, 12), 7, 7)
+
+
 def _info(painter: QPainter, _ink: QColor) -> None:
     painter.drawEllipse(QPointF(12, 12), 9, 9)
     _lines(painter, (12, 11), (12, 16.5))
@@ -140,6 +145,7 @@ _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.CLOSE: _close,
     Icon.WHOLE: _whole,
     Icon.CHECK: _check,
+    Icon.UNCHECKED: _unchecked,
     Icon.INFO: _info,
     Icon.WARNING: _warning,
     Icon.GRAVE: _grave,

@@ -1,9 +1,11 @@
-"""What came of one session: curves at the left, how they were found and what was noticed beside them."""
+"""What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
 
 from collections.abc import Mapping
 
 import numpy as np
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QKeySequence, QShortcut
+from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
@@ -11,18 +13,25 @@ from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
+from app.widgets.cycle_page import CyclePage
 from app.widgets.facts_table import FactsTable
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.toggle import Toggle
 from core.body import Joint
 from core.results import Analysis, JointAngle, JointCalibration, RecordingAnalysis
 from core.samples import RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
-CURVES, FACTS = "curves", "facts"
+MEAN, WHOLE, FIGURES, FACTS = "mean", "whole", "figures", "facts"  # the views; the last two only where room is short
+WALK = "Whole walk"
+
+COMPACT_BELOW = (1272, 720)  # what the charts and both tables of a mean cycle need side by side
+NARROW_BELOW = 940  # what both tables need without the charts
+TWO_CHARTS_FROM = 680
 
 HINTS = {
     RESULT: "Band: ± 2 SD.",
@@ -31,6 +40,7 @@ HINTS = {
     BOTH: "Bold: the result, with a band of ± 2 SD. Thin: the published method.",
 }
 KEYS = "Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read."
+EVENT_KEYS = "[ ] go from contact to toe-off."
 
 
 class ResultPage(QWidget):
@@ -40,6 +50,14 @@ class ResultPage(QWidget):
         self._analysis: Analysis | None = None
         self._is_compact = False
         self._is_narrow = False
+        self._has_two_charts = False
+        self._wanted = MEAN  # of a walk; kept while recordings without it are looked at
+        self.view = Segmented(
+            look,
+            "View",
+            [(MEAN, "Mean cycle", ""), (WHOLE, WALK, ""), (FIGURES, "Figures", ""), (FACTS, "Findings", "")],
+        )
+        self.recordings = Choice(look, "Recording")
         self.methods = Segmented(
             look,
             "Method",
@@ -50,8 +68,9 @@ class ResultPage(QWidget):
                 (BOTH, "Both", "result and published"),
             ],
         )
-        self.recordings = Choice(look, "Recording")
-        self.part = Segmented(look, "Part of the page", [(CURVES, "Curves", ""), (FACTS, "Joints, findings", "")])
+        self.single_strides = Toggle(look, "Single strides", "S", is_on=False)
+        self.band = Toggle(look, "Band", "B", is_on=True)
+        self.cycles = CyclePage(look)
         self.charts = JointCharts(look)
         self.shown = Text(look, size=14, tone="ink2")
         self.whole = Button(look, "Whole recording", Kind.QUIET, Icon.WHOLE, "Home", height=44)
@@ -59,12 +78,7 @@ class ResultPage(QWidget):
         self.facts = FactsTable(look)
         self.findings = FindingsList(look)
         self._build()
-        self.methods.chosen.connect(self._on_method_chosen)
-        self.recordings.currentIndexChanged.connect(self._on_recording_changed)
-        self.part.chosen.connect(self._on_part_chosen)
-        self.charts.view_changed.connect(self._on_view_changed)
-        self.whole.clicked.connect(self.charts.show_whole)
-        look.changed.connect(self._on_look_changed)
+        self._connect()
         self._on_look_changed()
 
     def show_analysis(self, analysis: Analysis) -> None:
@@ -82,11 +96,20 @@ class ResultPage(QWidget):
         self.findings.show_findings(analysis.findings)
         self._on_recording_changed()
 
-    def set_room(self, is_compact: bool, is_narrow: bool) -> None:
-        """Fold curves and facts into two tabs where there is little room, and the controls into two rows."""
-        if (is_compact, is_narrow) != (self._is_compact, self._is_narrow):
-            self._is_compact, self._is_narrow = is_compact, is_narrow
+    def set_room(self, width: float, height: float) -> None:
+        """Fold the page as far as the window, in px of the design, asks for it.
+
+        Where there is little room curves, figures and findings are tabs, and the controls take two rows.
+        """
+        is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
+        room = is_compact, width < NARROW_BELOW, is_compact and width >= TWO_CHARTS_FROM
+        if room != (self._is_compact, self._is_narrow, self._has_two_charts):
+            self._is_compact, self._is_narrow, self._has_two_charts = room
             self._place()
+
+    def focus(self) -> None:
+        """Give the focus to the first choice of the page."""
+        (self.methods if self.view.isHidden() else self.view).focus()
 
     @property
     def recording(self) -> RecordingAnalysis | None:
@@ -98,38 +121,45 @@ class ResultPage(QWidget):
     @property
     def tab_order(self) -> list[QWidget]:
         """What takes the focus, in the order of reading."""
-        beside = [self.charts, self.whole, self.facts, self.findings]
-        return [*self.methods.segments, self.recordings, *self.part.segments, *beside]
+        choices = [*self.view.segments, self.recordings, self.single_strides, self.band, *self.methods.segments]
+        return [*choices, self.charts, self.whole, *self.cycles.tables, self.facts, self.findings]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
+        self._toggles = QWidget()
+        toggles = QHBoxLayout(self._toggles)
+        toggles.setContentsMargins(0, 0, 0, 0)
+        toggles.addWidget(self.single_strides)
+        toggles.addWidget(self.band)
         self._curves = QWidget()
-        self._beside = QWidget()
         left = QVBoxLayout(self._curves)
         left.setContentsMargins(0, 0, 0, 0)
         left.addWidget(self.charts, 1)
-        self._foot = QHBoxLayout()
-        notes = QVBoxLayout()
+        self._notes = QWidget()
+        notes = QVBoxLayout(self._notes)
+        notes.setContentsMargins(0, 0, 0, 0)
         notes.setSpacing(2)
         notes.addWidget(self.shown)
         notes.addWidget(self.hint)
-        self._foot.addLayout(notes, 1)
-        self._foot.addWidget(self.whole)
+        self._foot = QGridLayout()
+        self._foot.setColumnStretch(0, 1)
         left.addLayout(self._foot)
+        self._beside = QWidget()
         self._right = QVBoxLayout(self._beside)
         self._right.setContentsMargins(0, 0, 0, 0)
-        facts = Card(self._look)
-        facts.column.addWidget(Text(self._look, "Joints", size=16, weight=SEMIBOLD))
-        facts.column.addWidget(self.facts)
-        facts.column.addStretch(1)
-        self._right.addWidget(facts)
-        findings = Card(self._look)
-        findings.column.addWidget(Text(self._look, "Findings", size=16, weight=SEMIBOLD))
-        findings.column.addWidget(self.findings, 1)
-        self._right.addWidget(findings, 1)
+        self._joints = Card(self._look)
+        self._joints.column.addWidget(Text(self._look, "Joints", size=16, weight=SEMIBOLD))
+        self._joints.column.addWidget(self.facts)
+        self._joints.column.addStretch(1)
+        self._noticed = Card(self._look)
+        self._noticed.column.addWidget(Text(self._look, "Findings", size=16, weight=SEMIBOLD))
+        self._noticed.column.addWidget(self.findings, 1)
+        self._right.addWidget(self.cycles.time_distance)
+        self._right.addWidget(self._joints)
+        self._right.addWidget(self._noticed, 1)
         self._columns = QHBoxLayout()
-        self._columns.addWidget(self._curves, 1)
-        self._columns.addWidget(self._beside)
+        for widget, share in ((self._curves, 1), (self.cycles, 2), (self.cycles.peaks, 0), (self._beside, 0)):
+            self._columns.addWidget(widget, share)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
         self._page.addLayout(self._columns, 1)
@@ -138,27 +168,93 @@ class ResultPage(QWidget):
         self.whole.setSizePolicy(policy)
         self._place()
 
+    def _connect(self) -> None:
+        self.view.chosen.connect(self._on_view_chosen)
+        self.methods.chosen.connect(self._on_method_chosen)
+        self.recordings.currentIndexChanged.connect(self._on_recording_changed)
+        self.charts.view_changed.connect(self._on_view_changed)
+        self.whole.clicked.connect(self.charts.show_whole)
+        for toggle, slot in (
+            (self.single_strides, self.cycles.charts.set_strides_shown),
+            (self.band, self.cycles.charts.set_band_shown),
+        ):
+            toggle.toggled.connect(slot)
+            shortcut = QShortcut(QKeySequence(toggle.key), toggle)  # asleep while its toggle is hidden
+            shortcut.activated.connect(toggle.toggle)
+        self._look.changed.connect(self._on_look_changed)
+
     def _place(self) -> None:
-        for widget in (self.methods, self.recordings, self.part):
+        """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
+        for widget in (self.view, self.recordings, self.methods, self._toggles):
             self._controls.removeWidget(widget)
-        row, column = (1, 0) if self._is_narrow else (0, 1)
-        self._controls.addWidget(self.methods, 0, 0, 1, 2 if self._is_narrow else 1)
-        self._controls.addWidget(self.recordings, row, column)
-        self._controls.addWidget(self.part, row, column + 1)
-        for i in range(4):
-            self._controls.setColumnStretch(i, 1 if i == 3 else 0)
-        is_side_by_side = self._is_compact and not self._is_narrow
-        way = QHBoxLayout.Direction.LeftToRight if is_side_by_side else QHBoxLayout.Direction.TopToBottom
-        self._right.setDirection(way)
-        self.part.setVisible(self._is_compact)
-        self._on_part_chosen()
+        for widget in (self._notes, self.methods, self.whole):
+            self._foot.removeWidget(widget)
+        left = Qt.AlignmentFlag.AlignLeft
+        self._controls.addWidget(self.view, 0, 0)
+        self._controls.addWidget(self.recordings, 0, 1)
+        self._controls.setColumnStretch(3, 1)
+        if self._is_narrow:
+            self._controls.addWidget(self._toggles, 1, 0, 1, 4, left)
+            self._foot.addWidget(self.methods, 0, 0, left)
+            self._foot.addWidget(self.whole, 1, 0, left)
+            self._foot.addWidget(self._notes, 2, 0)
+        elif self._is_compact:
+            self._controls.addWidget(self._toggles, 0, 2)
+            self._foot.addWidget(self.methods, 0, 0, left)
+            self._foot.addWidget(self.whole, 0, 1)
+            self._foot.addWidget(self._notes, 1, 0, 1, 2)
+        else:
+            self._controls.addWidget(self._toggles, 0, 2)
+            self._controls.addWidget(self.methods, 0, 2)
+            self._foot.addWidget(self._notes, 0, 0)
+            self._foot.addWidget(self.whole, 0, 1)
         for frame in (self.charts.knee, self.charts.ankle):
             frame.set_narrow(self._is_narrow)
+        self.charts.phases.set_narrow(self._is_narrow or not self._is_compact)  # facts beside it leave it less room
+        self.cycles.set_room(self._is_compact, self._has_two_charts)
+        self._offer()
 
-    def _on_part_chosen(self) -> None:
-        is_facts = self.part.choice == FACTS
-        self._curves.setVisible(not (self._is_compact and is_facts))
-        self._beside.setVisible(not self._is_compact or is_facts)
+    def _offer(self) -> None:
+        """Offer the views that this recording and this room have."""
+        recording = self.recording
+        is_walk = recording is not None and recording.kind is RecordingKind.WALKING
+        has_strides = recording is not None and any(len(gait.strides) for gait in recording.gait.values())
+        self.view.blockSignals(True)
+        self.view.set_word(WHOLE, WALK if is_walk else "Whole recording")
+        self.view.set_offered(MEAN, is_walk)
+        self.view.set_reason(MEAN, "" if has_strides else "no strides")
+        self.view.set_offered(FIGURES, self._is_compact and has_strides)
+        self.view.set_offered(FACTS, self._is_compact)
+        if self.view.choice in (MEAN, WHOLE):
+            self.view.choose(self._wanted if is_walk and has_strides else WHOLE)
+        self.view.blockSignals(False)
+        self.view.setVisible(is_walk or self._is_compact)
+        self._show_parts()
+
+    def _show_parts(self) -> None:
+        """Show what belongs to the view; beside the curves only where there is room."""
+        view, is_wide = self.view.choice, not self._is_compact
+        has_figures = view == FIGURES or (view == MEAN and is_wide)
+        self.methods.setVisible(view == WHOLE)
+        self._toggles.setVisible(view == MEAN)
+        self._curves.setVisible(view == WHOLE)
+        self.cycles.setVisible(view == MEAN)
+        self.cycles.peaks.setVisible(has_figures)
+        self.cycles.time_distance.setVisible(has_figures)
+        self._joints.setVisible(view == FACTS or (view == WHOLE and is_wide))
+        self._noticed.setVisible(view == FACTS or is_wide)
+        self._beside.setVisible(is_wide or view in (FIGURES, FACTS))
+        is_row = view == FACTS and not self._is_narrow
+        self._right.setDirection(QBoxLayout.Direction.LeftToRight if is_row else QBoxLayout.Direction.TopToBottom)
+        is_stack = view == FIGURES and self._is_narrow
+        self._columns.setDirection(QBoxLayout.Direction.TopToBottom if is_stack else QBoxLayout.Direction.LeftToRight)
+        self._right.activate()
+        self._page.activate()  # now, else the charts would be painted once too small and once right
+
+    def _on_view_chosen(self) -> None:
+        if self.view.choice in (MEAN, WHOLE) and self.view.segments[0].isEnabled():
+            self._wanted = self.view.choice
+        self._show_parts()
 
     def _on_recording_changed(self) -> None:
         recording = self.recording
@@ -166,12 +262,16 @@ class ResultPage(QWidget):
         if recording is None or self._analysis is None:
             self.charts.show_recording("no recording", np.zeros(0), is_simulated=False)
             self.facts.show_joints({})
+            self._offer()
             return
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
         self.methods.set_reason(ORIENTATION, "" if has_orientation else "no magnetometer")
-        self.charts.show_recording(recording.name, recording.time_s, self._analysis.is_simulated)
-        self.facts.show_joints(_in_force(self._analysis, recording))
+        calibrated, is_simulated = _in_force(self._analysis, recording), self._analysis.is_simulated
+        self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
+        self.cycles.show_walk(recording, calibrated, is_simulated)
+        self.facts.show_joints(calibrated)
         self._on_method_chosen()
+        self._offer()
 
     def _on_method_chosen(self) -> None:
         recording = self.recording
@@ -180,7 +280,7 @@ class ResultPage(QWidget):
         method = self.methods.choice
         curves = {joint: curve for joint, angle in recording.joints.items() if (curve := _curve(angle, method))}
         self.charts.show_joints(curves)
-        self.hint.setText(f"{HINTS[method]} {KEYS}")
+        self.hint.setText(" ".join(filter(None, [HINTS[method], KEYS, EVENT_KEYS if recording.gait else ""])))
 
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)
@@ -190,16 +290,17 @@ class ResultPage(QWidget):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        margin = px(16 if self._is_compact else 24)
+        margin = px(16)
         self._page.setContentsMargins(margin, px(16), margin, px(12))
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(12))
-        self._columns.setSpacing(px(16))
-        for side in (self._curves, self._beside):
+        self._columns.setSpacing(px(12))
+        for side in (self._curves, self._beside, self._toggles):
             layout = side.layout()
             assert layout is not None
             layout.setSpacing(px(12))
-        self._foot.setSpacing(px(16))
+        self._foot.setHorizontalSpacing(px(16))
+        self._foot.setVerticalSpacing(px(8))
 
 
 def _curve(angle: JointAngle, method: str) -> Curve | None:

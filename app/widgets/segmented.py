@@ -54,8 +54,15 @@ class Segmented(QWidget):
     def set_reason(self, key: str, reason: str) -> None:
         """Switch a choice off and say why in its second line; an empty reason switches it on again."""
         self._segments[key].set_reason(reason)
-        if reason and self.choice == key:
-            next(segment for segment in self._segments.values() if segment.isEnabled()).setChecked(True)
+        self._leave(key, bool(reason))
+
+    def set_offered(self, key: str, is_offered: bool) -> None:
+        """Take a choice away where it means nothing, or bring it back."""
+        self._segments[key].setVisible(is_offered)
+        self._leave(key, not is_offered)
+
+    def set_word(self, key: str, word: str) -> None:
+        self._segments[key].set_word(word)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -65,6 +72,12 @@ class Segmented(QWidget):
         painter.setBrush(QColor(theme.colours.sunken))
         radius = CONTROL_RADIUS * theme.scale
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+
+    def _leave(self, key: str, must_leave: bool) -> None:
+        """Go to the first choice that can be chosen, if `key` was chosen and no longer can be."""
+        if must_leave and self.choice == key:
+            open_to = (one for one in self._segments.values() if one.isEnabled() and not one.isHidden())
+            next(open_to).setChecked(True)
 
     def _on_button_toggled(self, button: QAbstractButton, is_checked: bool) -> None:
         if is_checked:
@@ -83,6 +96,11 @@ class _Segment(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self._name()
         look.changed.connect(self._on_look_changed)
+
+    def set_word(self, word: str) -> None:
+        self.setText(word)
+        self._name()
+        self._on_look_changed()
 
     def set_reason(self, reason: str) -> None:
         self._reason = reason

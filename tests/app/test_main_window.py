@@ -20,10 +20,22 @@ from app.main_window import ENDED_EARLY, STOPPED, MainWindow
 from app.plots.angle_chart import AngleChart
 from app.theme import DARK, LIGHT, Look, load_fonts
 from app.widgets.facts_table import FactsTable
+from app.widgets.figures_table import FiguresTable
 from app.widgets.findings_list import FindingRow
-from app.widgets.result_page import BOTH, CURVES, FACTS, ORIENTATION, PUBLISHED, RESULT, ResultPage
+from app.widgets.result_page import (
+    BOTH,
+    FACTS,
+    FIGURES,
+    MEAN,
+    ORIENTATION,
+    PUBLISHED,
+    RESULT,
+    WHOLE,
+    ResultPage,
+)
 from app.workers.background import Report, Stopped, Work
 from app.workers.opening import Opened
+from core.analysis import analyse
 from core.body import Joint, Side
 from core.findings import Finding, Severity
 from core.results import (
@@ -37,6 +49,7 @@ from core.results import (
     ZeroKind,
 )
 from core.samples import FloatArray, Patient, RecordingKind, Session
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 TIME_S = np.arange(600) / 100
 GAP = slice(200, 260)
@@ -452,6 +465,8 @@ def is_cut(widget: QWidget) -> bool:
             need.width() > widget.columnWidth(cell.column()) or need.height() > widget.rowHeight(cell.row())
             for cell, need in needs
         )
+    if isinstance(widget, FiguresTable):
+        return widget.width() < sum(widget.needed_widths()) or widget.height() < widget.minimumSizeHint().height()
     if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
         need = widget.minimumSizeHint()
         return need.width() > widget.width() or need.height() > widget.height()
@@ -464,6 +479,14 @@ def sticks_out(widget: QWidget, window: MainWindow) -> bool:
     return left < 0 or left + widget.width() > window.width()
 
 
+@pytest.fixture(scope="module")
+def walked() -> Opened:
+    """A simulated session whose walk is long enough for a spread."""
+    settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
+    session = simulate(settings).session
+    return Opened(session, analyse(session))
+
+
 @pytest.mark.parametrize(
     ("size", "scale"),
     [
@@ -472,20 +495,35 @@ def sticks_out(widget: QWidget, window: MainWindow) -> bool:
         ((1280, 800), 2.0),
         ((960, 600), 0.8),
         ((960, 600), 1.0),
+        ((800, 560), 1.0),
         ((1920, 1080), 1.0),
         ((1920, 1080), 2.0),
     ],
 )
 def test_every_word_fits(
-    window: MainWindow, results: ResultPage, look: Look, qapp: QApplication, size: tuple[int, int], scale: float
+    qtbot: QtBot,
+    window: MainWindow,
+    open_work: OpenWork,
+    walked: Opened,
+    look: Look,
+    qapp: QApplication,
+    size: tuple[int, int],
+    scale: float,
 ) -> None:
+    open_work(lambda _report: walked)
+    qtbot.waitUntil(lambda: not window.is_working)
+    results = window.results
+    assert results is not None
     window.resize(*size)
     look.set_scale(scale)
     window.banner.tell("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.charts.zoom(0.5)
-    results.charts._read_at(1.0)
-    for page, part in ((results, FACTS), (results, CURVES), (window.empty, CURVES), (window.working, CURVES)):
-        results.part.choose(part)
+    results.charts._read_at(4.0)
+    pages: list[tuple[QWidget, str]] = [(results, view) for view in (MEAN, WHOLE, FIGURES, FACTS)]
+    for page, view in (*pages, (window.empty, MEAN), (window.working, MEAN)):
+        if results.view._segments[view].isHidden():
+            continue
+        results.view.choose(view)
         window._show_page(page)
         for _ in range(3):  # what wraps settles its height in a second round
             qapp.processEvents()
@@ -505,16 +543,17 @@ def test_everything_that_takes_the_focus_has_a_name(window: MainWindow, results:
 
 
 def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: MainWindow, results: ResultPage) -> None:
-    results.methods.focus()
+    results.focus()
     passed: list[str] = []
-    for _ in range(7):
+    for _ in range(8):
         focused = QApplication.focusWidget()
         assert focused is not None
         passed.append(focused.accessibleName().split(",")[0])
         QTest.keyClick(focused, Qt.Key.Key_Tab)
     assert passed == [
-        "Result",
+        "Whole walk",
         "Recording",
+        "Result",
         "Knee and ankle angles of walk 1",
         "How each joint was found",
         "Findings",

@@ -1,0 +1,26 @@
+"""Which angles does a chart reach? The same every time, so that two patients are compared at a glance."""
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from core.samples import FloatArray
+
+KNEE_DEG = (-10.0, 80.0)
+ANKLE_DEG = (-30.0, 30.0)
+AXIS_WIDTH, RIGHT_MARGIN = 40, 16  # fixed, so that charts above one another align
+WIDEN_TO_DEG = 10  # a range that is left is widened to the next full ten
+
+
+def range_for(fixed_deg: tuple[float, float], curves: Iterable[FloatArray]) -> tuple[float, float]:
+    """Give `fixed_deg`, widened where a curve leaves it. NaN counts for nothing."""
+    lowest, highest = fixed_deg
+    for values in curves:
+        if np.isfinite(values).any():
+            lowest = min(lowest, WIDEN_TO_DEG * np.floor(np.nanmin(values) / WIDEN_TO_DEG))
+            highest = max(highest, WIDEN_TO_DEG * np.ceil(np.nanmax(values) / WIDEN_TO_DEG))
+    return float(lowest), float(highest)
+
+
+def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
+    return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")

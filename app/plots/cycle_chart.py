@@ -1,0 +1,368 @@
+"""Knee above ankle over one stride: each side on its own stride, the mean on the band of a cited group.
+
+The chart paints itself: nobody zooms a stride, and so every label finds its place.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
+
+from app.plots.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, degrees_in_words, range_for
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_ZERO, SideCycle, is_mean_enough, is_spread_enough
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.chip import LETTERS, SideKey
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from core.body import Joint, Side
+from core.gait.cycles import POINTS
+from core.norms import ReferenceCurves
+from core.samples import FloatArray
+
+LEAST_SIZE = (284, 160)
+LABEL_HEIGHT = 24  # toe-off stands above the plot
+TICKS_HEIGHT = 24
+RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
+TICK = 4
+TICK_DEG = 20
+TICK_PERCENT = 20
+MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 0.75, 1.5
+STRIDE_ALPHA = 0.55
+DOUBTS = {
+    NO_ZERO: "no zero. Range and shape hold, height does not.",
+    MAY_BE_MIRRORED: "sign unsure. The curve may be upside down.",
+}
+SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
+SIMULATED = "SIMULATED"
+PERCENT = np.arange(POINTS, dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class Band:
+    """Mean and standard deviation between subjects (101,), degrees."""
+
+    mean_deg: FloatArray
+    sd_deg: FloatArray
+
+
+class CycleCharts(QWidget):
+    """Both charts, with what they share: the band and the single strides, each on or off."""
+
+    def __init__(self, look: Look, reference: ReferenceCurves) -> None:
+        super().__init__()
+        self._look = look
+        knee, ankle = CycleChart(look, KNEE_DEG), CycleChart(look, ANKLE_DEG)
+        knee.band = Band(reference.knee_mean_deg, reference.knee_sd_deg)
+        ankle.band = Band(reference.ankle_mean_deg, reference.ankle_sd_deg)
+        self.knee = CycleFrame(look, "Knee", "flexion + (°)", knee)
+        self.ankle = CycleFrame(look, "Ankle", "dorsiflexion + (°)", ankle)
+        self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
+        self._box.setContentsMargins(0, 0, 0, 0)
+        for frame in self.frames:
+            self._box.addWidget(frame, 1)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def frames(self) -> tuple["CycleFrame", "CycleFrame"]:
+        return self.knee, self.ankle
+
+    def show_cycles(self, cycles: Mapping[Joint, SideCycle], doubts: Mapping[Joint, str], is_simulated: bool) -> None:
+        """Draw the joints of one walk; `doubts` names those whose height says nothing, and why."""
+        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+            frame.show_cycles(
+                {joint.side: cycle for joint, cycle in cycles.items() if joint.is_knee is is_knee},
+                {joint.side: why for joint, why in doubts.items() if joint.is_knee is is_knee},
+                is_simulated,
+            )
+
+    def set_strides_shown(self, is_shown: bool) -> None:
+        for frame in self.frames:
+            frame.chart.has_strides = is_shown
+            frame.chart.redraw()
+
+    def set_band_shown(self, is_shown: bool) -> None:
+        for frame in self.frames:
+            frame.chart.has_band = is_shown
+            frame.chart.redraw()
+
+    def set_side_by_side(self, is_side_by_side: bool) -> None:
+        way = QBoxLayout.Direction.LeftToRight if is_side_by_side else QBoxLayout.Direction.TopToBottom
+        self._box.setDirection(way)
+
+    def _on_look_changed(self) -> None:
+        self._box.setSpacing(self._look.theme.px(12))
+
+
+class CycleFrame(Card):
+    """A chart with its title, its sign in words, the key to its curves and what must be known to read them."""
+
+    def __init__(self, look: Look, name: str, sign: str, chart: "CycleChart") -> None:
+        self._name = name
+        self.chart = chart
+        self._keys = {side: SideKey(look, side) for side in Side}
+        self._mark = IconMark(look, Icon.WARNING, size=18)
+        self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
+        super().__init__(look, padding=12, spacing=2)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        head = QHBoxLayout()
+        head.setSpacing(8)
+        head.addWidget(Text(look, name, size=16, weight=SEMIBOLD))
+        head.addWidget(Text(look, sign, size=12, tone="ink2"))
+        head.addStretch(1)
+        for side in Side:
+            head.addWidget(self._keys[side])
+        notes = QHBoxLayout()
+        notes.setSpacing(8)
+        notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        notes.addWidget(self._note, 1)
+        self.column.addLayout(head)
+        self.column.addLayout(notes)
+        self.column.addWidget(chart, 1)
+
+    @property
+    def note(self) -> str:
+        return self._note.text()
+
+    def show_cycles(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str], is_simulated: bool) -> None:
+        self.chart.show_cycles(cycles, is_simulated)
+        for side, key in self._keys.items():
+            key.setVisible(side in cycles)
+        self._note.setText(" ".join(self._notes(cycles, doubts)))
+        for widget in (self._mark, self._note):
+            widget.setVisible(bool(self._note.text()))
+        self.chart.setAccessibleName(f"{self._name} over one stride")
+        self.chart.setAccessibleDescription(self.in_words())
+
+    def in_words(self) -> str:
+        """Say each side's mean curve, for who cannot see it."""
+        said = ["Simulated."] if self.chart.is_simulated else []
+        for side, cycle in self.chart.cycles.items():
+            part = f"{side.capitalize()} {self._name.lower()}"
+            if not cycle.mean.n:
+                said.append(f"{part} has no whole stride.")
+                continue
+            lowest, highest = np.min(cycle.mean.mean), np.max(cycle.mean.mean)
+            said.append(
+                f"{part}, mean of {cycle.mean.n}: {degrees_in_words(lowest)} at {np.argmin(cycle.mean.mean)} % to "
+                f"{degrees_in_words(highest)} at {np.argmax(cycle.mean.mean)} %, toe-off at "
+                f"{cycle.toe_off_percent:.0f} %."
+            )
+        said += [self.note] if self.note else []
+        return " ".join(said) or f"No {self._name.lower()} angles."
+
+    def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
+        notes = []
+        for why, what in DOUBTS.items():
+            sides = [LETTERS[side] for side in doubts if doubts[side] == why]
+            notes += [f"{' and '.join(sides)}: {what}"] if sides else []
+        if not cycles:
+            notes.append(f"No {self._name.lower()} angles.")
+        empty = [LETTERS[side] for side, cycle in cycles.items() if not cycle.mean.n]
+        if empty:
+            notes.append(f"{' and '.join(empty)}: no whole stride.")
+        if self.chart.is_widened:
+            lowest, highest = self.chart.range_deg
+            notes.append(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}.")
+        return notes
+
+
+class CycleChart(QWidget):
+    """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
+
+    def __init__(self, look: Look, fixed_deg: tuple[float, float]) -> None:
+        super().__init__()
+        self._look, self._fixed = look, fixed_deg
+        self.range_deg = fixed_deg
+        self.cycles: Mapping[Side, SideCycle] = {}
+        self.band: Band | None = None
+        self.is_simulated = False
+        self.has_band, self.has_strides = True, False
+        self._picture: QPixmap | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        look.changed.connect(self._on_look_changed)
+
+    @property
+    def is_widened(self) -> bool:
+        return self.range_deg != self._fixed
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def show_cycles(self, cycles: Mapping[Side, SideCycle], is_simulated: bool) -> None:
+        """Draw each side's strides, and widen the axis where their mean leaves it."""
+        self.cycles, self.is_simulated = cycles, is_simulated
+        self.range_deg = range_for(self._fixed, [cycle.mean.mean for cycle in cycles.values()])
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Paint anew, since what is shown has changed."""
+        self._picture = None
+        self.update()
+
+    def toe_off_labels(self) -> dict[Side, str]:
+        """Name each toe-off: the word at the earlier line, which has the room at its left."""
+        found = self._toe_offs()
+        return {
+            side: f"{'toe-off ' if i == 0 else ''}{LETTERS[side]} {percent:.0f} %"
+            for i, (side, percent) in enumerate(found)
+        }
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        ratio = self.devicePixelRatioF()
+        if self._picture is None or self._picture.size() != self.size() * ratio:
+            self._picture = QPixmap(self.size() * ratio)
+            self._picture.setDevicePixelRatio(ratio)
+            self._picture.fill(QColor(self._look.theme.colours.surface))
+            self._paint(QPainter(self._picture))
+        QPainter(self).drawPixmap(0, 0, self._picture)
+
+    def plot_area(self) -> QRectF:
+        """The room inside the axes, 4:3 where the page gives that much, in px of the widget."""
+        px = self._look.theme.px
+        left, top = px(AXIS_WIDTH), px(LABEL_HEIGHT)
+        return QRectF(left, top, self.width() - left - px(RIGHT_MARGIN), self.height() - top - px(TICKS_HEIGHT))
+
+    def at(self, percent: float, angle_deg: float) -> QPointF:
+        """The place of a point of the chart in px of the widget."""
+        area, (lowest, highest) = self.plot_area(), self.range_deg
+        x = area.left() + area.width() * percent / 100
+        return QPointF(x, area.bottom() - area.height() * (angle_deg - lowest) / (highest - lowest))
+
+    def _paint(self, painter: QPainter) -> None:
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.save()
+        painter.setClipRect(self.plot_area())
+        if self.has_band and self.band is not None:
+            for sds, colour in ((2, self._look.theme.colours.band_2sd), (1, self._look.theme.colours.band_1sd)):
+                self._fill(painter, self.band.mean_deg, sds * self.band.sd_deg, QColor(colour))
+        painter.restore()
+        self._paint_axes(painter)
+        painter.save()
+        painter.setClipRect(self.plot_area())
+        for side, cycle in self.cycles.items():
+            if is_spread_enough(cycle.mean.n) and not self.has_strides:
+                self._fill(painter, cycle.mean.mean, cycle.mean.sd, self._look.theme.band(side))
+        if self.has_strides:
+            for side, cycle in self.cycles.items():
+                self._paint_strides(painter, side, cycle)
+        for side, cycle in self.cycles.items():
+            if cycle.mean.n:
+                self._paint_mean(painter, side, cycle)
+        painter.restore()
+        self._paint_labels(painter)
+
+    def _paint_axes(self, painter: QPainter) -> None:
+        theme = self._look.theme
+        area, (lowest, highest) = self.plot_area(), self.range_deg
+        tick = theme.px(TICK)
+        painter.setFont(theme.font(12))
+        line, ink = _crisp(theme.pen(theme.colours.control, 1)), QColor(theme.colours.ink2)
+        painter.setPen(line)
+        painter.drawLine(self.at(0, 0), self.at(100, 0))
+        painter.drawLine(area.bottomLeft(), area.topLeft())
+        painter.drawLine(area.bottomLeft(), area.bottomRight())
+        first = int(np.ceil(lowest / TICK_DEG)) * TICK_DEG
+        for angle in range(first, int(highest) + 1, TICK_DEG):
+            y = self.at(0, angle).y()
+            painter.setPen(line)
+            painter.drawLine(QPointF(area.left() - tick, y), QPointF(area.left(), y))
+            painter.setPen(ink)
+            room = QRectF(0, y - area.height(), area.left() - 2 * tick, 2 * area.height())
+            words = f"{angle}".replace("-", "\N{MINUS SIGN}")
+            painter.drawText(room, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, words)
+        for percent in range(0, 101, TICK_PERCENT):
+            x = self.at(percent, 0).x()
+            painter.setPen(line)
+            painter.drawLine(QPointF(x, area.bottom()), QPointF(x, area.bottom() + tick))
+            painter.setPen(ink)
+            room = QRectF(x - area.width(), area.bottom() + tick, 2 * area.width(), theme.px(TICKS_HEIGHT) - tick)
+            words = f"{percent}" if percent < 100 else "100 %"
+            painter.drawText(room, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter, words)
+
+    def _paint_strides(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
+        """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean stands out."""
+        theme, is_few = self._look.theme, len(cycle.strides_deg) <= SMOOTH_UP_TO
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
+        colour = theme.curve(side) if is_few else theme.soft(side)
+        colour.setAlphaF(STRIDE_ALPHA if is_few else 1.0)
+        painter.setPen(QPen(colour, STRIDE_PX * theme.scale if is_few else 0))
+        for stride_deg in cycle.strides_deg:
+            painter.drawPolyline(self._polygon(PERCENT, stride_deg))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+
+    def _paint_mean(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
+        """Left solid, right dashed, on a casing that lifts it off the band; grey where too few strides make a mean."""
+        theme = self._look.theme
+        curve = self._polygon(PERCENT, cycle.mean.mean)
+        casing = theme.pen(theme.colours.surface, CASING_PX)
+        casing.setCapStyle(Qt.PenCapStyle.FlatCap)
+        painter.setPen(casing)
+        painter.drawPolyline(curve)
+        pen = theme.side_pen(side, MEAN_PX)
+        if not is_mean_enough(cycle.mean.n):
+            pen.setColor(QColor(theme.colours.control))
+        painter.setPen(pen)
+        painter.drawPolyline(curve)
+
+    def _paint_labels(self, painter: QPainter) -> None:
+        """Write above the plot what is simulated and where each side's toe-off is, with its line."""
+        theme, area = self._look.theme, self.plot_area()
+        painter.setFont(theme.font(12, SEMIBOLD))
+        metrics = QFontMetrics(theme.font(12, SEMIBOLD))
+        labels, lines, least = self.toe_off_labels(), self._toe_offs(), 0.0
+        if self.is_simulated:
+            least = metrics.horizontalAdvance(SIMULATED) + theme.px(8)
+            painter.setPen(QColor(theme.colours.ink))
+            room = QRectF(0, 0, self.width(), area.top())
+            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, SIMULATED)
+        for i, (side, percent) in enumerate(lines):
+            x = self.at(percent, 0).x()
+            painter.setPen(theme.side_pen(side, TOE_OFF_PX))
+            painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
+            painter.setPen(theme.text(side))
+            width = metrics.horizontalAdvance(labels[side]) + 1
+            left = x - width - theme.px(4) if i == 0 else x + theme.px(4)
+            left = min(max(left, least), self.width() - width)
+            room = QRectF(left, 0, width, area.top())
+            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, labels[side])
+
+    def _toe_offs(self) -> list[tuple[Side, float]]:
+        """Each side's toe-off, percent, the earlier first."""
+        known = [
+            (side, cycle.toe_off_percent)
+            for side, cycle in self.cycles.items()
+            if cycle.mean.n and np.isfinite(cycle.toe_off_percent)
+        ]
+        return sorted(known, key=lambda found: round(found[1]))  # left first where both read the same
+
+    def _fill(self, painter: QPainter, mean: FloatArray, reach: FloatArray, colour: QColor) -> None:
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(colour)
+        there_and_back = np.concatenate([PERCENT, PERCENT[::-1]])
+        painter.drawPolygon(self._polygon(there_and_back, np.concatenate([mean - reach, (mean + reach)[::-1]])))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+
+    def _polygon(self, percent: FloatArray, angle_deg: FloatArray) -> QPolygonF:
+        area, (lowest, highest) = self.plot_area(), self.range_deg
+        x = area.left() + area.width() * percent / 100
+        y = area.bottom() - area.height() * (angle_deg - lowest) / (highest - lowest)
+        return pg.functions.arrayToQPolygonF(x, y)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.redraw()
+
+
+def _crisp(pen: QPen) -> QPen:
+    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+    return pen

@@ -1,0 +1,208 @@
+"""Which figures of one walk does a clinician read? Peaks and ranges, time and distance, beside those of a cited group.
+
+The window and the report show the same rows, so that no number stands in one that the other computes differently.
+"""
+
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.reports.gait_csv import parameter, used_cycles
+from core.body import Joint, Side, ankle_of, knee_of
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
+from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
+from core.gait.strides import Reason, strides_of
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues, nearest_class
+from core.results import JointCalibration, RecordingAnalysis, SideGait, ZeroKind
+from core.samples import FloatArray
+
+REASON_WORDS = {
+    Reason.GAP: "with missing samples",
+    Reason.DOUBT: "with a landing in doubt",
+    Reason.PAUSE: "with a pause",
+    Reason.TURN: "turning",
+    Reason.START: "starting",
+    Reason.STOP: "stopping",
+    Reason.OUTLIER: "unlike the others",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """One row: a figure of each side, or one of both sides together, and the group's mean less and plus 1 SD.
+
+    A side whose figure would say nothing is missing in `sides`, and `unknown` says why.
+    """
+
+    name: str
+    unit: str
+    decimals: int
+    sides: Mapping[Side, MeanAndSd]
+    both: float | None = None
+    band: tuple[float, float] | None = None
+    unknown: Mapping[Side, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class SideCycle:
+    """One joint over the strides used, degrees: the mean with its spread, and single strides (k, 101)."""
+
+    mean: MeanCycle
+    strides_deg: FloatArray
+    toe_off_percent: float
+
+
+PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
+    ("at_initial_contact_deg", "At initial contact", None),
+    ("loading_peak_deg", "Loading peak", "knee_loading_peak"),
+    ("stance_minimum_deg", "Stance minimum", "knee_stance_minimum"),
+    ("swing_peak_deg", "Swing peak", "knee_swing_peak"),
+    ("swing_peak_percent", "Swing peak at, %", None),
+    ("range_deg", "Range", None),
+    ("stance_dorsiflexion_deg", "Stance dorsiflexion", "ankle_stance_dorsiflexion"),
+    ("push_off_plantarflexion_deg", "Push-off plantarflexion", "ankle_push_off_plantarflexion"),
+    ("swing_dorsiflexion_deg", "Swing dorsiflexion", "ankle_swing_dorsiflexion"),
+)
+KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
+NO_ZERO, MAY_BE_MIRRORED = "no zero", "sign unsure"
+HOLD_FOR = {NO_ZERO: ("swing_peak_percent", "range_deg"), MAY_BE_MIRRORED: ("range_deg",)}  # what holds all the same
+
+
+def strides_used(gait: SideGait) -> int:
+    return int(np.count_nonzero(gait.strides.is_used))
+
+
+def is_mean_enough(n: int) -> bool:
+    return n >= MIN_STRIDES_FOR_MEAN
+
+
+def is_spread_enough(n: int) -> bool:
+    return n >= MIN_STRIDES_FOR_SD
+
+
+def strides_in_words(side: Side, gait: SideGait) -> str:
+    """How many strides stand behind the averages, and why the others do not."""
+    used = strides_used(gait)
+    left_out = Counter(REASON_WORDS[reason] for reason in gait.strides.reason if reason is not Reason.USED)
+    said = f"{side[0].upper()}: {used} {'stride' if used == 1 else 'strides'} used"
+    if len(left_out) == 1:
+        ((words, count),) = left_out.items()
+        said += f", {count} left out ({words})"
+    elif left_out:
+        reasons = ", ".join(f"{count} {words}" for words, count in left_out.most_common())
+        said += f", {left_out.total()} left out ({reasons})"
+    return said + "."
+
+
+def few_strides_in_words(recording: RecordingAnalysis) -> str:
+    """What is missing for want of strides; empty where there are enough."""
+    counts = {side[0].upper(): strides_used(gait) for side, gait in recording.gait.items()}
+    without_mean = [side for side, n in counts.items() if not is_mean_enough(n)]
+    without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
+    said = []
+    if without_mean:
+        said.append(
+            f"{' and '.join(without_mean)}: under {MIN_STRIDES_FOR_MEAN} strides, so the mean is shown in grey."
+        )
+    if without_spread:
+        said.append(f"{' and '.join(without_spread)}: under {MIN_STRIDES_FOR_SD} strides, so without spread.")
+    return " ".join(said)
+
+
+def side_cycle(gait: SideGait, joint: Joint) -> SideCycle:
+    """The joint's strides that are used and known over all of the stride."""
+    strides_deg = np.rad2deg(used_cycles(gait, joint))
+    strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
+    toe_off = mean_and_sd(gait.strides.stance_percent[gait.strides.is_used])
+    return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off.mean)
+
+
+def both_sides(recording: RecordingAnalysis) -> BothFeet:
+    """Cadence, double support and speed, also where only one side was measured."""
+    nothing = strides_of(())
+    left, right = (recording.gait[side].strides if side in recording.gait else nothing for side in Side)
+    return both_feet(left, right)
+
+
+def peak_figures(
+    recording: RecordingAnalysis,
+    calibrated: Mapping[Joint, JointCalibration],
+    reference: ReferenceCurves,
+) -> dict[str, tuple[Figure, ...]]:
+    """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve."""
+    found = {}
+    for kind, joint_of, rows in (("knee", knee_of, KNEE_ROWS), ("ankle", ankle_of, ANKLE_ROWS)):
+        joints = {side: joint_of(side) for side, gait in recording.gait.items() if joint_of(side) in gait.cycles}
+        if not joints:
+            continue
+        doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint, calibrated))}
+        figures = []
+        for column, name, window in rows:
+            unknown = {side: why for side, why in doubts.items() if column not in HOLD_FOR[why]}
+            sides = {side: _mean(recording.gait[side], f"{kind}_{column}") for side in joints if side not in unknown}
+            unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
+            band = _band_of_peak(reference, kind, column, window)
+            figures.append(Figure(name, unit, decimals, sides, band=band, unknown=unknown))
+        found[kind] = tuple(figures)
+    return found
+
+
+def time_distance_figures(
+    recording: RecordingAnalysis, classes: tuple[ReferenceValues, ...]
+) -> tuple[tuple[Figure, ...], ReferenceValues | None]:
+    """Rows of time and distance, and the class of speed whose band stands beside them; None without a speed."""
+    feet = both_sides(recording)
+    group = nearest_class(classes, feet.speed_m_s) if np.isfinite(feet.speed_m_s) else None
+
+    def each(name: str) -> dict[Side, MeanAndSd]:
+        return {side: _mean(gait, name) for side, gait in recording.gait.items()}
+
+    def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
+        if group is None:
+            return None
+        value = group.values[name]
+        return factor * (value.mean - value.sd), factor * (value.mean + value.sd)
+
+    return (
+        # the class is chosen by speed, so its speed would be no comparison
+        Figure("Walking speed", "m/s", 2, {}, both=feet.speed_m_s),
+        Figure("Cadence", "steps/min", 0, {}, both=feet.cadence_steps_min, band=band("cadence")),
+        Figure("Stride time", "s", 2, each("stride_time_s")),
+        # a subject's stride is the two steps of which the group's step length is the mean
+        Figure("Stride length", "m", 2, each("stride_length_m"), band=band("step_length", 2.0)),
+        Figure("Stance", "%", 1, each("stance_percent"), band=band("stance")),
+        Figure("Double support", "%", 1, {}, both=feet.double_support_percent, band=band("double_support_total")),
+    ), group
+
+
+def doubt_of(recording: RecordingAnalysis, joint: Joint, calibrated: Mapping[Joint, JointCalibration]) -> str | None:
+    """Why the height of a joint's curve says nothing; None where it does."""
+    if joint in recording.gait[joint.side].sign_in_doubt:
+        return MAY_BE_MIRRORED
+    return NO_ZERO if joint not in calibrated or calibrated[joint].zero is ZeroKind.NONE else None
+
+
+def _mean(gait: SideGait, name: str) -> MeanAndSd:
+    return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
+
+
+def _band_of_peak(
+    reference: ReferenceCurves, kind: str, column: str, window_name: str | None
+) -> tuple[float, float] | None:
+    """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot tell."""
+    mean, sd = (
+        (reference.knee_mean_deg, reference.knee_sd_deg)
+        if kind == "knee"
+        else (reference.ankle_mean_deg, reference.ankle_sd_deg)
+    )
+    if column == "at_initial_contact_deg":
+        at = 0
+    else:
+        windows = [window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS) if window.name == window_name]
+        percent = find_peak(mean[None, :], windows[0]).percent[0] if windows else np.nan
+        if not np.isfinite(percent):
+            return None
+        at = int(percent)
+    return float(mean[at] - sd[at]), float(mean[at] + sd[at])

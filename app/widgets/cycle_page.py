@@ -1,0 +1,153 @@
+"""The mean cycle of one walk, and its figures: the charts here, the tables beside them where the page puts them."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from app.plots.cycle_chart import CycleCharts
+from app.reports.reference_bands import reference_curves, time_distance_classes
+from app.reports.walk_figures import (
+    Figure,
+    both_sides,
+    doubt_of,
+    few_strides_in_words,
+    peak_figures,
+    side_cycle,
+    strides_in_words,
+    strides_used,
+    time_distance_figures,
+)
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.figures_table import FiguresTable
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from core.body import Joint, Side
+from core.norms import ReferenceCurves, ReferenceValues
+from core.results import JointCalibration, RecordingAnalysis
+
+SLOWER = "Slower than the band: slower walking lowers knee peaks."
+FASTER = "Faster than the band: faster walking raises knee peaks."
+NO_SPEED = "This walk: speed not known, for it needs a foot sensor."
+
+
+class CyclePage(QWidget):
+    """Charts with the note on the band under them; `peaks` and `time_distance` are cards that the page places."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._reference = reference_curves()
+        self.charts = CycleCharts(look, self._reference)
+        self.note = BandNote(look)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.charts, 1)
+        column.addWidget(self.note)
+        self.peaks = FiguresCard(look, "Peaks and ranges", "mean ± SD (°)")
+        self.peaks_note = BandNote(look)
+        self.peaks.column.addWidget(self.peaks_note)
+        self.time_distance = FiguresCard(look, "Time and distance", "mean ± SD")
+        for card in (self.peaks, self.time_distance):
+            card.column.addStretch(1)
+
+    @property
+    def tables(self) -> list[QWidget]:
+        return [self.peaks.table, self.time_distance.table]
+
+    def set_room(self, is_compact: bool, has_two_charts: bool) -> None:
+        """Put the charts side by side where that is the better use of the page, and the note on the band under them."""
+        self.charts.set_side_by_side(has_two_charts)
+        self.note.setVisible(is_compact)
+
+    def show_walk(
+        self, recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], is_simulated: bool
+    ) -> None:
+        """Show the strides of `recording`, each side on its own stride; nothing where it has none."""
+        joints = [joint for gait in recording.gait.values() for joint in gait.cycles]
+        doubts = {joint: why for joint in joints if (why := doubt_of(recording, joint, calibrated))}
+        cycles = {joint: side_cycle(recording.gait[joint.side], joint) for joint in joints}
+        self.charts.show_cycles(cycles, doubts, is_simulated)
+        strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
+        rows: list[str | Figure] = []
+        for kind, figures in peak_figures(recording, calibrated, self._reference).items():
+            rows += [kind.capitalize(), *figures]
+        told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
+        self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))
+        figures, group = time_distance_figures(recording, time_distance_classes())
+        self.time_distance.show_figures(figures, strides, _group_in_words(group))
+        speed_m_s = both_sides(recording).speed_m_s
+        for note in (self.note, self.peaks_note):
+            note.show_band(self._reference, speed_m_s)
+
+
+class FiguresCard(Card):
+    """A table under its title, with what must be known to read it."""
+
+    def __init__(self, look: Look, title: str, what: str) -> None:
+        super().__init__(look, padding=12)
+        head = QHBoxLayout()
+        head.setSpacing(8)
+        head.addWidget(Text(look, title, size=16, weight=SEMIBOLD))
+        head.addWidget(Text(look, what, size=12, tone="ink2"))
+        head.addStretch(1)
+        self.table = FiguresTable(look, title)
+        self.note = Text(look, size=12, tone="ink2", wraps=True)
+        self.column.addLayout(head)
+        self.column.addWidget(self.table)
+        self.column.addWidget(self.note)
+
+    def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int], note: str) -> None:
+        self.table.show_figures(rows, strides)
+        self.table.setAccessibleDescription(note)
+        self.note.setText(note)
+
+
+class BandNote(QWidget):
+    """Whose band it is, how fast they walked, how fast this walk was; and whether that makes a difference."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._source = Text(look, size=12, tone="ink2", wraps=True)
+        self._speed = Text(look, size=12, weight=MEDIUM, wraps=True)
+        self._mark = IconMark(look, Icon.WARNING, size=18)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(2)
+        column.addWidget(self._source)
+        row = QHBoxLayout()
+        row.setSpacing(8)
+        row.addWidget(self._mark)
+        row.addWidget(self._speed, 1)
+        column.addLayout(row)
+
+    @property
+    def text(self) -> str:
+        return f"{self._source.text()} {self._speed.text()}"
+
+    def show_band(self, band: ReferenceCurves, speed_m_s: float) -> None:
+        authors = band.source.split(", PeerJ")[0]
+        self._source.setText(
+            f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; inner 1 SD, outer 2 SD. {authors}."
+        )
+        is_known = bool(np.isfinite(speed_m_s))
+        words = [f"This walk: {speed_m_s:.2f} m/s."] if is_known else [NO_SPEED]
+        is_other = is_known and not band.fits(speed_m_s)
+        if is_other:
+            words.append(SLOWER if speed_m_s < band.speed_m_s else FASTER)
+        self._mark.setVisible(is_other)
+        self._speed.setText(" ".join(words))
+
+
+def _group_in_words(group: ReferenceValues | None) -> str:
+    """Whose figures stand in the column of the band."""
+    if group is None:
+        return f"No band: it is chosen by walking speed. {NO_SPEED}"
+    said = f"Band: {group.n} of {group.group}; {group.speed_class} speed, {group.speed_m_s:.2f} m/s."
+    return f"{said} {_authors(group.source)}."
+
+
+def _authors(source: str) -> str:
+    """Give the beginning of a source, as far as it fits a line: who and when."""
+    return source.split(", PeerJ")[0]

@@ -1,0 +1,320 @@
+"""What did the walk give in figures? One row per figure: left, right, and the same of a cited group."""
+
+import math
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QResizeEvent
+from PySide6.QtWidgets import (
+    QApplication,
+    QHeaderView,
+    QStyledItemDelegate,
+    QStyleOptionViewItem,
+    QTableView,
+    QWidget,
+)
+
+from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
+from app.theme import Look
+from app.widgets.chip import CHIP, paint_chip
+from app.widgets.text import SEMIBOLD
+from core.body import Side
+from core.gait.spatiotemporal import MeanAndSd
+
+ROW, HEAD = 28, 32
+PADDING = 6
+NAME, LEFT, RIGHT, BAND = range(4)
+COLUMNS = 4
+SIDE_OF = {LEFT: Side.LEFT, RIGHT: Side.RIGHT}
+BAND_HEAD = "band 1 SD"
+MINUS = "\N{MINUS SIGN}"
+Index = QModelIndex | QPersistentModelIndex
+
+
+class FiguresModel(QAbstractTableModel):
+    """Rows are headings (a word) or figures. A cell is the value and what stands smaller behind it."""
+
+    def __init__(self, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.rows: list[str | Figure] = []
+        self.strides: Mapping[Side, int] = {}
+
+    def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int]) -> None:
+        self.beginResetModel()
+        self.rows, self.strides = list(rows), strides
+        self.endResetModel()
+
+    def cell(self, index: Index) -> tuple[str, str]:
+        """Give value and addition of a cell, as "58.7" and "± 1.8"."""
+        row, column = self.rows[index.row()], index.column()
+        if isinstance(row, str):
+            return (row if column == NAME else ""), ""
+        if column == NAME:
+            return row.name, "" if row.unit == "°" or row.name.endswith(row.unit) else row.unit
+        if column == BAND:
+            return "", _range(row) if row.band is not None else ""
+        if row.both is not None:
+            return (_number(row.both, row.decimals), "") if column == LEFT else ("", "")
+        side = SIDE_OF[column]
+        if side in row.unknown:
+            return "", row.unknown[side]
+        return _mean(row.sides.get(side), row.decimals)
+
+    def is_grey(self, index: Index) -> bool:
+        """Tell whether too few strides stand behind a cell to make a mean."""
+        row, side = self.rows[index.row()], SIDE_OF.get(index.column())
+        if isinstance(row, str) or side is None or side not in row.sides:
+            return False
+        return not is_mean_enough(row.sides[side].n)
+
+    def rowCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008  Qt's own signature
+        return len(self.rows)
+
+    def columnCount(self, _parent: Index = QModelIndex()) -> int:  # noqa: B008  Qt's own signature
+        return COLUMNS
+
+    def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
+        words = " ".join(filter(None, self.cell(index)))
+        if role == Qt.ItemDataRole.DisplayRole:
+            return words
+        if role == Qt.ItemDataRole.AccessibleTextRole:
+            return self._in_words(index, words)
+        return None
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> object:
+        if role != Qt.ItemDataRole.DisplayRole or orientation != Qt.Orientation.Horizontal:
+            return None
+        return ("", self._strides(Side.LEFT), self._strides(Side.RIGHT), BAND_HEAD)[section]
+
+    def _strides(self, side: Side) -> str:
+        if side not in self.strides:
+            return ""
+        return f"{self.strides[side]} {'stride' if self.strides[side] == 1 else 'strides'}"
+
+    def _in_words(self, index: Index, words: str) -> str:
+        """Say a cell with its row, its side and its unit, for who hears one cell at a time."""
+        row, column = self.rows[index.row()], index.column()
+        if isinstance(row, str) or column == NAME:
+            return words
+        heading = next((above for above in reversed(self.rows[: index.row()]) if isinstance(above, str)), "")
+        both = "both sides" if row.both is not None else ""
+        who = "reference band" if column == BAND else both or str(SIDE_OF[column])
+        name = " ".join(filter(None, [heading, row.name[0].lower() + row.name[1:]]))
+        said = f"{words} {row.unit}" if words else "no value"
+        return f"{name[0].upper()}{name[1:]}, {who}: {said}"
+
+
+class FiguresTable(QTableView):
+    """As high as its rows; copies as tab-separated text."""
+
+    def __init__(self, look: Look, name: str) -> None:
+        super().__init__()
+        self._look = look
+        self.figures = FiguresModel(self)
+        self.setModel(self.figures)
+        self.setHorizontalHeader(_SideHeader(look, self))
+        self.verticalHeader().hide()
+        self.verticalHeader().setMinimumSectionSize(1)
+        self.setItemDelegate(_FigureDelegate(look, self))
+        self.setAccessibleName(name)
+        self.setShowGrid(False)
+        self.setFrameShape(QTableView.Shape.NoFrame)
+        self.setTabKeyNavigation(False)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int]) -> None:
+        """Show headings and figures; `strides` used stand above each side's column."""
+        self.clearSpans()
+        self.figures.show_figures(rows, strides)
+        for k, row in enumerate(rows):
+            if isinstance(row, str):
+                self.setSpan(k, NAME, 1, COLUMNS)
+            elif row.both is not None:
+                self.setSpan(k, LEFT, 1, 2)
+        for column, side in SIDE_OF.items():
+            self.setColumnHidden(column, side not in strides and len(strides) > 0)
+        self._on_look_changed()
+
+    def minimumSizeHint(self) -> QSize:
+        height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.figures.rowCount()))
+        return QSize(sum(self.needed_widths()), height)
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.matches(QKeySequence.StandardKey.Copy):
+            QApplication.clipboard().setText(self.as_text())
+            return
+        super().keyPressEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._share_width()
+
+    def as_text(self) -> str:
+        """Give the table as tab-separated lines."""
+        model = self.figures
+        head = ["", f"L, {model.headerData(LEFT, Qt.Orientation.Horizontal)}"]
+        head += [f"R, {model.headerData(RIGHT, Qt.Orientation.Horizontal)}", BAND_HEAD]
+        rows = [[str(model.data(model.index(row, k))) for k in range(COLUMNS)] for row in range(model.rowCount())]
+        return "\n".join("\t".join(cells) for cells in [head, *rows])
+
+    def needed_widths(self) -> list[int]:
+        """Give what each column needs for its widest cell; nothing for a hidden one."""
+        delegate, option, header = self.itemDelegate(), QStyleOptionViewItem(), self.horizontalHeader()
+        widths = []
+        for column in range(COLUMNS):
+            cells = [
+                self.figures.index(k, column)
+                for k, row in enumerate(self.figures.rows)
+                if not isinstance(row, str) and (row.both is None or column in (NAME, BAND))
+            ]
+            needs = [header.sectionSizeFromContents(column).width()]
+            needs += [delegate.sizeHint(option, cell).width() for cell in cells]
+            widths.append(0 if self.isColumnHidden(column) else max(needs))
+        return widths
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.setFont(self._look.theme.font(14))
+        self.horizontalHeader().setFixedHeight(px(HEAD))
+        for row in range(self.figures.rowCount()):
+            self.setRowHeight(row, px(ROW))
+        self.setFixedHeight(self.minimumSizeHint().height())
+        self.setMinimumWidth(self.minimumSizeHint().width())
+        self._share_width()
+        self.viewport().update()
+
+    def _share_width(self) -> None:
+        """Give every column what it needs, and the rest to the names."""
+        needed = self.needed_widths()
+        needed[NAME] += max(0, self.width() - sum(needed))
+        for column, width in enumerate(needed):
+            if width:
+                self.setColumnWidth(column, width)
+
+
+class _FigureDelegate(QStyledItemDelegate):
+    """Paints names at the left, figures at the right: the value large, its spread small."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look = look
+
+    def sizeHint(self, _option: QStyleOptionViewItem, index: Index) -> QSize:
+        model, px = _model(index), self._look.theme.px
+        value, addition = model.cell(index)
+        fonts = self._fonts(model, index)
+        width = sum(
+            QFontMetrics(font).horizontalAdvance(text) for font, text in zip(fonts, (value, addition), strict=True)
+        )
+        padding = px(PADDING) if index.column() == NAME else 2 * px(PADDING)  # names begin at the edge
+        return QSize(width + (px(4) if value and addition else 0) + padding + 1, px(ROW))
+
+    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        theme, model = self._look.theme, _model(index)
+        c, rect = theme.colours, QRectF(option.rect)
+        painter.save()
+        is_heading = isinstance(model.rows[index.row()], str)
+        if is_heading:
+            painter.fillRect(rect, QColor(c.ground))
+        painter.setPen(theme.pen(c.line, 1))
+        painter.drawLine(rect.topLeft(), rect.topRight())
+        value, addition = model.cell(index)
+        large, small = self._fonts(model, index)
+        inner = rect.adjusted(theme.px(PADDING), 0, -theme.px(PADDING), 0)
+        gap = theme.px(4) if value and addition else 0
+        if index.column() == NAME:
+            inner.setLeft(rect.left() + (theme.px(PADDING) if is_heading else 0))
+            self._draw(painter, inner, value, large, c.ink, Qt.AlignmentFlag.AlignLeft)
+            inner.setLeft(inner.left() + QFontMetrics(large).horizontalAdvance(value) + gap)
+            self._draw(painter, inner, addition, small, c.ink2, Qt.AlignmentFlag.AlignLeft)
+        else:
+            row = model.rows[index.row()]
+            is_both = isinstance(row, Figure) and row.both is not None and index.column() == LEFT
+            way = Qt.AlignmentFlag.AlignHCenter if is_both else Qt.AlignmentFlag.AlignRight
+            self._draw(painter, inner, addition, small, c.ink2, Qt.AlignmentFlag.AlignRight)
+            if addition:
+                inner.setRight(inner.right() - QFontMetrics(small).horizontalAdvance(addition) - gap)
+            self._draw(painter, inner, value, large, c.ink3 if model.is_grey(index) else c.ink, way)
+        painter.restore()
+
+    def _draw(self, painter: QPainter, room: QRectF, text: str, font: QFont, ink: str, way: Qt.AlignmentFlag) -> None:
+        painter.setFont(font)
+        painter.setPen(QColor(ink))
+        painter.drawText(room, way | Qt.AlignmentFlag.AlignVCenter, text)
+
+    def _fonts(self, model: FiguresModel, index: Index) -> tuple[QFont, QFont]:
+        theme = self._look.theme
+        if isinstance(model.rows[index.row()], str):
+            return theme.font(14, SEMIBOLD), theme.font(12)
+        if index.column() == NAME:
+            return theme.font(14), theme.font(12)
+        return theme.font(15, SEMIBOLD), theme.font(12)
+
+
+class _SideHeader(QHeaderView):
+    """Chip and strides above each side, so that no column can be mistaken for the other leg's."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(Qt.Orientation.Horizontal, parent)
+        self._look = look
+        self.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
+        self.setMinimumSectionSize(1)
+        self.setSectionsClickable(False)
+
+    def sectionSizeFromContents(self, section: int) -> QSize:
+        px, words = self._look.theme.px, self._words(section)
+        width = QFontMetrics(self._look.theme.font(12)).horizontalAdvance(words)
+        chip = px(CHIP + 6) if section in SIDE_OF else 0
+        return QSize(width + chip + 2 * px(PADDING) + 1, px(HEAD))
+
+    def paintSection(self, painter: QPainter, rect: object, section: int) -> None:
+        theme = self._look.theme
+        box = QRectF(rect)  # type: ignore[call-overload]  # the stubs call it an object
+        painter.save()
+        painter.setPen(QColor(theme.colours.ink2))
+        painter.setFont(theme.font(12))
+        inner = box.adjusted(0, 0, -theme.px(PADDING), 0)
+        words = self._words(section)
+        painter.drawText(inner, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, words)
+        if section in SIDE_OF:
+            side = theme.px(CHIP)
+            x = inner.right() - QFontMetrics(theme.font(12)).horizontalAdvance(words) - theme.px(6) - side
+            paint_chip(painter, QRectF(x, box.center().y() - side / 2, side, side), SIDE_OF[section], theme)
+        painter.restore()
+
+    def _words(self, section: int) -> str:
+        model = self.model()
+        assert isinstance(model, FiguresModel)
+        return str(model.headerData(section, Qt.Orientation.Horizontal))
+
+
+def _model(index: Index) -> FiguresModel:
+    model = index.model()
+    assert isinstance(model, FiguresModel)
+    return model
+
+
+def _mean(value: MeanAndSd | None, decimals: int) -> tuple[str, str]:
+    if value is None or not math.isfinite(value.mean):
+        return "", "none"
+    spread = f"± {value.sd:.{decimals}f}" if is_spread_enough(value.n) else ""
+    return _number(value.mean, decimals), spread
+
+
+def _range(figure: Figure) -> str:
+    assert figure.band is not None
+    decimals = figure.decimals if figure.decimals > 1 else 0
+    low, high = (_number(value, decimals) for value in figure.band)
+    return f"{low} to {high}"
+
+
+def _number(value: float, decimals: int) -> str:
+    if not math.isfinite(value):
+        return "none"
+    return f"{value:.{decimals}f}".replace("-", MINUS) if round(value, decimals) else f"{0:.{decimals}f}"
