@@ -1,0 +1,364 @@
+"""How well would this free motion identify a joint, were it stopped now, and which motion is missing?
+
+Every tenth of a second, from what the calibration itself uses: for the axis the relative rate under all relative
+headings, for the centre eq 8 of Seel et al. 2014 (doi 10.3390/s140406891) with the accelerometers' biases and the
+distal sensor's lag among the unknowns. How far tissue misleads both was measured on simulated calibrations stopped at
+random times (tests/benchmarks/excitation.py).
+"""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from core.body import Joint, Site
+from core.calibration.certainty import AXIS_FLOOR_HINGE_RAD, AXIS_FLOOR_HUMAN_RAD
+from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M
+from core.calibration.joint_centre import MIN_SCALE_M_S2, MIN_SD_HINGE_M, MIN_SD_HUMAN_M
+from core.live.heading_profile import HeadingProfile, profile_headings
+from core.live.orientation import OrientedSamples
+from core.live.sample_sets import NODE_S, SPACING_S, SetCollector, Sets, parabola
+from core.pair import MOVING_RAD_S
+from core.robust import robust_sd
+from core.samples import FloatArray
+
+MIN_SETS = 10  # a second of movement; before, nothing is known
+REFIT_SETS, REFIT_SHARE = 10, 5  # the best hypothesis is found anew after each second or each fifth more movement
+LAG_PRIOR_S = 0.03
+MAX_LAG_S = 1.5 * NODE_S  # farther the parabola through three instants does not reach
+FIRST_STEPS, STEPS = 10, 2
+MAX_CENTRE_STEP_M = 0.1
+MIN_RATE_SCALE_RAD_S = 0.01
+AXIS_PRIOR_RAD = 1.0
+MIN_MARGIN = 1.3
+CENTRE_SD_FACTOR = 2.5  # tissue in step with the limb moves a centre this much farther than its residuals show
+REOPENS_AT = 1.25  # of what closes it
+PLATEAU_AFTER = round(10.0 / SPACING_S)
+PROGRESS_OVER = round(4.0 / SPACING_S)
+MIN_PROGRESS = 0.1
+SHARED = 0.25  # of the least certain direction
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What closes a joint, what no motion can reduce, and how far its sensors move against their segments.
+
+    Attributes
+    ----------
+    tilt_rad, shift_m
+        In step with the motion, so that no length of it averages them out.
+    wobble
+        Share of a segment's rate that its sensor may turn beside it; a relative rate below shows no joint.
+    """
+
+    axis_rad: float
+    centre_m: float
+    axis_floor_rad: float
+    centre_floor_m: float
+    tilt_rad: float
+    shift_m: float
+    wobble: float
+
+
+HUMAN = Wanted(
+    axis_rad=np.deg2rad(1.5),
+    centre_m=0.010,
+    axis_floor_rad=float(AXIS_FLOOR_HUMAN_RAD),
+    centre_floor_m=MIN_SD_HUMAN_M,
+    tilt_rad=np.deg2rad(0.5),
+    shift_m=0.0004,
+    wobble=0.06,
+)
+PROSTHESIS = Wanted(
+    axis_rad=np.deg2rad(0.5),
+    centre_m=0.005,
+    axis_floor_rad=float(AXIS_FLOOR_HINGE_RAD),
+    centre_floor_m=MIN_SD_HINGE_M,
+    tilt_rad=np.deg2rad(0.1),
+    shift_m=0.00012,
+    wobble=0.02,
+)
+
+
+class Movement(StrEnum):
+    """CIRCLE: the segment's far end describes circles. BEND: the joint at its near end bends and stretches."""
+
+    CIRCLE = "circle"
+    BEND = "bend"
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """The motion that would tell most: of the segment that carries `site`."""
+
+    site: Site
+    movement: Movement
+
+
+@dataclass(frozen=True, slots=True)
+class ExcitationState:
+    """What the motion so far would give.
+
+    Attributes
+    ----------
+    axis_sd_rad, centre_sd_m
+        What motion can still reduce: for the gauge. The centre's along the least certain observable direction.
+    axis_sd_with_floor_rad, centre_sd_with_floor_m
+        How far the calibration may be from the truth.
+    sign_margin
+        Cost of the best rival over the best hypothesis; 1 while nothing is known.
+    is_closed
+        Good enough.
+    is_plateau
+        Not closed, and ten seconds of movement in, four more brought less than a tenth: as good as this motion gives.
+    trend
+        Share of what is wanting that the last four seconds of movement took away; negative where it grew.
+    missing
+        None once closed.
+    moved_s
+        How much movement has been used.
+    """
+
+    axis_sd_rad: float
+    centre_sd_m: float
+    axis_sd_with_floor_rad: float
+    centre_sd_with_floor_m: float
+    sign_margin: float
+    is_closed: bool
+    is_plateau: bool
+    trend: float
+    missing: Missing | None
+    moved_s: float
+
+
+class Excitation:
+    """The excitation of one joint during a free motion; an ankle's axis, which walking closes, is not asked for."""
+
+    def __init__(self, joint: Joint, closes_at: Wanted = HUMAN) -> None:
+        self._joint, self._wanted = joint, closes_at
+        self._collector = SetCollector()
+        self._axis = _AxisInformation(closes_at.tilt_rad, closes_at.wobble)
+        self._centre = _CentreInformation(closes_at.shift_m)
+        self._used, self._next_refit = 0, MIN_SETS
+        self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
+        self._is_closed = False
+        shank = joint.distal if joint.is_knee else joint.proximal
+        self._missing = Missing(shank, Movement.CIRCLE)  # which moves what lies above and below it, too
+        self._state = self._judged()
+
+    @property
+    def state(self) -> ExcitationState:
+        return self._state
+
+    def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> ExcitationState:
+        """Take samples of both sensors, any number of either; the state after the last whole tenth of a second."""
+        for _ in self.states(proximal, distal):
+            pass
+        return self._state
+
+    def states(self, proximal: OrientedSamples, distal: OrientedSamples) -> Iterator[ExcitationState]:
+        """The same, telling the state after every tenth of a second."""
+        for is_new in self._collector.feed(proximal, distal):
+            if is_new:
+                is_refitted = self._add()
+                self._state = self._judged(is_refitted)
+            yield self._state
+
+    def _add(self) -> bool:
+        """Take the newest set; whether the best hypothesis was found anew."""
+        self._used += 1
+        if self._used < self._next_refit:
+            self._centre.add(self._collector.newest)
+            self._axis.add(self._collector.newest, self._centre.lag_s)
+            return False
+        self._next_refit = self._used + max(REFIT_SETS, self._used // REFIT_SHARE)
+        self._centre.refit(self._collector.sets)
+        if len(self._collector.of_one_heading) >= MIN_SETS:
+            self._axis.refit(self._collector.of_one_heading, self._centre.lag_s)
+        return True
+
+    def _judged(self, is_refitted: bool = False) -> ExcitationState:
+        profile, wanted = self._axis.profile, self._wanted
+        axis_rad = self._axis.sd_rad()
+        covariance = self._centre.covariance()
+        if self._joint.is_knee and profile is not None:
+            covariance = _across(covariance, profile.axis_1, profile.axis_2)
+        parts = covariance[:3, :3], covariance[3:6, 3:6]
+        centre_m = float(np.sqrt(max(np.linalg.eigvalsh(part)[-1] for part in parts)))
+        margin = profile.margin if profile is not None else 1.0
+
+        axis_wanting = axis_rad / wanted.axis_rad if self._joint.is_knee else 0.0
+        wanting = max(axis_wanting, centre_m / wanted.centre_m)
+        limit = REOPENS_AT if self._is_closed else 1.0
+        self._is_closed = profile is not None and wanting <= limit and (margin >= MIN_MARGIN or not self._joint.is_knee)
+        if self._used:
+            self._wanting.append(wanting)
+        if is_refitted:  # not more often: nobody can follow a hint that changes ten times a second
+            self._missing = self._hint(axis_wanting, wanting, margin, covariance)
+        trend = 1 - wanting / self._wanting[0] if len(self._wanting) > PROGRESS_OVER else 1.0
+        is_plateau = not self._is_closed and self._used >= PLATEAU_AFTER and trend < MIN_PROGRESS
+        return ExcitationState(
+            axis_sd_rad=axis_rad,
+            centre_sd_m=centre_m,
+            axis_sd_with_floor_rad=float(np.hypot(axis_rad, wanted.axis_floor_rad)),
+            centre_sd_with_floor_m=float(np.hypot(CENTRE_SD_FACTOR * centre_m, wanted.centre_floor_m)),
+            sign_margin=margin,
+            is_closed=self._is_closed,
+            is_plateau=is_plateau,
+            trend=trend,
+            missing=None if self._is_closed else self._missing,
+            moved_s=self._used * SPACING_S,
+        )
+
+    def _hint(self, axis_wanting: float, wanting: float, margin: float, covariance: FloatArray) -> Missing:
+        """The motion that would tell most now."""
+        proximal, distal = self._joint.proximal, self._joint.distal
+        # a foot bends too little about one line to tell where its joint lies
+        bending = Missing(distal, Movement.BEND if self._joint.is_knee else Movement.CIRCLE)
+        profile = self._axis.profile
+        if profile is None:
+            return self._missing
+        if profile.bending_rad_s < MOVING_RAD_S:
+            return bending
+        if self._joint.is_knee and (margin < MIN_MARGIN or axis_wanting == wanting):
+            if margin >= MIN_MARGIN and not self._axis.is_in_doubt:
+                return bending
+            energy_1, energy_2 = self._centre.energies
+            return Missing(proximal if energy_1 < energy_2 else distal, Movement.CIRCLE)
+        weakest = np.linalg.eigh(covariance[:6, :6])[1][:, -1]
+        share = float(weakest[:3] @ weakest[:3])
+        if min(share, 1 - share) > SHARED:  # both sensors agree on the point, but any would do
+            return bending
+        return Missing(proximal if share > 0.5 else distal, Movement.CIRCLE)
+
+
+def _across(covariance: FloatArray, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
+    """The covariance of both centres (6, 6) without what lies along the axes."""
+    keep = np.zeros((6, 6))
+    keep[:3, :3], keep[3:, 3:] = np.eye(3) - np.outer(axis_1, axis_1), np.eye(3) - np.outer(axis_2, axis_2)
+    across: FloatArray = keep @ covariance[:6, :6] @ keep
+    return across
+
+
+class _AxisInformation:
+    """How well the relative rate shows both axes, at the heading that fits best."""
+
+    def __init__(self, tilt_rad: float, wobble: float) -> None:
+        self._tilt_rad, self._wobble = tilt_rad, wobble
+        self.profile: HeadingProfile | None = None
+        self._count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
+
+    def refit(self, sets: Sets, lag_s: float) -> None:
+        self.profile = profile_headings(sets, lag_s)
+        self._count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
+        self.add(sets, lag_s)
+
+    def add(self, sets: Sets, lag_s: float) -> None:
+        if self.profile is None:
+            return
+        rate_1, rate_2 = sets.rates_in_earth(lag_s)
+        c, s = np.cos(self.profile.heading_rad), np.sin(self.profile.heading_rad)
+        relative = rate_2 @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) - rate_1
+        along = np.sum(relative * (sets.earth_from_1 @ self.profile.axis_1), axis=1)
+        self._count += len(sets)
+        self._along += float(along @ along)
+        self._across += float(np.sum(relative**2)) - float(along @ along)
+        self._felt += float(np.sum(rate_1**2)) + float(np.sum(rate_2**2))
+
+    def _of_motion_rad(self) -> float:
+        """Standard deviation of an axis at the best heading.
+
+        The principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
+        sqrt(A) where A stands out; a tilt in step with the motion adds to every sample alike.
+        """
+        if self.profile is None or not self._count:
+            return AXIS_PRIOR_RAD
+        across = max(0.5 * self._across, 0.5 * self._wobble**2 * self._felt, self._count * MIN_RATE_SCALE_RAD_S**2)
+        along = min(self._along, self._count * self.profile.bending_rad_s**2)
+        information = self._count * max(along / across - 1, 0.0)
+        in_step = self._count * self._tilt_rad**2 * along / across
+        return float(np.sqrt(1 / (information / (1 + in_step) + AXIS_PRIOR_RAD**-2)))
+
+    def sd_rad(self) -> float:
+        if self.profile is None:
+            return AXIS_PRIOR_RAD
+        return float(np.hypot(self._of_motion_rad(), max(self.profile.spread_1_rad, self.profile.spread_2_rad)))
+
+    @property
+    def is_in_doubt(self) -> bool:
+        """Whether other headings, rather than too little bending, make the axis uncertain."""
+        profile = self.profile
+        return profile is not None and max(profile.spread_1_rad, profile.spread_2_rad) > self._of_motion_rad()
+
+
+class _CentreInformation:
+    """How well eq 8, linear about the best centres so far, shows both centres.
+
+    Unknowns (13,): o1, o2 (m), b1, b2 (m/s2), and the lag (s) that is to be added to the distal sensor's stamps.
+    """
+
+    def __init__(self, shift_m: float) -> None:
+        self._shift_m = shift_m
+        self._x = np.zeros(13)
+        self._prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6 + [LAG_PRIOR_S**-2])
+        self._scale: float | None = None
+        self._information = np.zeros((13, 13))
+        self._weights = 0.0
+        self.energies = np.zeros(2)
+
+    @property
+    def lag_s(self) -> float:
+        """What is to be added to the distal sensor's stamps, as far as the parabola reaches."""
+        return float(np.clip(self._x[12], -MAX_LAG_S, MAX_LAG_S))
+
+    def refit(self, sets: Sets) -> None:
+        steps = FIRST_STEPS if self._scale is None else STEPS
+        for _ in range(steps):
+            error, slope = self._linear(sets)
+            self._scale = max(robust_sd(error), MIN_SCALE_M_S2)
+            weight = self._weight(error)
+            information = (slope * weight[:, None]).T @ slope + self._prior
+            step = -np.linalg.solve(information, slope.T @ (weight * error) + self._prior @ self._x)
+            self._x = self._x + step * min(1.0, MAX_CENTRE_STEP_M / float(np.max(np.abs(step[:6]))))
+        self._information, self.energies = np.zeros((13, 13)), np.zeros(2)
+        self.add(sets)
+
+    def add(self, sets: Sets) -> None:
+        if self._scale is None:
+            return
+        error, slope = self._linear(sets)
+        weight = self._weight(error)
+        self._information += (slope * weight[:, None]).T @ slope
+        self.energies += [float(weight @ np.sum(dg**2, axis=1)) for dg in (sets.dg1, sets.dg2)]
+
+    def covariance(self) -> FloatArray:
+        """Of the unknowns (13, 13).
+
+        A shift in step with the motion looks the same in every sample, so that its energy, counted in residuals,
+        divides the information however long the motion lasts.
+        """
+        in_step = self._shift_m**2 * float(self.energies.sum())
+        covariance: FloatArray = np.linalg.inv(self._information / (1 + in_step) + self._prior)
+        return covariance
+
+    def _weight(self, error: FloatArray) -> FloatArray:
+        assert self._scale is not None
+        return 1 / (self._scale**2 * np.sqrt(1 + (error / self._scale) ** 2))
+
+    def _linear(self, sets: Sets) -> tuple[FloatArray, FloatArray]:
+        """Eq 8's residual (n,) and its slopes (n, 13)."""
+        x = self._x
+        one = sets.a1 - x[6:9] - sets.k1 @ x[0:3]
+        two = sets.a2 - x[9:12] - sets.k2 @ x[3:6]
+        length_1, length_2 = np.sqrt(np.sum(one**2, axis=1)), np.sqrt(np.sum(two**2, axis=2))
+        share, slope_of_share = parabola(self.lag_s)
+        slope = np.empty((len(sets), 13))
+        slope[:, 6:9] = -one / length_1[:, None]
+        parts = two * (share / length_2)[:, :, None]
+        slope[:, 9:12] = parts.sum(axis=1)
+        slope[:, 0:3] = (slope[:, None, 6:9] @ sets.k1)[:, 0]
+        slope[:, 3:6] = (parts[:, :, None, :] @ sets.k2).sum(axis=1)[:, 0]
+        slope[:, 12] = -length_2 @ slope_of_share
+        return length_1 - length_2 @ share, slope

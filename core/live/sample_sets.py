@@ -1,0 +1,224 @@
+"""Which samples tell about a joint while it moves? A set S(i) of both sensors every tenth of a second (eq 2)."""
+
+from collections import deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.live.orientation import NOTHING, OrientedSamples, joined
+from core.pair import FAST_RAD_S, MOVING_RAD_S, MOVING_WINDOW_S, lever_matrix
+from core.rotations import cross_matrix
+from core.samples import FloatArray
+
+SPACING_S = 0.1
+# Rates are read this far apart: 30 ms damp their noise in angular accelerations tenfold against neighbouring samples
+# and still follow what a leg does. The same span carries the distal sensor's lag.
+NODE_S = 0.03
+NODES = NODE_S * np.arange(-3, 4)
+MAX_SETS = 400  # forty seconds of movement
+DROPPED_AT_ONCE = 100
+MAX_GAP_S = 0.05  # between two samples that are read between
+
+
+@dataclass(slots=True)
+class Sets:
+    """Sample sets of the proximal (1) and the distal (2) sensor, in sensor axes.
+
+    Angular rates `g` and accelerations `dg`, specific forces `a` (n, 3), lever matrices `k` (eq 7) and rotations
+    `earth_from` (n, 3, 3). The distal forces (n, 3, 3) and levers (n, 3, 3, 3) stand for three instants `NODE_S` apart,
+    the set's own in the middle.
+    """
+
+    g1: FloatArray
+    g2: FloatArray
+    dg1: FloatArray
+    dg2: FloatArray
+    a1: FloatArray
+    k1: FloatArray
+    a2: FloatArray
+    k2: FloatArray
+    earth_from_1: FloatArray
+    earth_from_2: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.g1)
+
+    def part(self, chosen: slice) -> "Sets":
+        return Sets(*(getattr(self, name)[chosen] for name in Sets.__slots__))
+
+    def rates_in_earth(self, lag_s: float) -> tuple[FloatArray, FloatArray]:
+        """Both rates (n, 3), each in its own earth axes, the distal one `lag_s` earlier."""
+        rate_2 = self.g2 - lag_s * self.dg2
+        return (self.earth_from_1 @ self.g1[:, :, None])[:, :, 0], (self.earth_from_2 @ rate_2[:, :, None])[:, :, 0]
+
+
+_SHAPES = ((3,), (3,), (3,), (3,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 3))
+
+
+def parabola(lag_s: float) -> tuple[FloatArray, FloatArray]:
+    """Shares (3,) of the three instants in what was `lag_s` earlier, and their slopes (3,) by the lag."""
+    at = -lag_s / NODE_S
+    return (
+        np.array([0.5 * at * (at - 1), 1 - at**2, 0.5 * at * (at + 1)]),
+        np.array([0.5 - at, 2 * at, -0.5 - at]) / NODE_S,
+    )
+
+
+def _products_to_matrix() -> FloatArray:
+    """The (16, 9) by which the products of a unit quaternion's components, scalar first, give its rotation matrix."""
+    linear = np.zeros((4, 4, 3, 3))
+    linear[0, 0] = np.eye(3)
+    for i in range(3):
+        for k in range(3):
+            linear[1 + i, 1 + k, i, k] += 2.0  # 2 v v'
+            linear[1 + i, 1 + i, k, k] -= 1.0  # -|v|^2
+    linear[0, 1:] = 2.0 * cross_matrix(np.eye(3))  # 2 w [v]x
+    return linear.reshape(16, 9)
+
+
+_PRODUCTS_TO_MATRIX = _products_to_matrix()
+
+
+def _matrices(q: FloatArray) -> FloatArray:
+    """Rotation matrices (n, 3, 3) of quaternions (n, 4) of about unit length; for one, ten times as fast as SciPy."""
+    products = q[:, :, None] * (q / np.sum(q**2, axis=1, keepdims=True))[:, None, :]
+    return (products.reshape(-1, 16) @ _PRODUCTS_TO_MATRIX).reshape(-1, 3, 3)
+
+
+class SetCollector:
+    """Takes samples of both sensors as they come and keeps the sets of the last forty seconds of movement.
+
+    Sensors may have rates and grids of their own. Sets stand at whole tenths of a second of the session's clock, so
+    that they do not depend on how the samples were cut into blocks.
+    """
+
+    def __init__(self) -> None:
+        self._ends = (_Recent(), _Recent())
+        self._next: int | None = None
+        self._speeds: deque[float] = deque(maxlen=round(MOVING_WINDOW_S / SPACING_S))
+        self._kept = Sets(*(np.empty((MAX_SETS, *shape)) for shape in _SHAPES))
+        self._count = 0
+        self._same_heading = 0  # the first set since both orientations began
+
+    @property
+    def sets(self) -> Sets:
+        return self._kept.part(slice(0, self._count))
+
+    @property
+    def of_one_heading(self) -> Sets:
+        """The last sets between which neither orientation began anew."""
+        return self._kept.part(slice(self._same_heading, self._count))
+
+    @property
+    def newest(self) -> Sets:
+        return self._kept.part(slice(self._count - 1, self._count))
+
+    def feed(self, proximal: OrientedSamples, distal: OrientedSamples) -> Iterator[bool]:
+        """Take samples; yields once per tenth of a second they complete: did the joint move, is there a new set?"""
+        for end, samples in zip(self._ends, (proximal, distal), strict=True):
+            end.add(samples)
+        first_s, last_s = (max(end.first_s for end in self._ends), min(end.last_s for end in self._ends))
+        if last_s < first_s:
+            return
+        if self._next is None:
+            self._next = int(np.ceil((first_s - NODES[0]) / SPACING_S))
+        while self._next * SPACING_S + NODES[-1] <= last_s:
+            yield self._take(self._next * SPACING_S)
+            self._next += 1
+        for end in self._ends:
+            end.forget_before(self._next * SPACING_S + NODES[0])
+
+    def _take(self, at_s: float) -> bool:
+        one, two = (end.read(at_s) for end in self._ends)
+        if one.is_cut or two.is_cut:
+            self._same_heading = self._count
+            return False
+        g1, g2 = one.gyr_rad_s, two.gyr_rad_s
+        squares = np.einsum("ni,ni->n", g1, g1), np.einsum("ni,ni->n", g2, g2)
+        self._speeds.append(float(np.sqrt(squares[0] + squares[1]).mean()))
+        is_moving = sum(self._speeds) > MOVING_RAD_S * len(self._speeds)
+        is_fast = max(squares[0].max(), squares[1].max()) > FAST_RAD_S**2
+        if not is_moving or is_fast or not (one.is_measured and two.is_measured):
+            return False
+        if self._count == MAX_SETS:
+            self._drop_oldest()
+        kept, n = self._kept, self._count
+        dg2 = _angular_acceleration(g2)
+        kept.g1[n], kept.g2[n], kept.dg1[n], kept.dg2[n] = g1[3], g2[3], _angular_acceleration(g1)[1], dg2[1]
+        kept.a1[n], kept.a2[n] = one.acc_m_s2[1], two.acc_m_s2
+        kept.k1[n], kept.k2[n] = lever_matrix(kept.g1[n], kept.dg1[n]), lever_matrix(g2[2:5], dg2)
+        turned = _matrices(np.stack([one.q_earth_from_sensor, two.q_earth_from_sensor]))
+        kept.earth_from_1[n], kept.earth_from_2[n] = turned
+        self._count += 1
+        return True
+
+    def _drop_oldest(self) -> None:
+        left = MAX_SETS - DROPPED_AT_ONCE
+        for name in Sets.__slots__:
+            values = getattr(self._kept, name)
+            values[:left] = values[DROPPED_AT_ONCE:].copy()
+        self._count = left
+        self._same_heading = max(self._same_heading - DROPPED_AT_ONCE, 0)
+
+
+def _angular_acceleration(rate: FloatArray) -> FloatArray:
+    """Derivatives (3, 3) at the three middle nodes of rates (7, 3); Seel et al. 2014, doi 10.3390/s140406891, eq 1."""
+    slopes: FloatArray = (rate[0:3] - 8 * rate[1:4] + 8 * rate[3:6] - rate[4:7]) / (12 * NODE_S)
+    return slopes
+
+
+@dataclass(frozen=True, slots=True)
+class _Reading:
+    """One sensor's signals at the nodes (7, 10); `is_cut`: a stretch ended between them."""
+
+    signals: FloatArray
+    is_cut: bool
+    is_measured: bool
+
+    @property
+    def q_earth_from_sensor(self) -> FloatArray:
+        return self.signals[3, 0:4]
+
+    @property
+    def gyr_rad_s(self) -> FloatArray:
+        return self.signals[:, 4:7]
+
+    @property
+    def acc_m_s2(self) -> FloatArray:
+        return self.signals[2:5, 7:10]
+
+
+class _Recent:
+    """The last samples of one sensor, to be read at any instant between."""
+
+    def __init__(self) -> None:
+        self._samples = NOTHING
+
+    @property
+    def first_s(self) -> float:
+        return float(self._samples.time_s[0]) if len(self._samples) else np.inf
+
+    @property
+    def last_s(self) -> float:
+        return float(self._samples.time_s[-1]) if len(self._samples) else -np.inf
+
+    def add(self, samples: OrientedSamples) -> None:
+        self._samples = joined([self._samples, samples])
+
+    def forget_before(self, time_s: float) -> None:
+        first = int(np.searchsorted(self._samples.time_s, time_s)) - 1
+        self._samples = self._samples.part(slice(max(first, 0), None))
+
+    def read(self, at_s: float) -> _Reading:
+        wanted_s, time_s = at_s + NODES, self._samples.time_s
+        right = np.searchsorted(time_s, wanted_s).clip(1, len(time_s) - 1)
+        left_s = time_s[right - 1]
+        apart_s = time_s[right] - left_s
+        before, after = self._samples.signals[right - 1], self._samples.signals[right]
+        share = (wanted_s - left_s) / apart_s
+        return _Reading(
+            signals=before + share[:, None] * (after - before),
+            is_cut=bool(apart_s.max() > MAX_GAP_S),
+            is_measured=bool(self._samples.is_measured[right[0] - 1 : right[-1] + 1].all()),
+        )
