@@ -28,7 +28,7 @@ TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
 LANDED_S = 0.02  # after half the peak of loading a foot has landed, whatever then shakes the sensor
 MAX_FALL_S = 0.04  # live: a foot whose toes come down that long has landed
-STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.1  # of the peak of push-off: below, the foot is flat
+STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.08  # of the peak of push-off: below, the foot is flat
 ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
@@ -66,8 +66,8 @@ class FootEvents:
     Attributes
     ----------
     length_m, height_m, turn_rad
-        How far the swing carried the foot over the floor, how high the sensor rose, how far the foot turned about the
-        vertical; NaN from a shank.
+        How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how far the foot
+        turned about the vertical; NaN from a shank.
     is_certain
         False where the foot hardly rolled, or its pitch contradicts its way.
     is_measured

@@ -31,7 +31,8 @@ class BothFeet:
 def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArray]:
     """Time and distance of each stride (k,), named as the columns of strides.csv; NaN where not known.
 
-    A step leads from the other foot's initial contact to this foot's, which ends the stride.
+    A step leads from the other foot's initial contact to this foot's, which ends the stride. `clearance_m` is how high
+    the foot's sensor rises over its swing, wherever it sits; the toe comes much closer to the floor.
     """
     return {
         "stride_time_s": strides.time_s,

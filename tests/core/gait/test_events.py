@@ -19,12 +19,6 @@ from core.tracks import even_tracks
 from devices.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
 FOOT = Site.LEFT_FOOT
-PHASES = {  # from which event to which, and whether the latter is of the next swing
-    "loading": ("initial_contact_s", "full_contact_s", 0),
-    "foot flat": ("full_contact_s", "heel_rise_s", 1),
-    "pre-swing": ("heel_rise_s", "toe_off_s", 0),
-    "swing": ("toe_off_s", "initial_contact_s", 0),
-}
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
 
 
@@ -49,50 +43,6 @@ def walking(
 ) -> WalkerSettings:
     recordings = (Standing(), Walk(speed_m_s=speed_m_s))
     return WalkerSettings(seed=seed, recordings=recordings, rate_hz=rate_hz, tissue=tissue)
-
-
-@pytest.mark.parametrize("tissue", [Tissue.RIGID, Tissue.SOFT])
-@pytest.mark.parametrize(
-    ("speed_m_s", "rate_hz"), [(0.3, 100.0), (0.3, 60.0), (1.19, 50.0), (1.19, 200.0), (2.0, 60.0)]
-)
-def test_events_phases_and_lengths_of_a_simulated_walk_are_found(
-    speed_m_s: float, rate_hz: float, tissue: Tissue
-) -> None:
-    errors: dict[str, list[FloatArray]] = {name: [] for name in (*EVENTS, *PHASES, "length")}
-    for seed in (3, 4, 5):
-        found, truth = walk_of(walking(speed_m_s, rate_hz, tissue, seed))
-        assert len(found) == len(truth.events.toe_off_s)
-        assert found.is_certain[1:-1].all()
-        # the first and the last swing lead from and to standing
-        for name in EVENTS:
-            errors[name].append((getattr(found, name) - getattr(truth.events, name))[1:-1])
-        for name, (begin, end, next_row) in PHASES.items():
-            lasts = [
-                getattr(e, end)[next_row:] - getattr(e, begin)[: len(found) - next_row] for e in (found, truth.events)
-            ]
-            errors[name].append((lasts[0] - lasts[1])[1:-1])
-        errors["length"].append((found.length_m / truth.stride_lengths_m - 1.0)[1:-1])
-    pooled = {name: np.concatenate(values) for name, values in errors.items()}
-    mean_s, sd_s = (0.010, 0.015) if rate_hz >= 100 else (0.020, 0.025)
-    assert {name: np.std(pooled[name]) for name in EVENTS if np.std(pooled[name]) > 0.010} == {}
-    assert {name: np.mean(pooled[name]) for name in PHASES if abs(np.mean(pooled[name])) > mean_s} == {}
-    assert {name: np.std(pooled[name]) for name in PHASES if np.std(pooled[name]) > sd_s} == {}
-    assert abs(np.mean(pooled["length"])) < 0.02
-
-
-@pytest.mark.parametrize(("speed_m_s", "sd_s"), [(0.5, 0.016), (1.19, 0.010)])
-def test_a_sensor_that_shakes_on_its_foot_tells_events_and_lengths_all_the_same(speed_m_s: float, sd_s: float) -> None:
-    errors: dict[str, list[FloatArray]] = {name: [] for name in (*EVENTS, "length")}
-    for seed in (0, 1):
-        found, truth = walk_of(walking(speed_m_s, tissue=Tissue.REAL, seed=seed))
-        assert len(found) == len(truth.events.toe_off_s)
-        for name in EVENTS:
-            errors[name].append((getattr(found, name) - getattr(truth.events, name))[1:-1])
-        errors["length"].append((found.length_m / truth.stride_lengths_m - 1.0)[1:-1])
-    pooled = {name: np.concatenate(values) for name, values in errors.items()}
-    assert {name: np.std(pooled[name]) for name in EVENTS if np.std(pooled[name]) > sd_s} == {}
-    assert abs(np.mean(pooled["length"])) < 0.02
-    assert np.std(pooled["length"]) < 0.03
 
 
 def test_turning_the_sensor_in_its_mounting_changes_no_event() -> None:
