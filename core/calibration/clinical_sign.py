@@ -71,7 +71,9 @@ def knee_sign(
 def ankle_sign(
     knee: ClinicalSign | None, alignment: float, shank_rate_rad_s: FloatArray, is_walking: bool
 ) -> ClinicalSign:
-    """Sign of ankle dorsiflexion.
+    """Sign of ankle dorsiflexion: opposite to the knee's, else by the shank's own swing.
+
+    A knee that does not know its own sign (stiff or locked) is no witness; the shank swings all the same.
 
     Parameters
     ----------
@@ -81,8 +83,10 @@ def ankle_sign(
         -g1.j1,ankle while moving.
     """
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
-    if knee is None or abs(alignment) < MIN_AXES_ALIGNMENT:
-        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), abs(swing) > MIN_MARGIN and knee is None)
+    if knee is None or not knee.is_certain:
+        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), abs(swing) > MIN_MARGIN)
+    if abs(alignment) < MIN_AXES_ALIGNMENT:
+        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), is_certain=False)
     from_knee = knee.sign * (1 if alignment > 0 else -1)
     disagree = from_knee * swing < -MIN_MARGIN
-    return ClinicalSign(-from_knee, min(knee.margin, abs(alignment)), knee.is_certain and not disagree)
+    return ClinicalSign(-from_knee, min(knee.margin, abs(alignment)), not disagree)

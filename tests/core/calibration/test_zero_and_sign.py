@@ -71,8 +71,11 @@ def test_an_ankle_follows_no_knee_whose_axis_is_another() -> None:
     assert not ankle_sign(knee, 0.3, SWING, is_walking=True).is_certain
 
 
-def test_an_ankle_of_an_uncertain_knee_is_uncertain() -> None:
-    assert not ankle_sign(ClinicalSign(1, 0.1, False), 0.95, SWING, is_walking=True).is_certain
+def test_an_ankle_of_an_uncertain_knee_goes_by_the_swing() -> None:
+    for likelier in (1, -1):
+        found = ankle_sign(ClinicalSign(likelier, 0.1, False), 0.95, SWING, is_walking=True)
+        assert (found.sign, found.is_certain) == (-1, True)
+    assert not ankle_sign(ClinicalSign(1, 0.1, False), 0.95, SWING, is_walking=False).is_certain
 
 
 def test_an_ankle_without_knee_goes_by_the_swing() -> None:
