@@ -96,7 +96,7 @@ class LiveEvents:
         self._peak = 0.0
         self._is_rise_told = self._is_walking = self._has_swung = False
         self._off_s: float | None = None
-        self._fastest_m_s = 0.0
+        self._push = self._fastest_m_s = 0.0
         self._left_s = self._slow_s = self._contact_s = math.nan
         self._dip: list[Sample] = []
         self._sway = 0.0  # how fast the standing foot has turned toes down without leaving
@@ -209,6 +209,8 @@ class LiveEvents:
                 self._contacts_s.clear()
             self._contact_s = time_s
             self._contacts_s.append(time_s)
+        elif event is FootEvent.FULL_CONTACT:
+            self._loads.append(-self._peak)
 
     def _is_due(self, time_s: float) -> bool:
         """Would the next sample be too late to tell?"""
@@ -264,7 +266,8 @@ class LiveEvents:
             return
         if now[1] < PASSED_SHARE * self._peak and not self._is_due(self._off_s):
             return
-        self._pushes.append(-self._peak)
+        self._push = -self._peak
+        self._pushes.append(self._push)
         self._sway *= SWAY_MEMORY
         self._still = max(MIN_STILL_RAD_S, STILL_SHARE * median(self._pushes))
         if not self._is_rise_told:
@@ -323,7 +326,7 @@ class LiveEvents:
             self._path = [now]
         if now[1] > 0.0 or lowest == 0.0:
             return
-        usual = median(self._loads) if self._loads else FIRST_LOAD * self._pushes[-1]
+        usual = median(self._loads) if self._loads else FIRST_LOAD * self._push
         contact_s = self._contact(self._path, -lowest)
         if now[1] > PASSED_SHARE * lowest:
             is_slow = speed_m_s < FLAT_SHARE * self._fastest_m_s
@@ -371,7 +374,6 @@ class LiveEvents:
         usual = median(self._loads) if self._loads else math.inf
         is_sure = -self._peak > PASSED_SHARE * usual and now[0] > self._full_s
         if is_sure or self._is_due(self._full_s):
-            self._loads.append(-self._peak)
             self._tell(FootEvent.FULL_CONTACT, self._full_s)
             self._stand(self._full_s)
 

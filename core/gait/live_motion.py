@@ -137,15 +137,18 @@ class LiveMotion:
         return (x / length, y / length, z / length) if length > 0.0 else axis
 
     def find_axis(self) -> Vector | None:
-        """Of a foot that has left the floor for the first time: it travels toes first."""
+        """Of a foot that leaves the floor for the first time: it travels toes first, and has mostly lifted its heel."""
         if self.speed_m_s < MIN_SWING_M_S or not any(self._moment) or self._up is None:
             return None
         axis = self._turned
         for _ in range(POWERS):
             axis = self._powered(axis)
+        forward_m_s = dot(_cross(self._up, axis), self._velocity) / GRAVITY_M_S2
+        is_agreed = dot(self._turned, axis) * forward_m_s < 0.0
+        if not is_agreed and abs(forward_m_s) < MIN_SWING_M_S:
+            return None
         x, y, z = axis
-        is_backward = dot(_cross(self._up, axis), self._velocity) < 0.0
-        self.pitch_axis = (-x, -y, -z) if is_backward else axis
+        self.pitch_axis = axis if forward_m_s > 0.0 else (-x, -y, -z)
         self._votes = FIRST_VOTE
         return self.pitch_axis
 

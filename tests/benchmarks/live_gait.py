@@ -1,0 +1,170 @@
+"""Are a foot's live events those of the whole walk looked at afterwards, in time, and at what cost?
+
+    python -m tests.benchmarks.live_gait [--seeds 2] [--axis]
+
+Optical recordings (where GAITWRIGHT_TEST_DATA names the shared folder) and the project's own patient. For every kind of
+recording and every event: how many the whole walk has, how many were told live, how many more were told (invented), how
+far the live times are from the others, how long after it happened an event was told, and how many were late. With
+`--axis` the pitch axis is given, as a calibration would.
+"""
+
+import argparse
+import os
+import time
+from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from core.body import Side, Site
+from core.calibration.rest import rest_of
+from core.gait.events import gait_of
+from core.gait.foot import follow
+from core.gait.live import FootEvent, LiveEvents
+from core.orientation import oriented
+from core.pair import OrientedTrack
+from core.samples import ImuBlock, RateKind
+from core.tracks import even_tracks
+from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
+
+SITES = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
+SPEEDS_M_S = (0.3, 0.5, 0.8, 1.19, 1.6, 2.0)
+RATES_HZ = (50.0, 60.0, 100.0, 200.0)
+SAME_S = 0.25  # two times of one event are no further apart; a foot's steps are further than twice that
+BOUND_S = 0.030
+
+
+@dataclass(slots=True)
+class Score:
+    """One event over the recordings of one kind; times in s."""
+
+    offline: int = 0
+    invented: int = 0
+    late: int = 0
+    differences: list[float] = field(default_factory=list)
+    delays: list[float] = field(default_factory=list)
+
+
+def add(scores: dict[FootEvent, Score], foot: OrientedTrack, is_axis_given: bool) -> None:
+    track, offline = foot.track, gait_of(foot)
+    live = LiveEvents(follow(foot).pitch_axis if is_axis_given else None)
+    told = live.update(track.time_s, track.gyr_rad_s, track.acc_m_s2)
+    for event in FootEvent:
+        score = scores[event]
+        mine = [e for e in told if e.event is event]
+        score.delays += [e.told_s - e.time_s for e in mine]
+        score.late += sum(e.is_late for e in mine)
+        at_s, free = np.array([e.time_s for e in mine]), np.ones(len(mine), dtype=bool)
+        expected_s = getattr(offline, f"{event}_s")
+        score.offline += len(expected_s)
+        for expected in expected_s:
+            away = np.where(free, np.abs(at_s - expected), np.inf)
+            if len(away) and away.min() < SAME_S:
+                free[np.argmin(away)] = False
+                score.differences.append(float(away.min()))
+        score.invented += int(free.sum())
+
+
+def tell(kind: str, scores: dict[FootEvent, Score]) -> None:
+    for event, score in scores.items():
+        away, delay = 1000.0 * np.array(score.differences), 1000.0 * np.array(score.delays)
+        if not len(away):
+            continue
+        print(
+            f"{kind:28s} {event:15s} | whole walk {score.offline:4d} told {len(away):4d} invented {score.invented:3d}"
+            f" | apart p95 {np.percentile(away, 95):5.1f} worst {away.max():4.0f} ms,"
+            f" over {1000 * BOUND_S:.0f}: {int(np.sum(away > 1000 * BOUND_S)):3d}"
+            f" | after p50 {np.median(delay):3.0f} p95 {np.percentile(delay, 95):4.0f} worst {delay.max():4.0f} ms,"
+            f" late {score.late}",
+            flush=True,
+        )
+
+
+def feet_of(standing: Mapping[Site, ImuBlock], walking: Mapping[Site, ImuBlock]) -> list[OrientedTrack]:
+    feet = []
+    for site, block in walking.items():
+        rest = rest_of(standing[site])
+        assert rest is not None
+        (track,) = even_tracks(block)
+        feet.append(oriented(track, RateKind.INSTANTANEOUS, rest.gyr_rad_s))
+    return feet
+
+
+def optical_feet(data: Path) -> list[OrientedTrack]:
+    """The recording begins in standing."""
+    blocks = {}
+    with np.load(data / "feet_mocap_events" / "healthy_feet.npz") as arrays:
+        for side, site in zip(Side, SITES, strict=True):
+            gyr, acc = (arrays[f"{side}_foot_{kind}"].astype(np.float64) for kind in ("gyr", "acc"))
+            blocks[site] = ImuBlock(f"{side} foot", np.arange(len(gyr)) / float(arrays["fs"]), gyr, acc)
+    return feet_of(blocks, blocks)
+
+
+def walker_feet(settings: WalkerSettings) -> list[OrientedTrack]:
+    standing, walk = simulate(settings).session.recordings
+    return feet_of(standing.imu, walk.imu)
+
+
+def walking(speed_m_s: float, rate_hz: float, tissue: Tissue, seed: int, turn_rad: float = 0.0) -> WalkerSettings:
+    recordings = (Standing(), Walk(speed_m_s=speed_m_s, turn_rad=turn_rad))
+    return WalkerSettings(seed=seed, recordings=recordings, sites=SITES, rate_hz=rate_hz, tissue=tissue)
+
+
+def cost(block: int, rate_hz: float = 200.0) -> None:
+    """Share of one core that both feet take, in blocks as a radio delivers them."""
+    feet = walker_feet(replace(walking(1.19, rate_hz, Tissue.SOFT, 1), recordings=(Standing(), Walk(strides=30))))
+    blocks = []
+    for foot in feet:
+        track = foot.track
+        columns = (track.time_s, track.gyr_rad_s, track.acc_m_s2)
+        blocks.append([[column[k : k + block] for column in columns] for k in range(0, len(track), block)])
+    lasts_s = min(foot.track.end_s - foot.track.start_s for foot in feet)
+    shares = []
+    for _ in range(5):
+        begun = time.process_time()
+        for blocks_of_foot in blocks:
+            live = LiveEvents()
+            for time_s, gyr, acc in blocks_of_foot:
+                live.update(time_s, gyr, acc)
+        shares.append((time.process_time() - begun) / lasts_s)
+    print(f"both feet at {rate_hz:.0f} Hz in blocks of {block}: {100.0 * min(shares):.2f} % of a core")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--seeds", type=int, default=2)
+    parser.add_argument("--axis", action="store_true", help="give the pitch axis")
+    args = parser.parse_args()
+    for block in (1, 4, 40):
+        cost(block)
+    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    if told:
+        scores: dict[FootEvent, Score] = defaultdict(Score)
+        for foot in optical_feet(Path(told)):
+            add(scores, foot, args.axis)
+        tell("optics, both feet", scores)
+    else:
+        print("GAITWRIGHT_TEST_DATA is not set: the optical recordings are left out.")
+    kinds: dict[str, list[WalkerSettings]] = defaultdict(list)
+    for seed in range(args.seeds):
+        for speed_m_s in SPEEDS_M_S:
+            for tissue in Tissue:
+                for rate_hz in RATES_HZ:
+                    name = f"{tissue}, {'50-60' if rate_hz < 100 else '100-200'} Hz"
+                    kinds[name].append(walking(speed_m_s, rate_hz, tissue, seed))
+            ordinary = walking(speed_m_s, 100.0, Tissue.SOFT, seed)
+            kinds["prosthesis, 100 Hz"].append(replace(ordinary, prosthetic_side=Side.LEFT))
+            kinds["stiff knee, 100 Hz"].append(replace(ordinary, stiff_knee_side=Side.LEFT))
+            kinds["turning round, 100 Hz"].append(walking(speed_m_s, 100.0, Tissue.SOFT, seed, np.pi))
+    for name, wanted in kinds.items():
+        scores = defaultdict(Score)
+        for settings in wanted:
+            for foot in walker_feet(settings):
+                add(scores, foot, args.axis)
+        tell(name, scores)
+
+
+if __name__ == "__main__":
+    main()
