@@ -1,0 +1,178 @@
+"""The mean cycle: what is painted for how many strides, where toe-off stands, and the same axes for everyone."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PySide6.QtGui import QColor
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.plots.axes import ANKLE_DEG, KNEE_DEG
+from app.plots.cycle_chart import CycleChart, CycleCharts
+from app.reports.reference_bands import reference_curves
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_ZERO, SideCycle
+from app.theme import Look, load_fonts
+from core.body import Joint, Side
+from core.gait.cycles import mean_cycle
+from core.samples import FloatArray
+
+PERCENT = np.arange(101.0)
+
+
+def cycle(n: int, height_deg: float = 60.0, toe_off_percent: float = 60.0, shift_deg: float = 0.0) -> SideCycle:
+    """Strides about one swing at 72 %, spread by `height_deg` / 20 from stride to stride."""
+    swing = np.exp(-(((PERCENT - 72) / 12) ** 2))
+    spread = np.linspace(-1, 1, n) if n > 1 else np.zeros(n)
+    strides_deg: FloatArray = shift_deg + height_deg * (1 + spread[:, None] / 10) * swing
+    return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off_percent)
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def charts(qtbot: QtBot, look: Look) -> CycleCharts:
+    charts = CycleCharts(look, reference_curves())
+    qtbot.addWidget(charts)
+    charts.resize(420, 640)
+    charts.show()
+    return charts
+
+
+def show(charts: CycleCharts, **sides: SideCycle) -> CycleChart:
+    charts.show_cycles({Joint(f"{side}_knee"): found for side, found in sides.items()}, {}, is_simulated=False)
+    return charts.knee.chart
+
+
+def colour_at(chart: CycleChart, percent: float, angle_deg: float) -> QColor:
+    place = chart.at(percent, angle_deg)
+    return chart.grab().toImage().pixelColor(round(place.x()), round(place.y()))
+
+
+def is_like(colour: QColor, other: QColor | str) -> bool:
+    other = QColor(other)
+    apart = (colour.red() - other.red(), colour.green() - other.green(), colour.blue() - other.blue())
+    return sum(abs(one) for one in apart) < 90
+
+
+def test_axes_are_the_same_for_everyone_unless_a_mean_leaves_them(charts: CycleCharts) -> None:
+    assert (charts.knee.chart.range_deg, charts.ankle.chart.range_deg) == (KNEE_DEG, ANKLE_DEG)
+    show(charts, left=cycle(12))
+    assert charts.knee.chart.range_deg == KNEE_DEG
+    assert charts.knee.note == ""
+    show(charts, left=cycle(12, shift_deg=-22.0))
+    assert charts.knee.chart.range_deg == (-30.0, 80.0)
+    assert "Axis widened: \N{MINUS SIGN}30° to 80°." in charts.knee.note
+    show(charts, left=cycle(12))
+    assert charts.knee.chart.range_deg == KNEE_DEG
+
+
+def test_each_mean_is_drawn_where_it_is_in_its_colour(charts: CycleCharts, look: Look) -> None:
+    chart = show(charts, left=cycle(12, 60), right=cycle(12, 40))
+    assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
+    right = [is_like(colour_at(chart, percent, 40), look.theme.curve(Side.RIGHT)) for percent in np.arange(70, 75, 0.5)]
+    assert any(right)
+
+
+def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: Look) -> None:
+    for side, is_whole in ((Side.LEFT, True), (Side.RIGHT, False)):
+        chart = show(charts, **{str(side): cycle(12, 60)})
+        picture, mean = chart.grab().toImage(), chart.cycles[side].mean.mean
+        seen = []
+        for percent in np.arange(5, 55, 0.25):
+            place = chart.at(percent, float(np.interp(percent, PERCENT, mean)))
+            seen.append(is_like(picture.pixelColor(round(place.x()), round(place.y())), look.theme.curve(side)))
+        assert all(seen) is is_whole
+        assert any(seen)
+
+
+def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleCharts, look: Look) -> None:
+    chart = show(charts)
+    group, c = reference_curves(), look.theme.colours
+    at = 30
+    mean, sd = group.knee_mean_deg[at], group.knee_sd_deg[at]
+    for sds, colour in ((0.6, c.band_1sd), (1.6, c.band_2sd), (2.6, c.surface)):
+        assert colour_at(chart, at, mean + sds * sd).name() == colour.lower()
+    charts.set_band_shown(False)
+    assert colour_at(chart, at, mean + 0.6 * sd).name() == c.surface.lower()
+
+
+def test_the_spread_needs_ten_strides(charts: CycleCharts, look: Look) -> None:
+    charts.set_band_shown(False)
+    for n, has_spread in ((12, True), (9, False)):
+        chart = show(charts, left=cycle(n))
+        sd_deg = float(chart.cycles[Side.LEFT].mean.sd[72])
+        inside = colour_at(chart, 72, 60 + 0.85 * sd_deg)
+        assert (inside.name() != look.theme.colours.surface.lower()) is has_spread, n
+
+
+def test_a_mean_of_fewer_than_three_strides_is_grey(charts: CycleCharts, look: Look) -> None:
+    chart = show(charts, left=cycle(2))
+    assert is_like(colour_at(chart, 72, 60), look.theme.colours.control)
+    chart = show(charts, left=cycle(3))
+    assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
+
+
+def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: Look) -> None:
+    charts.set_band_shown(False)
+    chart = show(charts, left=cycle(5))
+    highest = float(chart.cycles[Side.LEFT].strides_deg.max())
+    assert colour_at(chart, 72, highest).name() == look.theme.colours.surface.lower()
+    charts.set_strides_shown(True)
+    assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
+    charts.set_strides_shown(False)
+    assert colour_at(chart, 72, highest).name() == look.theme.colours.surface.lower()
+
+
+def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts, look: Look) -> None:
+    chart = show(charts, left=cycle(12, toe_off_percent=58.7), right=cycle(12, toe_off_percent=63.2))
+    assert chart.toe_off_labels() == {Side.LEFT: "toe-off L 59 %", Side.RIGHT: "R 63 %"}
+    assert is_like(colour_at(chart, 58.7, 75), look.theme.curve(Side.LEFT))
+    chart = show(charts, left=cycle(12, toe_off_percent=66), right=cycle(12, toe_off_percent=61))
+    assert chart.toe_off_labels() == {Side.RIGHT: "toe-off R 61 %", Side.LEFT: "L 66 %"}
+    assert list(show(charts, left=cycle(12, toe_off_percent=60.4), right=cycle(12)).toe_off_labels()) == [*Side]
+
+
+def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> None:
+    cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12, 20)}
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: NO_ZERO, Joint.RIGHT_KNEE: NO_ZERO}, is_simulated=False)
+    assert charts.knee.note == "L and R: no zero. Range and shape hold, height does not."
+    assert charts.ankle.note == ""
+    charts.show_cycles(cycles, {Joint.LEFT_ANKLE: MAY_BE_MIRRORED}, is_simulated=False)
+    assert charts.ankle.note == "L: sign unsure. The curve may be upside down."
+
+
+def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> None:
+    chart = show(charts, left=cycle(0, toe_off_percent=np.nan), right=cycle(4))
+    charts.set_strides_shown(True)
+    chart.grab()
+    assert charts.knee.note == "L: no whole stride."
+    assert "Left knee has no whole stride." in charts.knee.in_words()
+    assert charts.ankle.note == "No ankle angles."
+
+
+def test_the_mean_curves_are_told_in_words(charts: CycleCharts) -> None:
+    charts.show_cycles({Joint.LEFT_KNEE: cycle(12)}, {}, is_simulated=True)
+    told = charts.knee.chart.accessibleDescription()
+    assert told == "Simulated. Left knee, mean of 12: 0.0° at 0 % to 60.0° at 72 %, toe-off at 60 %."
+    assert charts.knee.chart.accessibleName() == "Knee over one stride"
+
+
+def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look: Look) -> None:
+    inked = []
+    for is_simulated in (False, True):
+        charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)
+        for frame in charts.frames:
+            picture, chart = frame.chart.grab().toImage(), frame.chart
+            corner = [
+                picture.pixelColor(x, y).lightness() for x in range(60) for y in range(int(chart.plot_area().top()) - 6)
+            ]
+            inked.append(min(corner) < 100)
+    assert inked == [False, False, True, True]
