@@ -100,20 +100,40 @@ def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pai
     if np.max(np.abs(position - whole)) < 1e-3:  # one clock: no interpolation
         position = whole
     q2 = at_positions(continuous(distal.q_earth_from_sensor), position)
-    g1, g2 = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
     is_measured = one.is_measured[part] & two.is_measured[np.clip(whole, 0, len(two) - 1).astype(int)]
-    dg1, dg2 = angular_acceleration(g1, one.step_s), angular_acceleration(g2, one.step_s)
+    rates = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
+    forces = one.acc_m_s2[part], at_positions(two.acc_m_s2, position)
+    return pair_of(time_s, one.step_s, rates, forces, (proximal.q_earth_from_sensor[part], q2), is_measured)
+
+
+def pair_of(
+    time_s: FloatArray,
+    step_s: float,
+    rates: tuple[FloatArray, FloatArray],
+    forces: tuple[FloatArray, FloatArray],
+    orientations: tuple[FloatArray, FloatArray],
+    is_measured: BoolArray,
+) -> Pair:
+    """A pair from samples of both sensors at the same instants.
+
+    Parameters
+    ----------
+    rates, forces : two of (n, 3)
+        Proximal and distal, in sensor axes.
+    orientations : two of (n, 4)
+        Earth from sensor.
+    """
     return Pair(
         time_s=time_s,
-        step_s=one.step_s,
-        g1=g1,
-        g2=g2,
-        a1=one.acc_m_s2[part],
-        a2=at_positions(two.acc_m_s2, position),
-        dg1=dg1,
-        dg2=dg2,
-        earth_from_1=matrix_from_quaternion(proximal.q_earth_from_sensor[part]),
-        earth_from_2=matrix_from_quaternion(q2),
+        step_s=step_s,
+        g1=rates[0],
+        g2=rates[1],
+        a1=forces[0],
+        a2=forces[1],
+        dg1=angular_acceleration(rates[0], step_s),
+        dg2=angular_acceleration(rates[1], step_s),
+        earth_from_1=matrix_from_quaternion(orientations[0]),
+        earth_from_2=matrix_from_quaternion(orientations[1]),
         is_measured=is_measured,
         is_known=_known(is_measured),
     )
