@@ -6,6 +6,7 @@ distal sensor's lag among the unknowns. How far tissue misleads both was measure
 random times (tests/benchmarks/excitation.py).
 """
 
+import math
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -114,7 +115,7 @@ class ExcitationState:
     is_plateau
         Not closed, and ten seconds of movement in, four more brought less than a tenth: as good as this motion gives.
     trend
-        Share of what is wanting that the last four seconds of movement took away; negative where it grew.
+        Share of what is wanting that the last four seconds of movement took away; negative where it grew, 1 before.
     missing
         None once closed.
     moved_s
@@ -142,6 +143,7 @@ class Excitation:
         self._axis = _AxisInformation(closes_at.tilt_rad, closes_at.wobble)
         self._centre = _CentreInformation(closes_at.shift_m)
         self._used, self._next_refit = 0, MIN_SETS
+        self._heading_in_force = 0  # of the sets that tell the axis: where an orientation began anew, the longer part
         self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
         self._is_closed = False
         shank = joint.distal if joint.is_knee else joint.proximal
@@ -170,13 +172,18 @@ class Excitation:
         """Take the newest set; whether the best hypothesis was found anew."""
         self._used += 1
         if self._used < self._next_refit:
-            self._centre.add(self._collector.newest)
-            self._axis.add(self._collector.newest, self._centre.lag_s)
+            newest = self._collector.newest
+            self._centre.add(newest)
+            if self._collector.headings == self._heading_in_force:
+                self._axis.add(newest, self._centre.lag_s)
             return False
         self._next_refit = self._used + max(REFIT_SETS, self._used // REFIT_SHARE)
         self._centre.refit(self._collector.sets)
-        if len(self._collector.of_one_heading) >= MIN_SETS:
-            self._axis.refit(self._collector.of_one_heading, self._centre.lag_s)
+        of_one_heading = self._collector.of_one_heading
+        is_same = self._collector.headings == self._heading_in_force
+        if len(of_one_heading) >= (MIN_SETS if is_same else max(MIN_SETS, self._axis.count)):
+            self._axis.refit(of_one_heading, self._centre.lag_s)
+            self._heading_in_force = self._collector.headings
         return True
 
     def _judged(self, is_refitted: bool = False) -> ExcitationState:
@@ -184,9 +191,9 @@ class Excitation:
         axis_rad = self._axis.sd_rad()
         covariance = self._centre.covariance()
         if self._joint.is_knee and profile is not None:
-            covariance = _across(covariance, profile.axis_1, profile.axis_2)
-        parts = covariance[:3, :3], covariance[3:6, 3:6]
-        centre_m = float(np.sqrt(max(np.linalg.eigvalsh(part)[-1] for part in parts)))
+            covariance = profile.across @ covariance @ profile.across
+        of_each = np.linalg.eigvalsh(np.stack([covariance[:3, :3], covariance[3:, 3:]]))
+        centre_m = math.sqrt(of_each[:, -1].max())
         margin = profile.margin if profile is not None else 1.0
 
         axis_wanting = axis_rad / wanted.axis_rad if self._joint.is_knee else 0.0
@@ -202,8 +209,8 @@ class Excitation:
         return ExcitationState(
             axis_sd_rad=axis_rad,
             centre_sd_m=centre_m,
-            axis_sd_with_floor_rad=float(np.hypot(axis_rad, wanted.axis_floor_rad)),
-            centre_sd_with_floor_m=float(np.hypot(CENTRE_SD_FACTOR * centre_m, wanted.centre_floor_m)),
+            axis_sd_with_floor_rad=math.hypot(axis_rad, wanted.axis_floor_rad),
+            centre_sd_with_floor_m=math.hypot(CENTRE_SD_FACTOR * centre_m, wanted.centre_floor_m),
             sign_margin=margin,
             is_closed=self._is_closed,
             is_plateau=is_plateau,
@@ -227,19 +234,11 @@ class Excitation:
                 return bending
             energy_1, energy_2 = self._centre.energies
             return Missing(proximal if energy_1 < energy_2 else distal, Movement.CIRCLE)
-        weakest = np.linalg.eigh(covariance[:6, :6])[1][:, -1]
+        weakest = np.linalg.eigh(covariance)[1][:, -1]
         share = float(weakest[:3] @ weakest[:3])
         if min(share, 1 - share) > SHARED:  # both sensors agree on the point, but any would do
             return bending
         return Missing(proximal if share > 0.5 else distal, Movement.CIRCLE)
-
-
-def _across(covariance: FloatArray, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
-    """The covariance of both centres (6, 6) without what lies along the axes."""
-    keep = np.zeros((6, 6))
-    keep[:3, :3], keep[3:, 3:] = np.eye(3) - np.outer(axis_1, axis_1), np.eye(3) - np.outer(axis_2, axis_2)
-    across: FloatArray = keep @ covariance[:6, :6] @ keep
-    return across
 
 
 class _AxisInformation:
@@ -248,24 +247,25 @@ class _AxisInformation:
     def __init__(self, tilt_rad: float, wobble: float) -> None:
         self._tilt_rad, self._wobble = tilt_rad, wobble
         self.profile: HeadingProfile | None = None
-        self._count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
+        self.count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
 
     def refit(self, sets: Sets, lag_s: float) -> None:
         self.profile = profile_headings(sets, lag_s)
-        self._count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
+        self.count, self._along, self._across, self._felt = 0, 0.0, 0.0, 0.0
         self.add(sets, lag_s)
 
     def add(self, sets: Sets, lag_s: float) -> None:
         if self.profile is None:
             return
         rate_1, rate_2 = sets.rates_in_earth(lag_s)
-        c, s = np.cos(self.profile.heading_rad), np.sin(self.profile.heading_rad)
+        c, s = math.cos(self.profile.heading_rad), math.sin(self.profile.heading_rad)
         relative = rate_2 @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) - rate_1
-        along = np.sum(relative * (sets.earth_from_1 @ self.profile.axis_1), axis=1)
-        self._count += len(sets)
-        self._along += float(along @ along)
-        self._across += float(np.sum(relative**2)) - float(along @ along)
-        self._felt += float(np.sum(rate_1**2)) + float(np.sum(rate_2**2))
+        along = np.einsum("ni,ni->n", relative, sets.earth_from_1 @ self.profile.axis_1)
+        energy = float(along @ along)
+        self.count += len(sets)
+        self._along += energy
+        self._across += float(np.vdot(relative, relative)) - energy
+        self._felt += float(np.vdot(rate_1, rate_1) + np.vdot(rate_2, rate_2))
 
     def _of_motion_rad(self) -> float:
         """Standard deviation of an axis at the best heading.
@@ -273,18 +273,18 @@ class _AxisInformation:
         The principal direction of rates that scatter by s across it and amount to A along it is uncertain by s /
         sqrt(A) where A stands out; a tilt in step with the motion adds to every sample alike.
         """
-        if self.profile is None or not self._count:
+        if self.profile is None or not self.count:
             return AXIS_PRIOR_RAD
-        across = max(0.5 * self._across, 0.5 * self._wobble**2 * self._felt, self._count * MIN_RATE_SCALE_RAD_S**2)
-        along = min(self._along, self._count * self.profile.bending_rad_s**2)
-        information = self._count * max(along / across - 1, 0.0)
-        in_step = self._count * self._tilt_rad**2 * along / across
-        return float(np.sqrt(1 / (information / (1 + in_step) + AXIS_PRIOR_RAD**-2)))
+        across = max(0.5 * self._across, 0.5 * self._wobble**2 * self._felt, self.count * MIN_RATE_SCALE_RAD_S**2)
+        along = min(self._along, self.count * self.profile.bending_rad_s**2)
+        information = self.count * max(along / across - 1, 0.0)
+        in_step = self.count * self._tilt_rad**2 * along / across
+        return 1 / math.sqrt(information / (1 + in_step) + AXIS_PRIOR_RAD**-2)
 
     def sd_rad(self) -> float:
         if self.profile is None:
             return AXIS_PRIOR_RAD
-        return float(np.hypot(self._of_motion_rad(), max(self.profile.spread_1_rad, self.profile.spread_2_rad)))
+        return math.hypot(self._of_motion_rad(), max(self.profile.spread_1_rad, self.profile.spread_2_rad))
 
     @property
     def is_in_doubt(self) -> bool:
@@ -305,13 +305,12 @@ class _CentreInformation:
         self._prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6 + [LAG_PRIOR_S**-2])
         self._scale: float | None = None
         self._information = np.zeros((13, 13))
-        self._weights = 0.0
         self.energies = np.zeros(2)
 
     @property
     def lag_s(self) -> float:
         """What is to be added to the distal sensor's stamps, as far as the parabola reaches."""
-        return float(np.clip(self._x[12], -MAX_LAG_S, MAX_LAG_S))
+        return max(-MAX_LAG_S, min(MAX_LAG_S, float(self._x[12])))
 
     def refit(self, sets: Sets) -> None:
         steps = FIRST_STEPS if self._scale is None else STEPS
@@ -331,17 +330,17 @@ class _CentreInformation:
         error, slope = self._linear(sets)
         weight = self._weight(error)
         self._information += (slope * weight[:, None]).T @ slope
-        self.energies += [float(weight @ np.sum(dg**2, axis=1)) for dg in (sets.dg1, sets.dg2)]
+        self.energies += weight @ sets.effort
 
     def covariance(self) -> FloatArray:
-        """Of the unknowns (13, 13).
+        """Of both centres (6, 6).
 
         A shift in step with the motion looks the same in every sample, so that its energy, counted in residuals,
         divides the information however long the motion lasts.
         """
         in_step = self._shift_m**2 * float(self.energies.sum())
         covariance: FloatArray = np.linalg.inv(self._information / (1 + in_step) + self._prior)
-        return covariance
+        return covariance[:6, :6]
 
     def _weight(self, error: FloatArray) -> FloatArray:
         assert self._scale is not None
@@ -352,7 +351,7 @@ class _CentreInformation:
         x = self._x
         one = sets.a1 - x[6:9] - sets.k1 @ x[0:3]
         two = sets.a2 - x[9:12] - sets.k2 @ x[3:6]
-        length_1, length_2 = np.sqrt(np.sum(one**2, axis=1)), np.sqrt(np.sum(two**2, axis=2))
+        length_1, length_2 = np.sqrt(np.einsum("ni,ni->n", one, one)), np.sqrt(np.einsum("nmi,nmi->nm", two, two))
         share, slope_of_share = parabola(self.lag_s)
         slope = np.empty((len(sets), 13))
         slope[:, 6:9] = -one / length_1[:, None]

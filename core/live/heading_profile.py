@@ -37,6 +37,8 @@ class HeadingProfile:
         Of the distal earth in the proximal one.
     axis_1, axis_2 : (3,)
         In sensor axes.
+    across : (6, 6)
+        Takes from two vectors, one in each sensor, what lies along the axes.
     spread_1_rad, spread_2_rad
         Root mean square of the angles to the axes that other headings give, each weighted by how well it fits.
     margin
@@ -48,6 +50,7 @@ class HeadingProfile:
     heading_rad: float
     axis_1: FloatArray
     axis_2: FloatArray
+    across: FloatArray
     spread_1_rad: float
     spread_2_rad: float
     margin: float
@@ -90,7 +93,10 @@ def profile_headings(sets: Sets, lag_s: float) -> HeadingProfile:
     opposite = np.log(_rate_cost(total - along, aligned[across])) + forces[across]
     margin = float(np.exp(min([*rivals, float(opposite)]) - cost[best]))
     bending = float(np.sqrt(spread_1.sum(axis=1).min()))
-    return HeadingProfile(float(HEADINGS[best]), axis_1, axis_2, spreads[0], spreads[1], margin, bending)
+    keep = np.eye(6)
+    keep[:3, :3] -= np.outer(axis_1, axis_1)
+    keep[3:, 3:] -= np.outer(axis_2, axis_2)
+    return HeadingProfile(float(HEADINGS[best]), axis_1, axis_2, keep, spreads[0], spreads[1], margin, bending)
 
 
 def _spread(axes: FloatArray, best: int, weight: FloatArray, is_far: FloatArray) -> float:

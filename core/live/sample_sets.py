@@ -27,13 +27,13 @@ class Sets:
 
     Angular rates `g` and accelerations `dg`, specific forces `a` (n, 3), lever matrices `k` (eq 7) and rotations
     `earth_from` (n, 3, 3). The distal forces (n, 3, 3) and levers (n, 3, 3, 3) stand for three instants `NODE_S` apart,
-    the set's own in the middle.
+    the set's own in the middle. `effort` (n, 2): the squared angular accelerations of both.
     """
 
     g1: FloatArray
     g2: FloatArray
-    dg1: FloatArray
     dg2: FloatArray
+    effort: FloatArray
     a1: FloatArray
     k1: FloatArray
     a2: FloatArray
@@ -53,7 +53,7 @@ class Sets:
         return (self.earth_from_1 @ self.g1[:, :, None])[:, :, 0], (self.earth_from_2 @ rate_2[:, :, None])[:, :, 0]
 
 
-_SHAPES = ((3,), (3,), (3,), (3,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 3))
+_SHAPES = ((3,), (3,), (3,), (2,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 3))
 
 
 def parabola(lag_s: float) -> tuple[FloatArray, FloatArray]:
@@ -100,6 +100,7 @@ class SetCollector:
         self._kept = Sets(*(np.empty((MAX_SETS, *shape)) for shape in _SHAPES))
         self._count = 0
         self._same_heading = 0  # the first set since both orientations began
+        self.headings = 0  # counts up where an orientation begins anew
 
     @property
     def sets(self) -> Sets:
@@ -133,6 +134,7 @@ class SetCollector:
         one, two = (end.read(at_s) for end in self._ends)
         if one.is_cut or two.is_cut:
             self._same_heading = self._count
+            self.headings += 1
             return False
         g1, g2 = one.gyr_rad_s, two.gyr_rad_s
         squares = np.einsum("ni,ni->n", g1, g1), np.einsum("ni,ni->n", g2, g2)
@@ -144,10 +146,11 @@ class SetCollector:
         if self._count == MAX_SETS:
             self._drop_oldest()
         kept, n = self._kept, self._count
-        dg2 = _angular_acceleration(g2)
-        kept.g1[n], kept.g2[n], kept.dg1[n], kept.dg2[n] = g1[3], g2[3], _angular_acceleration(g1)[1], dg2[1]
+        dg1, dg2 = _angular_acceleration(g1)[1], _angular_acceleration(g2)
+        kept.g1[n], kept.g2[n], kept.dg2[n] = g1[3], g2[3], dg2[1]
+        kept.effort[n] = dg1 @ dg1, dg2[1] @ dg2[1]
         kept.a1[n], kept.a2[n] = one.acc_m_s2[1], two.acc_m_s2
-        kept.k1[n], kept.k2[n] = lever_matrix(kept.g1[n], kept.dg1[n]), lever_matrix(g2[2:5], dg2)
+        kept.k1[n], kept.k2[n] = lever_matrix(g1[3], dg1), lever_matrix(g2[2:5], dg2)
         turned = _matrices(np.stack([one.q_earth_from_sensor, two.q_earth_from_sensor]))
         kept.earth_from_1[n], kept.earth_from_2[n] = turned
         self._count += 1
@@ -212,7 +215,7 @@ class _Recent:
 
     def read(self, at_s: float) -> _Reading:
         wanted_s, time_s = at_s + NODES, self._samples.time_s
-        right = np.searchsorted(time_s, wanted_s).clip(1, len(time_s) - 1)
+        right = np.minimum(np.maximum(np.searchsorted(time_s, wanted_s), 1), len(time_s) - 1)
         left_s = time_s[right - 1]
         apart_s = time_s[right] - left_s
         before, after = self._samples.signals[right - 1], self._samples.signals[right]
