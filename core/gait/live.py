@@ -292,7 +292,7 @@ class LiveEvents:
         low, high = self._path[0][0], None
         for last, now in pairwise(self._path):
             if last[1] > -still >= now[1]:
-                low = _crossing(last, now, -still)
+                low, high = _crossing(last, now, -still), None
             if last[1] > -2.0 * still >= now[1]:
                 high = _crossing(last, now, -2.0 * still)
             if now[1] <= self._peak:

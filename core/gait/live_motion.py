@@ -12,6 +12,7 @@ from core.samples import FloatArray
 
 RESTLESS = 10.0  # in units of CALM squared; a foot on the floor moves less, unless its sensor sits very loosely
 MAX_RESTLESS = 60.0  # a landing counts no more than this, so that the foot is found calm soon after
+QUIET, QUIET_S = 1.5, 0.15  # a force of gravity's length for so long is gravity, wherever it points after a shock
 CALM_S = 0.04  # over which that is averaged,
 LEVELLING_S = 0.1  # in which a foot that lies calm shows the vertical,
 STOPPING_S = 0.05  # and loses its speed
@@ -55,6 +56,7 @@ class LiveMotion:
         self._up: Vector | None = None
         self._restless = MAX_RESTLESS
         self._left_s = -math.inf
+        self._quiet_s = 0.0
         self._velocity = self._turned = self._tilted = (0.0, 0.0, 0.0)
         self._way: list[tuple[float, Vector]] = []
         self.travelled: list[tuple[float, Vector]] = []
@@ -71,18 +73,14 @@ class LiveMotion:
         sx, sy, sz = self._tilted
         self._tilted = sx + tx * step_s, sy + ty * step_s, sz + tz * step_s
 
-        if self._up is None:  # the length of the force tells whether it is gravity
-            ax, ay, az = math.sqrt(fx * fx + fy * fy + fz * fz) - GRAVITY_M_S2, 0.0, 0.0
-            ux, uy, uz = acc
-        else:
-            ux, uy, uz = self._up
-            ux, uy, uz = (
-                ux + (uy * z - uz * y) * step_s,
-                uy + (uz * x - ux * z) * step_s,
-                uz + (ux * y - uy * x) * step_s,
-            )
-            ax, ay, az = fx - ux, fy - uy, fz - uz
-        restless = turning / CALM_RAD_S**2 + (ax * ax + ay * ay + az * az) / CALM_M_S2**2
+        ux, uy, uz = self._up or acc
+        ux, uy, uz = ux + (uy * z - uz * y) * step_s, uy + (uz * x - ux * z) * step_s, uz + (ux * y - uy * x) * step_s
+        ax, ay, az = fx - ux, fy - uy, fz - uz
+        too_long = math.sqrt(fx * fx + fy * fy + fz * fz) - GRAVITY_M_S2
+        restless = turning / CALM_RAD_S**2 + too_long * too_long / CALM_M_S2**2
+        self._quiet_s = self._quiet_s + step_s if restless < QUIET else 0.0
+        if self._up is not None and self._quiet_s < QUIET_S:
+            restless = turning / CALM_RAD_S**2 + (ax * ax + ay * ay + az * az) / CALM_M_S2**2
         share = step_s / (CALM_S + step_s)
         self._restless += share * (min(restless, MAX_RESTLESS) - self._restless)
         calm = max(0.0, 1.0 - self._restless / RESTLESS)

@@ -270,11 +270,11 @@ def test_a_stamp_that_does_not_advance_is_passed_over() -> None:
     )
 
 
-@pytest.mark.parametrize("is_axis_given", [False, True])
-def test_optics_feet_are_told_as_offline(test_data: Callable[[str], Path], is_axis_given: bool) -> None:
+@pytest.mark.parametrize(("is_axis_given", "every"), [(False, 1), (True, 1), (False, 2), (False, 4)])
+def test_optics_feet_are_told_as_offline(test_data: Callable[[str], Path], is_axis_given: bool, every: int) -> None:
     with np.load(test_data("feet_mocap_events") / "healthy_feet.npz") as arrays:
-        rate_hz = float(arrays["fs"])
-        feet = [[arrays[f"{side}_foot_{k}"].astype(np.float64) for k in ("gyr", "acc")] for side in Side]
+        rate_hz = float(arrays["fs"]) / every
+        feet = [[arrays[f"{side}_foot_{k}"].astype(np.float64)[2::every] for k in ("gyr", "acc")] for side in Side]
     found = dict.fromkeys(FootEvent, 0)
     for gyr, acc in feet:
         block = ImuBlock("foot", np.arange(len(gyr)) / rate_hz, gyr, acc)
@@ -285,9 +285,10 @@ def test_optics_feet_are_told_as_offline(test_data: Callable[[str], Path], is_ax
         for event in FootEvent:
             found[event] += int(np.sum(differences(told, offline, event) < MAX_DIFFERENCE_S))
             assert len(times(told, event)) <= len(offline)
-        # a start with a twist and the last small step to a halt are told late
-        assert sum(e.is_late for e in told if e.event in ROLLING) <= 2
-    assert found[FootEvent.TOE_OFF] == 64
-    assert found[FootEvent.INITIAL_CONTACT] >= 63
-    assert found[FootEvent.HEEL_RISE] >= 62
-    assert found[FootEvent.FULL_CONTACT] >= 62
+        # flat landings in a turn and the last small step to a halt are told late
+        assert sum(e.is_late for e in told if e.event in ROLLING) <= (2 if every < 4 else 4)
+    least = 64 if every == 1 else 62
+    assert found[FootEvent.TOE_OFF] >= least
+    assert found[FootEvent.INITIAL_CONTACT] >= least - 2
+    assert found[FootEvent.HEEL_RISE] >= least - 2
+    assert found[FootEvent.FULL_CONTACT] >= least - 2
