@@ -214,6 +214,7 @@ class ChartFrame(Card):
     def __init__(self, look: Look, name: str, sign: str, chart: AngleChart, tells_time: bool = False) -> None:
         self._name = name
         self.chart = chart
+        self._is_narrow = False
         self._title = Text(look, name, size=16, weight=SEMIBOLD)
         self._sign = Text(look, sign, size=12, tone="ink2")
         self._simulated = Text(look, "SIMULATED", size=12, weight=SEMIBOLD)
@@ -241,7 +242,7 @@ class ChartFrame(Card):
             readings.addWidget(self._values[side])
         self._head = (names, readings)
         self._grid = head
-        self._place(is_narrow=False)
+        self._place()
         self.column.addLayout(head)
         self.column.addWidget(chart, 1)
         self._moment.setVisible(tells_time)
@@ -250,7 +251,8 @@ class ChartFrame(Card):
 
     def set_narrow(self, is_narrow: bool) -> None:
         """Put the readings under the title where they do not fit beside it."""
-        self._place(is_narrow)
+        self._is_narrow = is_narrow
+        self._place()
 
     def set_simulated(self, is_simulated: bool) -> None:
         self._simulated.setVisible(is_simulated)
@@ -290,11 +292,11 @@ class ChartFrame(Card):
                 said.append(f"{part} has no values.")
         return " ".join(said) or f"No {self._name.lower()} angles."
 
-    def _place(self, is_narrow: bool) -> None:
+    def _place(self) -> None:
         for part in self._head:
             self._grid.removeItem(part)
         self._grid.addLayout(self._head[0], 0, 0)
-        if is_narrow:
+        if self._is_narrow or self.chart.is_widened:  # that it is widened takes their room
             self._grid.addLayout(self._head[1], 1, 0)
         else:
             self._grid.addLayout(self._head[1], 0, 1)
@@ -312,6 +314,7 @@ class ChartFrame(Card):
         self._wide.setText(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}")
         self._wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
+        self._place()
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

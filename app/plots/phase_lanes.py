@@ -96,6 +96,9 @@ class PhaseFrame(Card):
         self._title.addWidget(self._simulated)
         self._reading.addStretch(1)
         for side in Side:
+            policy = self._chips[side].sizePolicy()
+            policy.setRetainSizeWhenHidden(True)  # nothing may jump when the line comes
+            self._chips[side].setSizePolicy(policy)
             self._reading.addWidget(self._chips[side])
             self._reading.addWidget(self._readings[side])
         self.column.addLayout(self._head)
@@ -118,8 +121,8 @@ class PhaseFrame(Card):
         self.lanes.show_lanes({side: Lane.of(time_s, gait[side]) for side in Side if side in gait})
         self._simulated.setVisible(is_simulated)
         for side in Side:
-            for widget in (self._chips[side], self._readings[side]):
-                widget.setVisible(side in gait)
+            self._chips[side].hide()
+            self._readings[side].setVisible(side in gait)
         self.lanes.setAccessibleName("Gait phases over time")
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
@@ -128,6 +131,7 @@ class PhaseFrame(Card):
         """Name what each foot does at sample `row`."""
         for side, lane in self.lanes.lanes.items():
             self._readings[side].setText("" if row is None else lane.in_words(row))
+            self._chips[side].setVisible(row is not None)
         self._reserve_room()
         self.lanes.set_cursor(time_s)
 

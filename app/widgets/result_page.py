@@ -34,13 +34,13 @@ NARROW_BELOW = 940  # what both tables need without the charts
 TWO_CHARTS_FROM = 680
 
 HINTS = {
-    RESULT: "Band: ± 2 SD.",
+    RESULT: "Pale: certainty, ± 2 SD.",
     PUBLISHED: "Equation 15 of the paper, on the same joint axes. No certainty is known for it.",
     ORIENTATION: "Equation 10 of the paper, from orientations with magnetometer. No certainty is known for it.",
-    BOTH: "Bold: the result, with a band of ± 2 SD. Thin: the published method.",
+    BOTH: "Bold: the result, pale its certainty of ± 2 SD. Thin: the published method.",
 }
 KEYS = "Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read."
-EVENT_KEYS = "[ ] go from contact to toe-off."
+EVENT_KEYS = "[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off."
 
 
 class ResultPage(QWidget):

@@ -1,6 +1,6 @@
 """A walk as its mean cycle or as a whole: which views there are, their keys, and the words and figures beside them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from app.widgets.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.gait.strides import Reason
-from core.results import Analysis, RecordingAnalysis
+from core.results import Analysis, RecordingAnalysis, SideGait
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 WIDE, COMPACT = (1280.0, 800.0), (960.0, 600.0)
@@ -46,9 +46,9 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[Resul
     qapp.setStyleSheet("")
 
 
-def changed(analysis: Analysis, **changes: object) -> Analysis:
-    """Give the analysis with its walk changed."""
-    recordings = [replace(r, **changes) if r.gait else r for r in analysis.recordings]  # type: ignore[arg-type]  # mixed
+def changed(analysis: Analysis, gait: Mapping[Side, SideGait]) -> Analysis:
+    """Give the analysis with another gait in its walk."""
+    recordings = [replace(r, gait=gait) if r.gait else r for r in analysis.recordings]
     return replace(analysis, recordings=tuple(recordings))
 
 

@@ -86,7 +86,7 @@ def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: Look) -> N
         chart = show(charts, **{str(side): cycle(12, 60)})
         picture, mean = chart.grab().toImage(), chart.cycles[side].mean.mean
         seen = []
-        for percent in np.arange(5, 55, 0.25):
+        for percent in np.arange(5, 42, 0.25):
             place = chart.at(percent, float(np.interp(percent, PERCENT, mean)))
             seen.append(is_like(picture.pixelColor(round(place.x()), round(place.y())), look.theme.curve(side)))
         assert all(seen) is is_whole
