@@ -5,9 +5,12 @@ on the way: the usual peaks from the last steps, the pitch axis from all turning
 an event waits until its peak has passed, so that it is the same peak as offline.
 
 A rate alone does not tell a push-off from a heel lifted on the spot: from stance to stance the specific force is
-integrated, and a foot that gains no speed has not left the floor. Two things cannot be known in time and are told
-late (`LiveEvent.is_late`): the heel rise of a step from standing, which is told with its toe-off, since one who shifts
-weight lifts the heel as well; and steps of a foot that hardly rolls.
+integrated, and a foot that gains no speed has not left the floor. What cannot be known in time is told late
+(`LiveEvent.is_late`): the heel rise of a step from standing, with its toe-off, since one who shifts weight lifts the
+heel as well; flat landings, and steps of a foot that hardly rolls, once the foot is calm again; and the heel rises of
+a sensor that shakes on its foot, whose stances have shown that it does. The full contact of a flat landing is not told.
+
+All this is about walking. A foot that is moved about in the air is told steps too, until it has not stood for long.
 """
 
 import math
@@ -29,13 +32,13 @@ from core.gait.events import (
     TOE_OFF_SHARE,
 )
 from core.gait.foot import MIN_SWING_M, MIN_SWING_M_S
-from core.gait.live_motion import LiveMotion, Vector, dot
+from core.gait.live_motion import LiveMotion, Travelled, Vector, dot, speeds_of, way_of_m
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
 from core.samples import FloatArray
 from core.tracks import MAX_REPORTED_GAP_S
 
-MAX_DELAY_S = 0.095
+MAX_DELAY_S = 0.095  # a display that draws every 33 ms then shows an event when it is 0.13 s old at most
 MEMORY = 5  # steps whose peaks and times say what is usual
 PASSED_SHARE = 0.6  # of its peak: a rate that has fallen so far has passed it
 SURE_RATIO = 5.0  # times the level of rest: a heel that turns so fast has risen
@@ -45,9 +48,9 @@ MIN_FLAT_S = 0.06  # a foot stays flat longer; a loading shock does not
 STANDING_S = 1.5  # flat for longer, and the foot stands; at 0.3 m/s a foot is flat for 0.7 s of each stride
 MAX_PUSH_S = 0.3  # from the end of push-off until the foot has speed; longer, and the heel was lifted on the spot
 FIRST_LOAD = 0.7  # of the peak of push-off is the peak of loading, until one has been seen
-MIN_SWING_S = 0.12
+MIN_SWING_S = 0.12  # a third of the swing at 2 m/s: an earlier fall of the toes is not the landing
 SWAY_RATIO, SWAY_MEMORY = 2.0, 0.85  # a heel rise is faster than the sways of the last stances
-MAX_SWING_S = 1.5
+MAX_SWING_S = 1.5  # more than twice the swing at 0.3 m/s; after more, the landing was missed
 LANDING_SHARE = 0.7  # of its greatest speed: a foot that is faster is in mid-swing
 
 Sample = tuple[float, float]  # time, rate
@@ -164,9 +167,9 @@ class LiveEvents:
             for then_s, rate, speed_m_s in waiting:
                 self._advance((then_s, dot(rate, axis)), speed_m_s)
 
-    def _arrive(self, travelled: list[tuple[float, Vector]]) -> None:
+    def _arrive(self, travelled: Travelled) -> None:
         """The foot is calm again. Had it hardly rolled, its speed tells when it left and landed."""
-        speeds = _speeds(travelled)
+        speeds = speeds_of(travelled)
         fastest = max(range(len(speeds)), key=lambda k: speeds[k][1])
         level = FLAT_SHARE * speeds[fastest][1]
         on_s = next((_crossing(a, b, level) for a, b in pairwise(speeds[fastest:]) if b[1] <= level), self._time_s)
@@ -174,7 +177,7 @@ class LiveEvents:
             self._slow_s = on_s
             return
         is_told = self._contact_s >= travelled[0][0]
-        if is_told or speeds[fastest][1] < MIN_SWING_M_S or _way_m(travelled) < MIN_SWING_M:
+        if is_told or speeds[fastest][1] < MIN_SWING_M_S or way_of_m(travelled) < MIN_SWING_M:
             return
         rises = [pair for pair in pairwise(speeds[: fastest + 1]) if pair[0][1] <= level < pair[1][1]]
         self._tell(FootEvent.TOE_OFF, _crossing(*rises[-1], level) if rises else speeds[0][0])
@@ -386,23 +389,3 @@ def _crossing(last: Sample, now: Sample, level: float) -> float:
 def _passes(last: Sample, now: Sample, level: float) -> float | None:
     """When the straight line between two samples passes `level`; None where it does not."""
     return None if (last[1] > level) == (now[1] > level) else _crossing(last, now, level)
-
-
-def _speeds(travelled: list[tuple[float, Vector]]) -> list[Sample]:
-    """Of a foot that is calm at the end: what velocity is left there has crept in evenly."""
-    start_s, (end_s, (ex, ey, ez)) = travelled[0][0], travelled[-1]
-    lasts_s = max(end_s - start_s, 1e-9)
-    return [
-        (t, math.hypot(x - share * ex, y - share * ey, z - share * ez))
-        for t, (x, y, z) in travelled
-        for share in ((t - start_s) / lasts_s,)
-    ]
-
-
-def _way_m(travelled: list[tuple[float, Vector]]) -> float:
-    """How far a foot went that hardly turned, and is calm at the end."""
-    total = [0.0, 0.0, 0.0]
-    for (a, v), (b, w) in pairwise(travelled):
-        total = [s + 0.5 * (b - a) * (p + q) for s, p, q in zip(total, v, w, strict=True)]
-    half_s = 0.5 * (travelled[-1][0] - travelled[0][0])
-    return math.hypot(*(s - half_s * e for s, e in zip(total, travelled[-1][1], strict=True)))

@@ -5,6 +5,7 @@ three alone would cost more.
 """
 
 import math
+from itertools import pairwise
 
 from core.gait.foot import CALM_M_S2, CALM_RAD_S, GRAVITY_M_S2, MIN_SWING_M_S, MOVING_RAD_S
 from core.gait.strides import MAX_STRIDE_S
@@ -24,6 +25,7 @@ FIRST_VOTE = 1.5  # of the way of walking: two steps to the contrary turn the to
 VOTE_MEMORY = 0.7  # of one step's word on where the toes are, in the next
 
 Vector = tuple[float, float, float]
+Travelled = list[tuple[float, Vector]]  # time and velocity
 Moment = tuple[float, float, float, float, float, float]
 
 
@@ -58,8 +60,8 @@ class LiveMotion:
         self._left_s = -math.inf
         self._quiet_s = 0.0
         self._velocity = self._turned = self._tilted = (0.0, 0.0, 0.0)
-        self._way: list[tuple[float, Vector]] = []
-        self.travelled: list[tuple[float, Vector]] = []
+        self._way: Travelled = []
+        self.travelled: Travelled = []
         self.speed_m_s = self.calm_s = self.flat_s = 0.0
 
     def add(self, now_s: float, step_s: float, gyr: Vector, acc: Vector, flat_rad_s: float) -> None:
@@ -167,6 +169,26 @@ class LiveMotion:
         x, y, z = self.pitch_axis
         self.pitch_axis, self._votes = (-x, -y, -z), -self._votes
         return True
+
+
+def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:
+    """Time and speed of a foot that is calm at the end: what velocity is left there has crept in evenly."""
+    start_s, (end_s, (ex, ey, ez)) = travelled[0][0], travelled[-1]
+    lasts_s = max(end_s - start_s, 1e-9)
+    return [
+        (t, math.hypot(x - share * ex, y - share * ey, z - share * ez))
+        for t, (x, y, z) in travelled
+        for share in ((t - start_s) / lasts_s,)
+    ]
+
+
+def way_of_m(travelled: Travelled) -> float:
+    """How far a foot went that hardly turned, and is calm at the end."""
+    total = [0.0, 0.0, 0.0]
+    for (a, v), (b, w) in pairwise(travelled):
+        total = [s + 0.5 * (b - a) * (p + q) for s, p, q in zip(total, v, w, strict=True)]
+    half_s = 0.5 * (travelled[-1][0] - travelled[0][0])
+    return math.hypot(*(s - half_s * e for s, e in zip(total, travelled[-1][1], strict=True)))
 
 
 def dot(a: Vector, b: Vector) -> float:
