@@ -12,7 +12,8 @@ A foot that lands with its forefoot is turned the other way by the floor: toes u
 contact is where it ceases to sink, be the heel on the floor or not.
 
 
-Where a foot hardly rolls (shuffling, a flat landing) the pitch says nothing; its speed does, and the events are marked.
+Where a foot hardly rolls, or comes down flat while it goes on (shuffling), the pitch says nothing; its speed does, and
+the events are marked.
 Where the sensor shakes on its foot, the rate of one swing says little; the foot's mean swing does.
 """
 
@@ -28,11 +29,13 @@ TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
 LANDED_S = 0.02  # after half the peak of loading a foot has landed, whatever then shakes the sensor
 MAX_FALL_S = 0.04  # live: a foot whose toes come down that long has landed
-STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.08  # of the peak of push-off: below, the foot is flat
+STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.09  # of the peak of push-off: below, the foot is flat; the share at 0.3 m/s
 ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
 FOREFOOT_RAD = np.deg2rad(3.0)  # heels first, real feet go 2 deg below their rest
+FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up may come down in the air: the foot then goes on at more than
+LANDED_SHARE = 0.25  # of its greatest speed
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
 MIN_SWINGS_TO_AVERAGE = 4
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor
@@ -45,6 +48,19 @@ class Usual:
     push_rad_s: float
     load_rad_s: float
     still_rad_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Landing:
+    """A foot that comes down: its pitch rate (n,) from index `begin` on to rest, which the floor makes negative.
+
+    With the forefoot first that is toes up. A flat landing hardly has the toes up before.
+    """
+
+    begin: int
+    rate_rad_s: FloatArray
+    is_forefoot: bool = False
+    is_flat: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,22 +122,23 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     speed = np.linalg.norm(motion.velocity_m_s, axis=1)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
     leaving = [rate[a : m + 1] for a, m, _ in spans]
-    lowered = [_lowered_from(motion.pitch_rad, m, b) for _, m, b in spans]
-    is_forefoot = np.array([begin > m for begin, (_, m, _) in zip(lowered, spans, strict=True)], dtype=bool)
-    landing = [(-rate if begin > m else rate)[begin : b + 1] for begin, (_, m, b) in zip(lowered, spans, strict=True)]
-    push, load = (-np.array([part.min() for part in parts]) for parts in (leaving, landing))
+    landings = [_landing_of(motion, m, b) for _, m, b in spans]
+    is_heel_first = np.array([not landing.is_forefoot for landing in landings], dtype=bool)
+    push, load = (-np.array([part.min() for part in parts]) for parts in (leaving, [x.rate_rad_s for x in landings]))
     is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S)
     usual = _usual(push, load)
     rows = np.full((len(spans), 4), np.nan)
     for k, (a, m, b) in enumerate(spans):
         rows[k, :2] = _leaving(leaving[k], usual) + a
-        rows[k, 2:] = _landing(landing[k], usual, motion.step_s) + lowered[k]
+        rows[k, 2:] = _landing(landings[k], usual, motion.step_s)
         flat = FLAT_SHARE * speed[m]
         if not np.isfinite(rows[k, 1]):
             rows[k, 1] = last_crossing(speed, a, m, flat)
+        if landings[k].is_flat and np.isfinite(rows[k, 2]) and speed[int(rows[k, 2])] > LANDED_SHARE * speed[m]:
+            rows[k, 2], is_rolling[k] = np.nan, False
         if not np.isfinite(rows[k, 2]):
             rows[k, 2] = first_crossing(speed, m, b, flat)
-    is_usual = is_rolling & ~is_forefoot & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
+    is_usual = is_rolling & is_heel_first & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
     _steady(rows, motion, spans, is_usual, usual)
     rows[:, 0] = np.minimum(rows[:, 0], rows[:, 1])
     rows[:, 3] = np.maximum(rows[:, 3], rows[:, 2])
@@ -142,13 +159,15 @@ def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
     )
 
 
-def _lowered_from(pitch: FloatArray, fastest: int, rest: int) -> int:
-    """From where on a foot that lands with its forefoot is lowered, its highest pitch (n,); `fastest` for any other.
-
-    A forefoot that lands first has its toes further down than in stance.
-    """
+def _landing_of(motion: FootMotion, fastest: int, rest: int) -> Landing:
+    """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance."""
+    rate, pitch = motion.pitch_rate_rad_s, motion.pitch_rad
     highest = fastest + int(np.argmax(pitch[fastest : rest + 1]))
-    return highest if np.min(pitch[highest : rest + 1]) < -FOREFOOT_RAD else fastest
+    lowest = highest + int(np.argmin(pitch[highest : rest + 1]))
+    if pitch[lowest] > -FOREFOOT_RAD:
+        return Landing(fastest, rate[fastest : rest + 1], False, bool(pitch[highest] < FLAT_LANDING_RAD))
+    lowered = highest + int(np.argmin(rate[highest : lowest + 1]))
+    return Landing(lowered, -rate[lowered : rest + 1], True, False)
 
 
 def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
@@ -160,13 +179,14 @@ def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
     return np.array([_onset(-rate, push, 0, usual.still_rad_s), off])
 
 
-def _landing(rate: FloatArray, usual: Usual, step_s: float) -> FloatArray:
-    """Initial and full contact as indices of a pitch rate (n,) which the floor makes negative; NaN: hardly rolled."""
+def _landing(landing: Landing, usual: Usual, step_s: float) -> FloatArray:
+    """Initial and full contact as indices; NaN: hardly rolled."""
+    rate = landing.rate_rad_s
     load = int(np.argmin(rate))
     full = _onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
-    if -rate[load] <= MIN_ROLL_RAD_S:
-        return np.array([np.nan, full])
-    return np.array([_contact(rate, load, -CONTACT_SHARE * min(-rate[load], usual.load_rad_s), step_s), full])
+    level = -CONTACT_SHARE * min(-rate[load], usual.load_rad_s)
+    on = _contact(rate, load, level, step_s) if -rate[load] > MIN_ROLL_RAD_S else np.nan
+    return np.array([on, full]) + landing.begin
 
 
 def _steady(
@@ -191,7 +211,7 @@ def _steady(
         return
     usual = replace(usual, still_rad_s=max(usual.still_rad_s, 3.0 * unrest / np.sqrt(len(chosen))))
     leaving = _leaving(leave.rate_rad_s, usual) - leave.before
-    landing = _landing(land.rate_rad_s, usual, motion.step_s) - land.before
+    landing = _landing(Landing(-land.before, land.rate_rad_s), usual, motion.step_s)
     if np.isfinite(leaving).all() and np.isfinite(landing).all():
         rows[chosen, :2] = marks[chosen, :1] + leaving
         rows[chosen, 2:] = marks[chosen, 1:] + landing

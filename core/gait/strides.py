@@ -124,16 +124,16 @@ def _reasons(
     order = tuple(Reason)
     code = np.zeros(len(time), dtype=np.int64)
 
-    def mark(where: BoolArray, reason: Reason) -> None:
-        code[where & (code == 0)] = order.index(reason)
+    def mark(where: BoolArray, reason: Reason, *instead_of: Reason) -> None:
+        code[where & np.isin(code, [order.index(r) for r in (Reason.USED, *instead_of)])] = order.index(reason)
 
     mark(~is_measured, Reason.GAP)
     mark(~is_certain, Reason.DOUBT)
     mark(np.abs(columns["turn_rad"]) > MAX_TURN_RAD, Reason.TURN)
     usual = np.median(time[code == 0]) if np.any(code == 0) else np.median(time)
     is_start, is_stop = _edges(time, length, bout, code == 0)
-    mark(is_start, Reason.START)
-    mark(is_stop, Reason.STOP)
+    mark(is_start, Reason.START, Reason.DOUBT)  # a foot that starts or stops hardly rolls
+    mark(is_stop, Reason.STOP, Reason.DOUBT)
     mark(time > PAUSE_RATIO * usual, Reason.PAUSE)
     mark(_is_unlike(time, code == 0) | _is_unlike(length, code == 0), Reason.OUTLIER)
     return tuple(order[k] for k in code)

@@ -61,6 +61,9 @@ class Score:
         errors = np.concatenate([np.empty(0), *self.errors_s[name]])
         return float(np.mean(errors)), float(np.std(errors))
 
+    def mean_percent(self, name: str) -> float:
+        return float(np.mean(self.percent[name])) if self.percent[name] else float("nan")
+
     def missed(self) -> list[str]:
         """The names of what falls short of its target."""
         phase_mean_s, phase_sd_s = (0.010, 0.015) if self.rate_hz > 60.0 else (0.020, 0.025)
@@ -70,8 +73,8 @@ class Score:
         for name in PHASES:
             mean_s, sd_s = self.mean_and_sd_s(name)
             short += [] if abs(mean_s) <= phase_mean_s and sd_s <= phase_sd_s else [name]
-        short += [name for name in TIMES if not abs(np.mean(self.percent[name])) <= TIME_PERCENT]
-        return short + ([] if abs(np.mean(self.percent[LENGTH])) <= LENGTH_PERCENT else [LENGTH])
+        short += [name for name in TIMES if not abs(self.mean_percent(name)) <= TIME_PERCENT]
+        return short + ([] if abs(self.mean_percent(LENGTH)) <= LENGTH_PERCENT else [LENGTH])
 
 
 def foot_of(block: ImuBlock, bias_rad_s: FloatArray) -> OrientedTrack:
@@ -141,8 +144,8 @@ def add_walk(score: Score, feet: Mapping[Side, tuple[OrientedTrack, FootTruth]])
 
 
 def _add_parameters(score: Score, ours: Mapping[Side, Strides], true: Mapping[Side, Strides]) -> None:
-    """Over the same strides: those which we use."""
-    if any(len(ours[side]) != len(true[side]) for side in Side):
+    """Over the same strides: those which we use, if both feet have any."""
+    if any(len(ours[side]) != len(true[side]) or not ours[side].is_used.any() for side in Side):
         return
     true = {side: replace(true[side], reason=ours[side].reason) for side in Side}
     score.used += sum(int(np.sum(strides.is_used)) for strides in ours.values())
@@ -180,7 +183,7 @@ def line(score: Score) -> str:
         mean_s, sd_s = score.mean_and_sd_s(name)
         figures.append(told(name, f"{1000.0 * mean_s:4.0f} {1000.0 * sd_s:3.0f}"))
     figures.append(f"{1000.0 * score.ends_s:4.0f}")
-    figures += [told(name, f"{np.mean(score.percent[name]):5.2f}") for name in (*TIMES, LENGTH)]
+    figures += [told(name, f"{score.mean_percent(name):5.2f}") for name in (*TIMES, LENGTH)]
     return " | ".join(figures)
 
 

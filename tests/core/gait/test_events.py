@@ -84,6 +84,12 @@ def test_shuffling_and_walking_on_toes_gain_and_lose_no_event(manner: Manner, sp
     np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=0.05)
 
 
+def test_a_foot_that_comes_down_flat_while_it_goes_on_leaves_doubt() -> None:
+    walk = Walk(speed_m_s=1.0, manner=Manner.SHUFFLING)
+    found, _ = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk)))
+    assert not found.is_certain[1:-1].any()
+
+
 def test_a_forefoot_that_lands_first_is_turned_up_by_the_floor() -> None:
     walk = Walk(speed_m_s=0.8, manner=Manner.TOES)
     found, truth = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk)))

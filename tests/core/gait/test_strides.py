@@ -81,6 +81,14 @@ def test_first_and_last_strides_are_left_out_only_where_they_are_slower() -> Non
     assert reasons(strides_of([replace(events, length_m=length)])) == {0: Reason.START, 10: Reason.STOP}
 
 
+def test_a_last_step_that_hardly_rolls_is_a_stop_and_no_doubt() -> None:
+    events = feet_events()
+    length, certain = events.length_m.copy(), events.is_certain.copy()
+    length[-1], certain[-1], certain[5] = 0.7, False, False
+    strides = strides_of([replace(events, length_m=length, is_certain=certain)])
+    assert reasons(strides) == {4: Reason.DOUBT, 5: Reason.DOUBT, 10: Reason.STOP}
+
+
 def test_standing_ends_a_bout_and_a_short_pause_is_a_pause() -> None:
     stood = strides_of([later(feet_events(), 6, 5.0)])
     assert len(stood) == 10
