@@ -10,7 +10,9 @@ integrated, and a foot that gains no speed has not left the floor. What cannot b
 heel as well; flat landings, and steps of a foot that hardly rolls, once the foot is calm again; and the heel rises of
 a sensor that shakes on its foot, whose stances have shown that it does. The full contact of a flat landing is not told.
 
-All this is about walking. A foot that is moved about in the air is told steps too, until it has not stood for long.
+A foot that lands with its forefoot is told its contact when its toes come down in the air, 0.1 to 0.2 s too early.
+All this is about walking: a foot that is moved about in the air is told steps too, until it has not stood
+for long.
 """
 
 import math
