@@ -24,8 +24,8 @@ class Neighbours:
     Attributes
     ----------
     names : (s,)
-    log_cost : (s, s)
-        Logarithm of what they disagree on there; symmetric.
+    cost : (s, s)
+        What they disagree on there, as a mean robust loss; symmetric.
     height_m : (s, s)
         How much higher the first sits than the second in standing, if they share one.
     length_m : (s, s)
@@ -33,7 +33,7 @@ class Neighbours:
     """
 
     names: tuple[str, ...]
-    log_cost: FloatArray
+    cost: FloatArray
     height_m: FloatArray
     length_m: FloatArray
 
@@ -49,16 +49,16 @@ def neighbours(together: Together, standing: Mapping[str, FloatArray]) -> Neighb
     names = tuple(together.sensors)
     ups = [standing.get(name, felt.up) for name, felt in together.sensors.items()]
     ups = [up / np.linalg.norm(up) for up in ups]
-    log_cost, height_m, length_m = np.zeros((3, len(names), len(names)))
+    cost, height_m, length_m = np.zeros((3, len(names), len(names)))
     for a, b in combinations(range(len(names)), 2):
         found = link(together.sensors[names[a]], together.sensors[names[b]], together.index, together.window)
         if found is None:
             return None
-        log_cost[a, b] = log_cost[b, a] = np.log(found.cost + COST_FLOOR)
+        cost[a, b] = cost[b, a] = found.cost
         height_m[a, b] = found.centre_1_m @ ups[a] - found.centre_2_m @ ups[b]
         height_m[b, a] = -height_m[a, b]
         length_m[a, b] = length_m[b, a] = np.linalg.norm(found.centre_1_m) + np.linalg.norm(found.centre_2_m)
-    return Neighbours(names, log_cost, height_m, length_m)
+    return Neighbours(names, cost, height_m, length_m)
 
 
 class Arrangements:
@@ -70,7 +70,7 @@ class Arrangements:
         ends = [(sites.index(j.proximal), sites.index(j.distal)) for j in joints_between(sites)]
         self._orders = orders = np.array(list(permutations(range(number))), dtype=np.int64)
         pairs = [(orders[:, a], orders[:, b]) for a, b in ends]
-        self._cost = np.sum([told.log_cost[pair] for pair in pairs], axis=0)
+        self._cost = np.sum([np.log(told.cost[pair] + COST_FLOOR) for pair in pairs], axis=0)
         # a bit for each two sensors that share a joint
         self._links: IntArray = np.sum([self._bit(*pair) for pair in pairs], axis=0)
 

@@ -18,8 +18,8 @@ from core.tracks import at_positions
 STEP_S = 0.05
 MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
 LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
-WINDOW_S = 10.0  # over which two headings hardly drift apart
-MAX_INSTANTS = 600
+WINDOW_S = 15.0  # over which two headings hardly drift apart
+MAX_INSTANTS = 400
 BORDER_SAMPLES = 2  # without angular acceleration (eq 1)
 
 

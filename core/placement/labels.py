@@ -10,6 +10,8 @@ from core.placement.felt import Tracks, felt_together
 from core.samples import FloatArray, Recording, RecordingKind
 from core.sensors import SensorTracks
 
+SHARED_COST = 0.2  # two sensors that disagree on less may share a joint, though in a small motion others may as well
+
 
 def about_labels(tracks: SensorTracks) -> list[Finding]:
     """A finding for every group of sites whose sensors seem exchanged, from the free motion, else from a walk."""
@@ -67,11 +69,16 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
     labelled = {Site(name): sensor for sensor, name in enumerate(told.names)}
     arrangements = Arrangements(tuple(labelled), told)
     best = arrangements.best()
-    if arrangements.ratio(labelled, best) < MIN_MARGIN:
+    if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, told):
         best = labelled
     upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, told)]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
     return _groups(nearest, labelled)
+
+
+def _has_every_joint(labelled: Arrangement, told: Neighbours) -> bool:
+    ends = [(labelled[joint.proximal], labelled[joint.distal]) for joint in joints_between(tuple(labelled))]
+    return all(told.cost[pair] < SHARED_COST for pair in ends)
 
 
 def _is_upside_down(arrangement: Arrangement, told: Neighbours) -> bool:

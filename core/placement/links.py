@@ -8,13 +8,13 @@ from core.placement.felt import Felt
 from core.rotations import turn_about_vertical
 from core.samples import FloatArray, IntArray
 
-HEADING_STEP_RAD = np.deg2rad(15.0)  # from so near the exact heading is found in closed form
+HEADING_STEP_RAD = np.deg2rad(30.0)  # from so near the exact heading is found in closed form
 SCALE_M_S2 = 0.5
 CENTRE_PRIOR_M = 0.1  # tight, so that what the motion does not show of a lever stays short
 BIAS_PRIOR_M_S2 = 0.05
 LAG_STEPS = (-1, 0, 1)  # two clocks, each up to 30 ms off, are apart by a step and a bit
 LAG_PRIOR_S = 0.025  # of what whole steps leave
-STEPS = 5
+STEPS = 4
 MIN_WINDOW_INSTANTS = 20
 
 
