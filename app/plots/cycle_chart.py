@@ -31,8 +31,8 @@ RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
 TICK = 4
 TICK_DEG = 20
 TICK_PERCENT = 20
-MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 0.75, 1.5
-STRIDE_ALPHA = 0.55
+MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 1.0, 1.5
+STRIDE_ALPHA = 0.7
 DOUBTS = {
     NO_ZERO: "no zero. Range and shape hold, height does not.",
     MAY_BE_MIRRORED: "sign unsure. The curve may be upside down.",

@@ -150,10 +150,15 @@ def peak_figures(
 
 
 def time_distance_figures(
-    recording: RecordingAnalysis, classes: tuple[ReferenceValues, ...]
+    recording: RecordingAnalysis, feet: BothFeet, classes: tuple[ReferenceValues, ...]
 ) -> tuple[tuple[Figure, ...], ReferenceValues | None]:
-    """Rows of time and distance, and the class of speed whose band stands beside them; None without a speed."""
-    feet = both_sides(recording)
+    """Rows of time and distance, and the class of speed whose band stands beside them; None without a speed.
+
+    Parameters
+    ----------
+    feet
+        As `both_sides` gives it.
+    """
     group = nearest_class(classes, feet.speed_m_s) if np.isfinite(feet.speed_m_s) else None
 
     def each(name: str) -> dict[Side, MeanAndSd]:

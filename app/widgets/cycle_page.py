@@ -75,11 +75,11 @@ class CyclePage(QWidget):
             rows += [kind.capitalize(), *figures]
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
         self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))
-        figures, group = time_distance_figures(recording, time_distance_classes())
+        feet = both_sides(recording)
+        figures, group = time_distance_figures(recording, feet, time_distance_classes())
         self.time_distance.show_figures(figures, strides, _group_in_words(group))
-        speed_m_s = both_sides(recording).speed_m_s
         for note in (self.note, self.peaks_note):
-            note.show_band(self._reference, speed_m_s)
+            note.show_band(self._reference, feet.speed_m_s)
 
 
 class FiguresCard(Card):
@@ -129,7 +129,7 @@ class BandNote(QWidget):
     def show_band(self, band: ReferenceCurves, speed_m_s: float) -> None:
         authors = band.source.split(", PeerJ")[0]
         self._source.setText(
-            f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; inner 1 SD, outer 2 SD. {authors}."
+            f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; inner 1\N{NO-BREAK SPACE}SD, outer 2\N{NO-BREAK SPACE}SD. {authors}."
         )
         is_known = bool(np.isfinite(speed_m_s))
         words = [f"This walk: {speed_m_s:.2f} m/s."] if is_known else [NO_SPEED]

@@ -111,6 +111,7 @@ class FiguresTable(QTableView):
         super().__init__()
         self._look = look
         self.figures = FiguresModel(self)
+        self.needed_widths = [0] * COLUMNS  # by the widest cell of each column; nothing for a hidden one
         self.setModel(self.figures)
         self.setHorizontalHeader(_SideHeader(look, self))
         self.verticalHeader().hide()
@@ -140,7 +141,7 @@ class FiguresTable(QTableView):
 
     def minimumSizeHint(self) -> QSize:
         height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.figures.rowCount()))
-        return QSize(sum(self.needed_widths()), height)
+        return QSize(sum(self.needed_widths), height)
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
@@ -163,8 +164,7 @@ class FiguresTable(QTableView):
         rows = [[str(model.data(model.index(row, k))) for k in range(COLUMNS)] for row in range(model.rowCount())]
         return "\n".join("\t".join(cells) for cells in [head, *rows])
 
-    def needed_widths(self) -> list[int]:
-        """Give what each column needs for its widest cell; nothing for a hidden one."""
+    def _measure(self) -> list[int]:
         delegate, option, header = self.itemDelegate(), QStyleOptionViewItem(), self.horizontalHeader()
         widths = []
         for column in range(COLUMNS):
@@ -182,6 +182,7 @@ class FiguresTable(QTableView):
         px = self._look.theme.px
         self.setFont(self._look.theme.font(14))
         self.horizontalHeader().setFixedHeight(px(HEAD))
+        self.needed_widths = self._measure()
         for row in range(self.figures.rowCount()):
             self.setRowHeight(row, px(ROW))
         self.setFixedHeight(self.minimumSizeHint().height())
@@ -191,7 +192,7 @@ class FiguresTable(QTableView):
 
     def _share_width(self) -> None:
         """Give every column what it needs, and the rest to the names."""
-        needed = self.needed_widths()
+        needed = list(self.needed_widths)
         needed[NAME] += max(0, self.width() - sum(needed))
         for column, width in enumerate(needed):
             if width:

@@ -466,7 +466,7 @@ def is_cut(widget: QWidget) -> bool:
             for cell, need in needs
         )
     if isinstance(widget, FiguresTable):
-        return widget.width() < sum(widget.needed_widths()) or widget.height() < widget.minimumSizeHint().height()
+        return widget.width() < sum(widget.needed_widths) or widget.height() < widget.minimumSizeHint().height()
     if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
         need = widget.minimumSizeHint()
         return need.width() > widget.width() or need.height() > widget.height()

@@ -90,7 +90,7 @@ def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(walked: Walked) 
 
 def test_time_and_distance_stand_beside_the_group_of_the_nearest_speed(walked: Walked) -> None:
     walk, _ = walked
-    figures, group = time_distance_figures(walk, time_distance_classes())
+    figures, group = time_distance_figures(walk, both_sides(walk), time_distance_classes())
     assert group is not None
     assert group.speed_class == "slow"
     assert named(figures, "Walking speed").both == pytest.approx(0.95, abs=0.05)
@@ -118,7 +118,8 @@ def test_without_distances_no_group_is_chosen(walked: Walked) -> None:
     for side, found in walk.gait.items():
         strides = replace(found.strides, length_m=np.full(len(found.strides), np.nan))
         gait[side] = replace(found, strides=strides)
-    figures, group = time_distance_figures(replace(walk, gait=gait), time_distance_classes())
+    walk = replace(walk, gait=gait)
+    figures, group = time_distance_figures(walk, both_sides(walk), time_distance_classes())
     assert group is None
     assert all(figure.band is None for figure in figures)
     assert np.isfinite(named(figures, "Cadence").both or np.nan)
