@@ -127,10 +127,9 @@ class BandNote(QWidget):
         return f"{self._source.text()} {self._speed.text()}"
 
     def show_band(self, band: ReferenceCurves, speed_m_s: float) -> None:
-        authors = band.source.split(", PeerJ")[0]
-        self._source.setText(
-            f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; inner 1\N{NO-BREAK SPACE}SD, outer 2\N{NO-BREAK SPACE}SD. {authors}."
-        )
+        sds = "inner 1 SD, outer 2 SD".replace(" SD", "\N{NO-BREAK SPACE}SD")
+        whose = f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; {sds}."
+        self._source.setText(f"{whose} {_authors(band.source)}.")
         is_known = bool(np.isfinite(speed_m_s))
         words = [f"This walk: {speed_m_s:.2f} m/s."] if is_known else [NO_SPEED]
         is_other = is_known and not band.fits(speed_m_s)
