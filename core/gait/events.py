@@ -85,7 +85,7 @@ class FootEvents:
         How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how far the foot
         turned about the vertical; NaN from a shank.
     is_certain
-        False where the foot hardly rolled, or its pitch contradicts its way.
+        False where the foot hardly rolled or came down flat while it went on, or its pitch contradicts its way.
     is_measured
         False where samples were missing between heel rise and full contact.
     """
