@@ -3,6 +3,7 @@
 import numpy as np
 
 from core.datasets import Datasets
+from core.rotations import turn_about_vertical
 from core.samples import FloatArray, IntArray
 
 BLOCK_S = 1.0  # residuals nearer in time than this are not independent
@@ -64,6 +65,29 @@ def axis_sd_rad(covariance: FloatArray, floor_rad: float) -> float:
     """
     worst = max(float(np.linalg.eigvalsh(covariance[part, part])[-1]) for part in (slice(0, 2), slice(2, 4)))
     return float(np.sqrt(max(worst, 0.0) + floor_rad**2))
+
+
+def looseness(data: Datasets, axis_1: FloatArray, heading_rad: FloatArray) -> float:
+    """Rate across the axis over the rate along it, root mean squares: 0 a true hinge, 1 no axis at all.
+
+    A mechanical hinge has 0.015, a person's knee that passes for one 0.02 to 0.06, and its axis is off by as much.
+
+    Parameters
+    ----------
+    heading_rad : (n,)
+        Of the distal earth in the proximal one.
+    """
+    rate_1 = np.einsum("nij,nj->ni", data.earth_from_1, data.g1)
+    rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", data.earth_from_2, data.g2))
+    relative = rate_2 - rate_1
+    along = float(np.sum((relative * (data.earth_from_1 @ axis_1)).sum(axis=1) ** 2))
+    across = 0.5 * max(float(np.sum(relative**2)) - along, 0.0)  # in each of two directions
+    return float(np.sqrt(across / max(along, 1e-12)))
+
+
+def hinge_floor_rad(loose: float) -> float:
+    """Floor of a hinge's axis."""
+    return float(np.hypot(AXIS_FLOOR_HINGE_RAD, loose))
 
 
 def angle_sd_rad(off_axis_rate_sd_rad_s: float, range_rad: float, is_knee: bool, is_hinge: bool) -> float:

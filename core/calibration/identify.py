@@ -190,6 +190,7 @@ def _refined(
     off_axis, _ = residual_scales(many, fit)
     is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S
     centre = centre_by_vectors(many, fit.knots_rad[0])
+    loose = certainty.looseness(many, j1, many.heading(fit.knots_rad[0]))
     floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
     axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit), floor)
     if is_hinge:
@@ -199,7 +200,7 @@ def _refined(
             slope, value = rows[..., :4], rows[..., 4]
             weight = 1 / np.sqrt(1 + value**2)
             covariance = certainty.sandwich_covariance(slope, value, weight, certainty.time_blocks(many))
-            axis_sd = certainty.axis_sd_rad(covariance, certainty.AXIS_FLOOR_HINGE_RAD)
+            axis_sd = certainty.axis_sd_rad(covariance, certainty.hinge_floor_rad(loose))
             again = polish(
                 many,
                 Candidates(j1[None], j2[None], fit.knots_rad, fit.cost),
@@ -217,7 +218,7 @@ def _refined(
         axis_2=j2,
         axis_sd_rad=axis_sd,
         centre=centre,
-        centre_sd_m=centre_sd_m(centre, j1, j2, is_hinge, is_knee),
+        centre_sd_m=centre_sd_m(centre, j1, j2, is_hinge, is_knee, loose),
         sign_margin=decision.margin,
         lag=lag,
         hinge_residual_rad_s=residual,

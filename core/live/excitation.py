@@ -17,7 +17,7 @@ import numpy as np
 from core.body import Joint, Site
 from core.calibration.certainty import AXIS_FLOOR_HINGE_RAD, AXIS_FLOOR_HUMAN_RAD
 from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M
-from core.calibration.joint_centre import MIN_SCALE_M_S2, MIN_SD_HINGE_M, MIN_SD_HUMAN_M
+from core.calibration.joint_centre import IN_STEP_M, MIN_SCALE_M_S2, MIN_SD_HINGE_M, MIN_SD_HUMAN_M, SD_FACTOR_HUMAN
 from core.live.heading_profile import HeadingProfile, profile_headings
 from core.live.orientation import OrientedSamples
 from core.live.sample_sets import NODE_S, SPACING_S, SetCollector, Sets, parabola
@@ -34,7 +34,6 @@ MAX_CENTRE_STEP_M = 0.1
 MIN_RATE_SCALE_RAD_S = 0.01
 AXIS_PRIOR_RAD = 1.0
 MIN_MARGIN = 1.3
-CENTRE_SD_FACTOR = 2.5  # tissue in step with the limb moves a centre this much farther than its residuals show
 REOPENS_AT = 1.25  # of what closes it
 PLATEAU_AFTER = round(10.0 / SPACING_S)
 PROGRESS_OVER = round(4.0 / SPACING_S)
@@ -69,7 +68,7 @@ HUMAN = Wanted(
     axis_floor_rad=float(AXIS_FLOOR_HUMAN_RAD),
     centre_floor_m=MIN_SD_HUMAN_M,
     tilt_rad=np.deg2rad(0.5),
-    shift_m=0.0004,
+    shift_m=IN_STEP_M,
     wobble=0.06,
 )
 PROSTHESIS = Wanted(
@@ -78,7 +77,7 @@ PROSTHESIS = Wanted(
     axis_floor_rad=float(AXIS_FLOOR_HINGE_RAD),
     centre_floor_m=MIN_SD_HINGE_M,
     tilt_rad=np.deg2rad(0.1),
-    shift_m=0.00012,
+    shift_m=0.3 * IN_STEP_M,
     wobble=0.02,
 )
 
@@ -210,7 +209,7 @@ class Excitation:
             axis_sd_rad=axis_rad,
             centre_sd_m=centre_m,
             axis_sd_with_floor_rad=math.hypot(axis_rad, wanted.axis_floor_rad),
-            centre_sd_with_floor_m=math.hypot(CENTRE_SD_FACTOR * centre_m, wanted.centre_floor_m),
+            centre_sd_with_floor_m=math.hypot(SD_FACTOR_HUMAN * centre_m, wanted.centre_floor_m),
             sign_margin=margin,
             is_closed=self._is_closed,
             is_plateau=is_plateau,

@@ -1,15 +1,26 @@
 """Are the figures of certainty what they are called?"""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 
+from core.body import Joint
 from core.calibration.certainty import (
+    AXIS_FLOOR_HINGE_RAD,
     AXIS_FLOOR_HUMAN_RAD,
     angle_sd_rad,
     axis_sd_rad,
+    hinge_floor_rad,
+    looseness,
     sandwich_covariance,
 )
+from core.datasets import gather
+from core.rotations import joint_frame
 from core.samples import FloatArray
+
+if TYPE_CHECKING:
+    from tests.core.conftest import Person
 
 
 def line_fit(noise: FloatArray, per_block: int) -> float:
@@ -49,3 +60,22 @@ def test_an_angle_s_spread_is_as_documented(
 ) -> None:
     found = angle_sd_rad(rate, float(np.deg2rad(range_deg)), is_knee, is_hinge)
     assert np.rad2deg(found) == pytest.approx(expected_deg)
+
+
+def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
+    knee = Joint.LEFT_KNEE
+    pair = person.exact_pair(knee, heading_rad=0.5)
+    data = gather((pair,), [np.arange(5, 590, 3)])
+    heading = np.full(len(data), 0.5)
+    axis = person.axis(knee.proximal, knee)
+    assert looseness(data, axis, heading) < 1e-3
+    for off_rad in (0.03, 0.1):
+        tilted = np.cos(off_rad) * axis + np.sin(off_rad) * joint_frame(axis)[0]
+        # half of the square, for it goes one of two ways
+        assert looseness(data, tilted, heading) == pytest.approx(np.tan(off_rad) / np.sqrt(2), rel=1e-2)
+    assert looseness(data, joint_frame(axis)[0], heading) > 1.0
+
+
+def test_the_floor_of_a_loose_hinge_is_what_it_turns_across_its_axis() -> None:
+    assert hinge_floor_rad(0.0) == pytest.approx(AXIS_FLOOR_HINGE_RAD)
+    assert hinge_floor_rad(0.05) == pytest.approx(0.05, rel=0.01)
