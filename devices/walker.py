@@ -59,7 +59,8 @@ __all__ = [
     "truth_table",
 ]
 
-DEMONSTRATION = WalkerSettings(seed=1, tissue=Tissue.SOFT)  # the patient that the application shows
+# The patient that the application shows; ten strides of each foot and more make a spread.
+DEMONSTRATION = WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Standing(), FreeMotion(), Walk(strides=14)))
 
 FINE_HZ = 1000.0  # least rate of the fine clock: differences of fourth order are then far below the sensors' noise
 MARGIN_S = 0.25  # the fine clock runs on by this at both ends, for lags, averaging and differences
