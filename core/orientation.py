@@ -26,7 +26,7 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
         instants: FloatArray = rates.copy()
         instants[:-1] = 0.5 * (rates[:-1] + rates[1:])
     else:
-        intervals, instants = _before(rates), rates
+        intervals, instants = interval_rates(rates), rates
     turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
     return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
 
@@ -39,13 +39,13 @@ def oriented_to_north(track: Track) -> OrientedTrack | None:
     if track.q_device is not None and np.isfinite(track.q_device).all():
         return OrientedTrack(track, track.q_device)
     if track.mag is not None and np.isfinite(track.mag).all():
-        rates, acc, mag = _before(track.gyr_rad_s), track.acc_m_s2, track.mag
+        rates, acc, mag = interval_rates(track.gyr_rad_s), track.acc_m_s2, track.mag
         turned = offlineVQF(*(np.ascontiguousarray(v) for v in (rates, acc, mag)), track.step_s)
         return OrientedTrack(track, turned["quat9D"])
     return None
 
 
-def _before(rates: FloatArray) -> FloatArray:
+def interval_rates(rates: FloatArray) -> FloatArray:
     """Mean of each rate and its predecessor: the rate over the interval before each sample."""
     mean = rates.copy()
     mean[1:] += rates[:-1]

@@ -1,1 +1,6 @@
-"""What do the sensors tell while the patient stands, moves and walks? Blocks of samples in, states out."""
+"""What do the sensors say while the patient moves? Blocks of samples in, angles and what they are worth out.
+
+Everything here is causal and knows no clock, no thread and no file: what comes out depends on the samples alone, never
+on how they were cut into blocks, so the same objects serve a live stream and a whole recording. What the end of a
+recording tells of its beginning belongs to `core.analysis`.
+"""

@@ -1,0 +1,124 @@
+"""An angle that wanders slowly and is seen only roughly: where does it stand now?"""
+
+from collections import deque
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.robust import robust_sd
+from core.rotations import wrap
+from core.samples import FloatArray
+
+MEMORY = 100  # looks whose scatter says what a look is worth
+MIN_LOOKS = 20
+UNKNOWN_RAD = np.pi
+
+
+@dataclass(frozen=True, slots=True)
+class Wandering:
+    """How an angle wanders: by `walk_rad` per square root of a second, beside a slope and back to zero.
+
+    The slope starts within `slope_rad_s` (a standard deviation) and walks by `slope_walk_rad_s` per square root of a
+    second. Left alone, the angle returns to zero within the time constant `settles_s`.
+    """
+
+    walk_rad: float
+    slope_rad_s: float = 0.0
+    slope_walk_rad_s: float = 0.0
+    settles_s: float = np.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Looks:
+    """What is seen of an angle: complex numbers along it, of which longer ones tell their direction better.
+
+    `first_scale` and `min_scale` are standard deviations of what lies across the direction that was expected, over the
+    square root of the length: before enough was seen, and at least. Looks nearer in time than `correlation_s` tell
+    the same. Where nothing was known before, so many as `begins_with` are waited for, and their middle one begins: a
+    shock may have shown any direction.
+    """
+
+    first_scale: float
+    min_scale: float
+    correlation_s: float
+    begins_with: int = 1
+
+
+class SlowDrift:
+    """Kalman filter of an angle and its slope, with the robust weights of the offline fits."""
+
+    def __init__(self, wandering: Wandering, looks: Looks) -> None:
+        self._wandering, self._looks = wandering, looks
+        self._first: list[complex]  # looks that are still waiting for others
+        self.restart(0.0, 0.0, UNKNOWN_RAD)
+
+    def restart(self, time_s: float, angle_rad: float, sd_rad: float) -> None:
+        """Begin at an angle that is known to `sd_rad`, UNKNOWN_RAD where it is not."""
+        self._time_s, self._angle, self._slope = time_s, angle_rad, 0.0
+        self._covariance = (sd_rad**2, 0.0, self._wandering.slope_rad_s**2)  # of angle, of both, of slope
+        self._errors: deque[float] = deque(maxlen=MEMORY)
+        self._is_unknown, self._first = sd_rad >= UNKNOWN_RAD, []
+
+    def turn(self, by_rad: float) -> None:
+        """What was called angle is now called angle + by."""
+        self._angle += by_rad
+
+    def loosen(self, sd_rad: float) -> None:
+        """Something unseen has turned the angle by about `sd_rad`."""
+        angle, both, slope = self._covariance
+        self._covariance = angle + sd_rad**2, both, slope
+
+    def at(self, time_s: FloatArray) -> FloatArray:
+        """The angle (n,) to be expected."""
+        since_s = time_s - self._time_s
+        return self._angle * np.exp(-since_s / self._wandering.settles_s) + self._slope * since_s
+
+    @property
+    def sd_rad(self) -> float:
+        """Standard deviation of the angle at the time it was advanced to."""
+        return float(np.sqrt(self._covariance[0]))
+
+    def advance(self, time_s: float) -> None:
+        """Let it wander until `time_s`."""
+        w, since_s = self._wandering, time_s - self._time_s
+        left = float(np.exp(-since_s / w.settles_s))
+        angle, both, slope = self._covariance
+        angle = left**2 * angle + since_s * (2 * left * both + since_s * slope + w.walk_rad**2)
+        self._covariance = angle, left * both + since_s * slope, slope + since_s * w.slope_walk_rad_s**2
+        self._time_s, self._angle = time_s, left * self._angle + since_s * self._slope
+
+    def look(self, seen: complex, time_s: float, duration_s: float, unsure_rad: float = 0.0) -> None:
+        """Take the mean of what was seen around `time_s` for `duration_s`.
+
+        Parameters
+        ----------
+        unsure_rad
+            Standard deviation of what turns this look and its neighbours alike.
+        """
+        self.advance(time_s)
+        if self._is_unknown:
+            self._first.append(seen)
+            if len(self._first) < self._looks.begins_with:
+                return
+            self._is_unknown, seen = False, _middle(self._first)
+        angle, both, slope = self._covariance
+        length = max(abs(seen) ** 0.5, 1e-9)
+        error_rad = float(np.angle(seen * np.exp(-1j * self._angle)))
+        self._errors.append(length * error_rad)
+        scale = self._looks.first_scale
+        if len(self._errors) >= MIN_LOOKS:
+            scale = max(robust_sd(np.array(self._errors)), self._looks.min_scale)
+        variance = (scale / length) ** 2
+        robust = (1 + error_rad**2 / (variance + angle + unsure_rad**2)) ** 0.5
+        variance = variance * robust * max(1.0, self._looks.correlation_s / duration_s) + unsure_rad**2
+        gain = 1 / (variance + angle)
+        self._angle += gain * angle * error_rad
+        self._slope += gain * both * error_rad
+        self._covariance = angle - gain * angle**2, both - gain * angle * both, slope - gain * both**2
+
+
+def _middle(looks: list[complex]) -> complex:
+    """The one whose direction is nearest to all the others'."""
+    direction = np.angle(np.array(looks))
+    apart = np.sum(np.abs(wrap(direction[:, None] - direction)), axis=1)
+    return looks[int(np.argmin(apart))]
