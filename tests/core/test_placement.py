@@ -251,6 +251,20 @@ def test_one_leg_has_no_second_to_lead(circling: Session) -> None:
     assert chains_of(circling, (T, S, F)).lead_s is None
 
 
+def test_while_one_leg_still_rests_nothing_is_named_with_certainty() -> None:
+    """The sensors of the other leg agree with everything."""
+    session = walked(Standing(), FreeMotion(duration_s=4.0, is_in_turn=True), seed=8).session
+    tracks, standing = unlabelled(tracks_of(session))
+    early = find_chains(cut(tracks, 0.0, 4.0), standing)
+    assert early is not None
+    assert all(leg.is_direction_certain for leg in early.legs)
+    assert not early.is_certain
+    assert early.lead_s is None
+    later = find_chains(tracks, standing)
+    assert later is not None
+    assert later.is_certain
+
+
 def test_shanks_that_only_swing_about_resting_knees_are_not_named_with_certainty() -> None:
     """Every sensor then has a resting point at a knee, so any two may share a joint there."""
     session = walked(Standing(), FreeMotion(motion=Motion.KNEE_ONLY)).session
