@@ -28,7 +28,6 @@ from core.samples import BoolArray, FloatArray
 TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
 LANDED_S = 0.02  # after half the peak of loading a foot has landed, whatever then shakes the sensor
-MAX_FALL_S = 0.04  # live: a foot whose toes come down that long has landed
 STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.09  # of the peak of push-off: below, the foot is flat; the share at 0.3 m/s
 ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
