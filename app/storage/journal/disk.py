@@ -1,0 +1,132 @@
+"""Is there room, and does the disk take what it is given?"""
+
+import hashlib
+import os
+import shutil
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from app.storage.files import replace_file
+from app.storage.journal.header import JournalRefusedError
+
+FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magnetic field, sealed
+
+
+class Trouble(StrEnum):
+    """What went wrong while recording. `TOLD` has the words."""
+
+    LITTLE_ROOM = "little_room"
+    NO_ROOM = "no_room"
+    DISK_FULL = "disk_full"
+    DISK_GONE = "disk_gone"
+    DISK_SLOW = "disk_slow"
+    DROPPED = "dropped"
+
+
+TOLD = {
+    Trouble.LITTLE_ROOM: (
+        "The disk has room for less than five more minutes",
+        "Stop soon, and delete or move files that are not needed",
+    ),
+    Trouble.NO_ROOM: (
+        "The disk is almost full, so the recording was stopped and closed",
+        "What was recorded is kept. Delete or move files, then record again",
+    ),
+    Trouble.DISK_FULL: (
+        "The disk is full, so the recording was stopped",
+        "What was recorded is kept. Delete or move files, then record again",
+    ),
+    Trouble.DISK_GONE: (
+        "The disk can no longer be written to, so the recording was stopped",
+        "What was recorded until then is kept on it. Check the disk, then record again",
+    ),
+    Trouble.DISK_SLOW: (
+        "The disk answers late",
+        "Nothing is lost yet. Close programs that copy or download to it",
+    ),
+    Trouble.DROPPED: (
+        "The disk has not answered for too long, and samples had to be dropped",
+        "They are counted and stay gaps. Check the disk before recording again",
+    ),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Room:
+    """How much of the disk has to be free.
+
+    Attributes
+    ----------
+    start_s, start_bytes
+        A recording begins only where there is room for so long and so much besides.
+    warn_s
+        Less than this left is told.
+    kept_bytes
+        A recording stops, and is closed, before less than this is free: for the database, and for other programs.
+    """
+
+    start_s: float = 600.0
+    start_bytes: int = 500_000_000
+    warn_s: float = 300.0
+    kept_bytes: int = 100_000_000
+
+    def check(self, folder: Path, bytes_per_s: float) -> None:
+        """Refuse to begin on a disk that is too full.
+
+        Raises
+        ------
+        JournalRefusedError
+            Less is free than `start_s` and `start_bytes` ask for, or the folder is not there.
+        """
+        needed = self.start_s * bytes_per_s + self.start_bytes
+        try:
+            free = shutil.disk_usage(folder).free
+        except OSError as error:
+            what = f"the folder of the recordings cannot be read ({error.strerror})"
+            raise JournalRefusedError(str(folder), what, "Check that its disk is connected") from error
+        if free < needed:
+            what = f"a recording needs {needed / 1e6:.0f} MB of free disk, and {free / 1e6:.0f} MB are left"
+            raise JournalRefusedError(str(folder), what, "Delete or move files that are not needed")
+
+
+ROOM = Room()
+
+
+class JournalFile:
+    """A journal's file: made whole with its header, then only appended to; `sha256` of all that was."""
+
+    def __init__(self, path: Path, header: bytes) -> None:
+        replace_file(path, header)  # so a journal that exists has its header, and a name that lasts
+        self._folder = path.parent
+        self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0))
+        self._is_open = True
+        self._sha256 = hashlib.sha256(header)
+        self.size = len(header)
+
+    def append(self, data: bytes | bytearray) -> None:
+        """Write all of `data` or, as far as the disk still lets us, nothing of it."""
+        rest = memoryview(data)
+        try:
+            while rest:
+                rest = rest[os.write(self._descriptor, rest) :]
+        except OSError:
+            os.ftruncate(self._descriptor, self.size)
+            raise
+        self._sha256.update(data)
+        self.size += len(data)
+
+    def sync(self) -> None:
+        sync = getattr(os, "fdatasync", os.fsync)  # Windows and macOS have the longer one only
+        sync(self._descriptor)
+
+    def free_bytes(self) -> int:
+        return shutil.disk_usage(self._folder).free
+
+    def sha256(self) -> str:
+        return self._sha256.hexdigest()
+
+    def close(self) -> None:
+        if self._is_open:
+            self._is_open = False  # also where closing fails: the number may soon be another file's
+            os.close(self._descriptor)

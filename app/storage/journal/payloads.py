@@ -1,0 +1,161 @@
+"""What stands inside the records? Sources and marks as JSON, samples as rows of float64, bytes as they came."""
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.samples import FloatArray, ImuBlock
+from devices.files.site_files import ACC, GYR, MAG, QUAT, TIME
+from devices.source import SourceInfo
+
+STREAM = struct.Struct("<H")  # the source's number, before its bytes
+ROWS = struct.Struct("<HHI")  # the source's number, the sensor's, and how many rows follow
+FLOAT = np.dtype("<f8")
+OWN_COLUMNS = {
+    (has_orientation, has_field): (TIME, *GYR, *ACC, *(QUAT if has_orientation else ()), *(MAG if has_field else ()))
+    for has_orientation in (False, True)
+    for has_field in (False, True)
+}
+
+
+@dataclass(frozen=True, slots=True)
+class SampleLayout:
+    """The columns of a source that gives samples: `columns` numbers, `texts` texts, by the session folder's names.
+
+    `rate_hz` None: not told, so that losses are counted by the usual interval.
+    """
+
+    columns: tuple[str, ...]
+    texts: tuple[str, ...] = ()
+    is_rate_derived: bool = False
+    rate_hz: float | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SourceEntry:
+    """A source as a journal tells of it: when it begins, after a change, and after records of it had to be dropped."""
+
+    number: int
+    info: SourceInfo
+    layout: SampleLayout | None = None
+    dropped_records: int = 0
+    dropped_bytes: int = 0
+
+    def packed(self) -> bytes:
+        return json.dumps(asdict(self), allow_nan=False).encode()
+
+    @classmethod
+    def parsed(cls, payload: bytes) -> "SourceEntry":
+        told: dict[str, Any] = json.loads(payload)
+        info, layout = told.pop("info"), told.pop("layout")
+        info["sensors"] = tuple(info["sensors"])
+        if layout is not None:
+            layout |= {"columns": tuple(layout["columns"]), "texts": tuple(layout["texts"])}
+        return cls(**told, info=SourceInfo(**info), layout=SampleLayout(**layout) if layout is not None else None)
+
+
+@dataclass(frozen=True, slots=True)
+class Footer:
+    """Why the journal ends, and what had to be dropped over all."""
+
+    reason: str
+    dropped_records: int
+    dropped_bytes: int
+
+    def packed(self) -> bytes:
+        return json.dumps(asdict(self)).encode()
+
+    @classmethod
+    def parsed(cls, payload: bytes) -> "Footer":
+        return cls(**json.loads(payload))
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """A piece of one sensor's samples: `numbers` (n, columns) of `FLOAT`, `texts` one list of n per column of texts."""
+
+    source: int
+    sensor: int
+    numbers: FloatArray
+    texts: Sequence[Sequence[str]]
+
+    def packed(self) -> bytes:
+        packed = ROWS.pack(self.source, self.sensor, len(self.numbers)) + self.numbers.tobytes()
+        return packed + json.dumps(self.texts).encode() if self.texts else packed
+
+    @classmethod
+    def parsed(cls, payload: bytes, layout: SampleLayout) -> "Rows":
+        source, sensor, count = ROWS.unpack_from(payload)
+        size = count * len(layout.columns)
+        numbers = np.frombuffer(payload, FLOAT, size, ROWS.size).reshape(count, len(layout.columns))
+        texts = json.loads(payload[ROWS.size + size * FLOAT.itemsize :]) if layout.texts else []
+        return cls(source, sensor, numbers, texts)
+
+
+def layout_of(block: ImuBlock, rate_hz: float | None = None) -> SampleLayout:
+    """The columns that `block` has.
+
+    Raises
+    ------
+    ValueError
+        An unknown column bears the name of one of ours.
+    """
+    return SampleLayout(*_columns_of(block), block.is_rate_derived, rate_hz)
+
+
+def rows_of(block: ImuBlock, layout: SampleLayout) -> tuple[FloatArray, list[list[str]]]:
+    """The block's samples as `layout` has them.
+
+    Raises
+    ------
+    ValueError
+        The block has other columns, or in another order.
+    """
+    columns, texts = _columns_of(block)
+    if (columns, texts) != (layout.columns, layout.texts):
+        raise ValueError(f"the block has columns {columns + texts}, expected {layout.columns + layout.texts}")
+    parts = [block.time_s[:, None], block.gyr_rad_s, block.acc_m_s2]
+    parts += [part for part in (block.q_earth_from_sensor, block.mag) if part is not None]
+    parts += [column.astype(float)[:, None] for name, column in block.unknown.items() if name in columns]
+    return np.concatenate(parts, axis=1, dtype=FLOAT), [[str(value) for value in block.unknown[name]] for name in texts]
+
+
+def _columns_of(block: ImuBlock) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    own = OWN_COLUMNS[block.q_earth_from_sensor is not None, block.mag is not None]
+    if not block.unknown:
+        return own, ()  # a live sensor's block, a thousand times a second
+    if taken := [name for name in block.unknown if name in own]:
+        raise ValueError(f"the unknown columns {taken} are the block's own")
+    numbers = [name for name, column in block.unknown.items() if np.issubdtype(column.dtype, np.floating)]
+    return (*own, *numbers), tuple(name for name in block.unknown if name not in numbers)
+
+
+def block_of(sensor: str, numbers: FloatArray, texts: Sequence[Sequence[str]], layout: SampleLayout) -> ImuBlock:
+    """The samples (n, columns) that `rows_of` took apart."""
+    place = {name: k for k, name in enumerate(layout.columns)}
+
+    def columns(names: Sequence[str]) -> FloatArray:
+        return np.ascontiguousarray(numbers[:, [place[name] for name in names]])
+
+    known = {TIME, *GYR, *ACC}
+    known |= {name for group in (QUAT, MAG) if place.keys() >= {*group} for name in group}
+    unknown: dict[str, NDArray[np.generic]] = {
+        name: numbers[:, k].copy() for name, k in place.items() if name not in known
+    }
+    for name, values in zip(layout.texts, texts, strict=True):
+        unknown[name] = np.array(values, dtype=np.dtypes.StringDType())
+    return ImuBlock(
+        sensor=sensor,
+        time_s=numbers[:, place[TIME]].copy(),
+        gyr_rad_s=columns(GYR),
+        acc_m_s2=columns(ACC),
+        q_earth_from_sensor=columns(QUAT) if QUAT[0] in known else None,
+        mag=columns(MAG) if MAG[0] in known else None,
+        is_rate_derived=layout.is_rate_derived,
+        unknown=unknown,
+    )

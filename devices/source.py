@@ -1,0 +1,82 @@
+"""What must be known of a source so that its bytes can be read again, and what does reading them again bring?
+
+A driver's decoder makes samples of bytes; it is the same one live and when a journal is read, so it may use nothing but
+what a `SourceInfo` holds and the bytes themselves.
+"""
+
+from collections.abc import Mapping
+from dataclasses import astuple, dataclass, field
+from typing import Protocol
+
+from core.samples import ImuBlock
+
+
+@dataclass(frozen=True, slots=True)
+class SourceInfo:
+    """One stream of bytes or samples: a port, a socket, an inlet, the walker, a file.
+
+    Attributes
+    ----------
+    driver, version
+        Which decoder understands the stream, and the version of it that recorded.
+    sensors
+        Serial numbers or names, where they are known before the first byte.
+    settings
+        Everything decoding needs besides: rates, ranges, units, mappings. What JSON can hold.
+    """
+
+    driver: str
+    version: str
+    serial: str = ""
+    sensors: tuple[str, ...] = ()
+    settings: Mapping[str, object] = field(default_factory=dict)
+    is_simulated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class SensorCounts:
+    """What became of one sensor's samples.
+
+    Attributes
+    ----------
+    received
+        Samples that are there, each counted once.
+    lost
+        Missing by the device's counter, or by the clock where there is none.
+    damaged
+        Frames that failed their check, samples without a time.
+    doubled
+        Samples that came again; the first was kept.
+    late
+        Samples that came after a younger one; put back in their place.
+    """
+
+    received: int = 0
+    lost: int = 0
+    damaged: int = 0
+    doubled: int = 0
+    late: int = 0
+
+    def __add__(self, other: "SensorCounts") -> "SensorCounts":
+        return SensorCounts(*(a + b for a, b in zip(astuple(self), astuple(other), strict=True)))
+
+
+@dataclass(frozen=True, slots=True)
+class DecodedSensor:
+    """One sensor's samples in order of time, and what was missing."""
+
+    block: ImuBlock
+    counts: SensorCounts
+
+
+class StreamDecoder(Protocol):
+    """A driver's understanding of one stream. Damaged bytes are counted, never raised."""
+
+    def begin(self, source: SourceInfo) -> None:
+        """What follows was sent under `source` and does not join the bytes before: a start, a change, or a loss."""
+
+    def feed(self, data: bytes, host_time_s: float) -> None:
+        """Take the next bytes, in pieces of any size, read at `host_time_s` after the journal was opened."""
+
+    def finish(self) -> Mapping[str, DecodedSensor]:
+        """All samples by sensor, their time in seconds since the journal was opened."""
