@@ -1,0 +1,129 @@
+"""Who did what, and is that record whole? Every entry's hash covers the hash before it.
+
+This is tamper-evident against outsiders only: whoever changes, removes, adds or moves an entry without making all later
+hashes anew is found out by `verify`. Whoever has the data key and the program can make them anew, and whoever can
+replace the file can cut entries off at the end; a checkpoint kept elsewhere shows both. Entries name rows by
+their ids and hold no names and no values, so they may outlive what they tell of.
+"""
+
+import datetime
+import hashlib
+import json
+from collections.abc import Iterable, Mapping
+from uuid import UUID
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.database.models import AuditRow
+from app.storage.desk import Desk
+from app.storage.stored import Action, AuditEntry, AuditFault, AuditReport, Checkpoint, Role
+
+BEGINNING = Checkpoint(0, "0" * 64)
+MANY = 1000  # rows held at a time
+
+
+class Audit:
+    """The library's record of what was done."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def note(self, action: Action, subject: str, **details: str | float | bool) -> None:
+        """Record what was done outside of the library: an export, a print, a backup. No names in `details`.
+
+        Raises
+        ------
+        LibraryError
+            It cannot be recorded; then it must not be done either.
+        """
+        with self._desk.writing(Role.VIEWER) as session:
+            note(self._desk, session, action, subject, **details)
+
+    def entries(self, subject: str = "", last: int = 1000) -> tuple[AuditEntry, ...]:
+        """The latest entries, oldest first; all of them or those about one `subject`."""
+        wanted = select(AuditRow).order_by(AuditRow.number.desc()).limit(last)
+        with self._desk.reading() as session:
+            rows = session.scalars(wanted.where(AuditRow.subject == subject) if subject else wanted)
+            return tuple(entry_of(row) for row in rows)[::-1]
+
+    def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
+        """Check every link, and that the chain still holds what `checkpoint` tells of."""
+        with self._desk.reading() as session:
+            return verify_rows(session, checkpoint)
+
+
+def note(desk: Desk, session: OrmSession, action: Action, subject: str, **details: object) -> None:
+    """Add an entry in the same transaction as what it tells of."""
+    append(session, desk.now(), desk.code, action, subject, details)
+
+
+def append(
+    session: OrmSession,
+    at: datetime.datetime,
+    operator: str,
+    action: Action,
+    subject: str,
+    details: Mapping[str, object],
+) -> Checkpoint:
+    """Add an entry; `session` holds the write lock, so that nobody else takes the same number."""
+    last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).first()
+    before = Checkpoint(last.number, last.hash) if last is not None else BEGINNING
+    entry = AuditEntry(
+        number=before.number + 1,
+        at=at.astimezone(datetime.UTC).isoformat(),
+        operator=operator,
+        action=action.value,
+        subject=subject,
+        details=canonical(details),
+        previous_hash=before.hash,
+        hash="",
+    )
+    row = AuditRow(**{name: getattr(entry, name) for name in AuditEntry.__slots__})
+    row.hash = hash_of(entry)
+    session.add(row)
+    session.flush()  # the next one in this transaction has to see it
+    return Checkpoint(row.number, row.hash)
+
+
+def canonical(content: object) -> str:
+    """The one way of writing `content` as JSON."""
+    return json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def hash_of(entry: AuditEntry) -> str:
+    """SHA-256 of all that an entry says and of the hash before it."""
+    content = [entry.number, entry.at, entry.operator, entry.action, entry.subject, entry.details, entry.previous_hash]
+    return hashlib.sha256(canonical(content).encode()).hexdigest()
+
+
+def verify_rows(session: OrmSession, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
+    rows = session.scalars(select(AuditRow).order_by(AuditRow.number).execution_options(yield_per=MANY))
+    return verify(map(entry_of, rows), checkpoint)
+
+
+def verify(entries: Iterable[AuditEntry], checkpoint: Checkpoint = BEGINNING) -> AuditReport:
+    """Follow the chain from its beginning; after a fault it goes on from what is there, so that one is told once."""
+    end, faults = BEGINNING, []
+    is_held = checkpoint.number == 0
+    for entry in entries:
+        if entry.number != end.number + 1:
+            faults.append(AuditFault(entry.number, f"follows number {end.number}"))
+        elif entry.previous_hash != end.hash:
+            faults.append(AuditFault(entry.number, "does not follow from the entry before"))
+        if entry.hash != hash_of(entry):
+            faults.append(AuditFault(entry.number, "was changed"))
+        end = Checkpoint(entry.number, entry.hash)
+        is_held = is_held or end == checkpoint
+    if not is_held:
+        faults.append(AuditFault(checkpoint.number, "is not what the checkpoint tells of, or is missing"))
+    return AuditReport(end, tuple(faults))
+
+
+def entry_of(row: AuditRow) -> AuditEntry:
+    return AuditEntry(**{name: getattr(row, name) for name in AuditEntry.__slots__})
+
+
+def about(kind: str, row: UUID | str) -> str:
+    """How an entry names what it is about."""
+    return f"{kind}:{row}"

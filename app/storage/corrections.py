@@ -1,0 +1,149 @@
+"""What was put right after the fact, by whom and when, and how is it taken back?"""
+
+import uuid
+from collections.abc import Mapping, Sequence
+from enum import StrEnum
+from typing import Any
+from uuid import UUID
+
+from sqlalchemy import ColumnElement, or_, select
+from sqlalchemy.orm import DeclarativeBase, aliased
+from sqlalchemy.orm import Session as OrmSession
+from sqlalchemy.orm.attributes import flag_modified
+
+from app.storage.audit import about, note
+from app.storage.database.engine import changed_meanwhile
+from app.storage.database.ids import uuid7
+from app.storage.database.models import CorrectionRow, JointRow, PatientRow, RecordingRow, SessionRow
+from app.storage.desk import Desk
+from app.storage.stored import Action, Change, Correction, LibraryError, Role
+
+CORRECTED: Mapping[str, type[DeclarativeBase]] = {
+    row.__tablename__: row for row in (PatientRow, SessionRow, JointRow, RecordingRow)
+}
+Value = str | float | bool | None
+
+
+class Corrections:
+    """The history of patients and sessions."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def of_patient(self, patient_id: UUID) -> tuple[Correction, ...]:
+        """All that was corrected about a patient and the patient's sessions, latest first."""
+        with self._desk.reading() as session:
+            return corrections_of_patient(session, patient_id)
+
+    def of_session(self, session_id: UUID) -> tuple[Correction, ...]:
+        """Latest first."""
+        with self._desk.reading() as session:
+            return _listed(session, CorrectionRow.session_id == session_id)
+
+    def undo(self, correction_id: UUID) -> None:
+        """Put back what a correction changed. Undoing that again does it once more.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            A value was changed again since: that change has to be taken back first.
+        LibraryError
+            It was undone already, or what it was about is gone.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = session.get(CorrectionRow, correction_id)
+            if row is None:
+                raise LibraryError("This correction is not there any more", "Reload what is shown")
+            if session.scalar(select(CorrectionRow.id).where(CorrectionRow.undoes_id == row.id)):
+                raise LibraryError("This correction was undone already", "Reload what is shown")
+            back = [Change(c.table, c.row, c.field, old=c.new, new=c.old) for c in reversed(_changes(row))]
+            apply(self._desk, session, back, row.patient_id, row.session_id, undoes=row.id)
+
+
+def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Correction, ...]:
+    own = select(SessionRow.id).where(SessionRow.patient_id == patient_id)
+    return _listed(session, or_(CorrectionRow.patient_id == patient_id, CorrectionRow.session_id.in_(own)))
+
+
+def apply(
+    desk: Desk,
+    session: OrmSession,
+    changes: Sequence[Change],
+    patient_id: UUID,
+    session_id: UUID | None = None,
+    undoes: UUID | None = None,
+) -> None:
+    """Make `changes`, and keep who made them; nothing is done where nothing changes.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        A value is not the old one any more.
+    """
+    if not changes:
+        return
+    for change in changes:
+        row: Any = session.get(CORRECTED[change.table], change.row)
+        if row is None or plain(getattr(row, change.field)) != change.old:
+            raise changed_meanwhile()
+        setattr(row, change.field, _typed(type(row), change.field, change.new))
+        if isinstance(row, JointRow):  # it is part of its session, whose version has to tell
+            flag_modified(session.get_one(SessionRow, row.session_id), "started")
+    correction = CorrectionRow(
+        id=uuid7(),
+        patient_id=patient_id,
+        session_id=session_id,
+        at=desk.now(),
+        operator=desk.code,
+        changes=[_record(change) for change in changes],
+        undoes_id=undoes,
+    )
+    session.add(correction)
+    details: dict[str, object] = {"fields": sorted({change.field for change in changes}), "correction": correction.id}
+    subject = about("patient", patient_id) if session_id is None else about("session", session_id)
+    note(desk, session, Action.EDIT, subject, **{key: plain(value) for key, value in details.items()})
+
+
+def differences(row: Any, wanted: Mapping[str, object]) -> list[Change]:
+    """What has to change in `row` so that its fields are as `wanted`."""
+    pairs = ((field, plain(getattr(row, field)), plain(value)) for field, value in wanted.items())
+    return [Change(row.__tablename__, row.id, field, old, new) for field, old, new in pairs if old != new]
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON holds it."""
+    return str(value) if isinstance(value, UUID | StrEnum) else value
+
+
+def _typed(row: type[DeclarativeBase], field: str, value: Value) -> object:
+    if not isinstance(value, str):
+        return value
+    return row.__table__.columns[field].type.python_type(value)
+
+
+def _record(change: Change) -> dict[str, Any]:
+    return {
+        "table": change.table,
+        "row": str(change.row),
+        "field": change.field,
+        "old": change.old,
+        "new": change.new,
+    }
+
+
+def _changes(row: CorrectionRow) -> list[Change]:
+    return [Change(**{**record, "row": uuid.UUID(record["row"])}) for record in row.changes]
+
+
+def _listed(session: OrmSession, is_wanted: ColumnElement[bool]) -> tuple[Correction, ...]:
+    undoing = aliased(CorrectionRow)
+    wanted = (
+        select(CorrectionRow, undoing.id)
+        .outerjoin(undoing, undoing.undoes_id == CorrectionRow.id)
+        .where(is_wanted)
+        .order_by(CorrectionRow.id.desc())
+    )
+    return tuple(
+        Correction(row.id, row.at, row.operator, tuple(_changes(row)), row.undoes_id, is_undone=undone_by is not None)
+        for row, undone_by in session.execute(wanted)
+    )

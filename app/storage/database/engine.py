@@ -1,0 +1,231 @@
+"""How is the library's database opened, locked and closed, and what does its trouble mean?"""
+
+import logging
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import sqlcipher3.dbapi2 as sqlite
+from sqlalchemy import Connection, Engine, QueuePool, create_engine, event, text
+from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.orm import Session as OrmSession
+from sqlalchemy.orm.exc import StaleDataError
+
+from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError
+
+OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
+BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
+TRY_S = 5.0  # how long one attempt waits
+PG_WRITE_LOCK = 0x6761_6974  # any number, the same at all stations
+PG_LOCKED = "55P03"  # lock_not_available
+AS_WRITER = {"takes_write_lock": True}
+AS_BUILDER = {"takes_write_lock": True, "leaves_references": True}
+
+_log = logging.getLogger(__name__)
+
+
+class Database:
+    """One library's database. Sessions of any thread; what `writing` yields holds the one write lock."""
+
+    def __init__(self, engine: Engine, busy_s: float = BUSY_S) -> None:
+        self.engine, self._busy_s = engine, busy_s
+        self._write_engine = engine.execution_options(**AS_WRITER)
+        self._build_engine = engine.execution_options(**AS_BUILDER)
+
+    @contextmanager
+    def reading(self) -> Iterator[OrmSession]:
+        """A session that sees the database as it is at one instant.
+
+        Raises
+        ------
+        LibraryError
+            The database cannot be read.
+        """
+        with _told(), OrmSession(self.engine) as session:
+            yield session
+
+    @contextmanager
+    def writing(self) -> Iterator[OrmSession]:
+        """A session that holds the write lock from its beginning, and writes all or nothing at its end.
+
+        Raises
+        ------
+        LibraryBusyError
+            Somebody else holds the lock; it was tried for `busy_s`.
+        ChangedMeanwhileError
+            A row was changed since it was read.
+        LibraryError
+            The database cannot be written.
+        """
+        with _told(), self._locked_session(self._write_engine) as session:
+            yield session
+            session.commit()
+
+    @contextmanager
+    def rebuilding(self) -> Iterator[Connection]:
+        """As `writing`, for work on the tables themselves.
+
+        SQLite alters a table by copying it and dropping the old one, and while references are enforced that would
+        delete what refers to it. So they are checked at the end instead.
+        """
+        with _told(), self._locked_session(self._build_engine) as session:
+            yield session.connection()
+            if self.engine.dialect.name == "sqlite" and (lost := _dangling(session)):
+                raise LibraryError(f"The library cannot be updated: {lost[0]}", "Restore it from a backup")
+            session.commit()
+
+    def _locked_session(self, engine: Engine) -> OrmSession:
+        deadline = time.monotonic() + self._busy_s
+        while True:
+            session = OrmSession(engine)
+            try:
+                session.connection()  # begins, and so takes the lock
+                return session
+            except DBAPIError as error:
+                session.close()
+                if not _is_locked(error) or time.monotonic() >= deadline:
+                    raise
+
+    def faults(self) -> tuple[str, ...]:
+        """Read every page and check every reference; what is wrong, in the database's own words."""
+        with self.reading() as session:
+            if self.engine.dialect.name != "sqlite":
+                return ()  # the server's business: it has checksums and tools of its own
+            found = [row[0] for row in session.execute(text("PRAGMA cipher_integrity_check"))]
+            if not found:  # what does not open cannot be looked into
+                found = [row[0] for row in session.execute(text("PRAGMA integrity_check")) if row[0] != "ok"]
+                found += _dangling(session)
+            return tuple(found)
+
+    def close(self) -> None:
+        self.engine.dispose()
+
+
+def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> Engine:
+    """An engine on `path`, which is made if it is missing, readable by its owner only. No `data_key`: not encrypted.
+
+    Raises
+    ------
+    LibraryError
+        The SQLite that came with this installation loses pages.
+    """
+    refuse_old_sqlite(sqlite.sqlite_version_info)
+
+    def connect() -> sqlite.Connection:
+        path.touch(mode=0o600)  # the log beside it takes its mode
+        connection = sqlite.connect(str(path), timeout=try_s, isolation_level=None, check_same_thread=False)
+        try:
+            _prepare(connection, data_key)
+        except BaseException:
+            connection.close()
+            raise
+        return connection
+
+    engine = create_engine("sqlite://", module=sqlite, creator=connect, poolclass=QueuePool, hide_parameters=True)
+    event.listen(engine, "begin", _begin_sqlite)
+    return engine
+
+
+def postgres_engine(url: str, try_s: float = TRY_S) -> Engine:
+    """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`."""
+    engine = create_engine(
+        url, hide_parameters=True, connect_args={"options": f"-c lock_timeout={round(try_s * 1000)}"}
+    )
+    event.listen(engine, "begin", _begin_postgres)
+    return engine
+
+
+def refuse_old_sqlite(version: tuple[int, ...]) -> None:
+    """See that SQLite keeps what it was given.
+
+    Raises
+    ------
+    LibraryError
+        It is older than `OLDEST_SQLITE`.
+    """
+    if version < OLDEST_SQLITE:
+        found, needed = (".".join(map(str, numbers)) for numbers in (version, OLDEST_SQLITE))
+        raise LibraryError(
+            f"This installation has SQLite {found}, which can lose what was saved; {needed} or later is needed",
+            "Run packaging/start.py again: it installs the right one",
+        )
+
+
+def _prepare(connection: sqlite.Connection, data_key: bytes | None) -> None:
+    connection.execute("PRAGMA cipher_log_level = NONE")  # it would write to the terminal
+    if data_key is not None:
+        connection.execute(f"PRAGMA key = \"x'{data_key.hex()}'\"")
+    connection.create_function("lower", 1, _lower, deterministic=True)
+    connection.execute("PRAGMA temp_store = MEMORY")
+    connection.execute("PRAGMA secure_delete = ON")
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("PRAGMA synchronous = FULL")
+
+
+def _lower(value: object) -> object:
+    # SQLite's own knows only the letters of ASCII
+    return value.lower() if isinstance(value, str) else value
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    options = connection.get_execution_options()
+    connection.exec_driver_sql(f"PRAGMA foreign_keys = {'OFF' if options.get('leaves_references') else 'ON'}")
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("takes_write_lock") else "BEGIN")
+
+
+def _begin_postgres(connection: Connection) -> None:
+    if connection.get_execution_options().get("takes_write_lock"):
+        connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_WRITE_LOCK})")
+    else:
+        connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
+
+
+def _dangling(session: OrmSession) -> list[str]:
+    return [f"{row[0]} refers to nothing" for row in session.execute(text("PRAGMA foreign_key_check"))]
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Turn the database's own errors into sentences. They are not chained: some quote what was to be written."""
+    try:
+        yield
+    except StaleDataError:
+        raise changed_meanwhile() from None
+    except (DBAPIError, sqlite.Error) as error:
+        cause = error.orig if isinstance(error, DBAPIError) else error
+        reason = getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None)
+        _log.warning("the database refused: %s %s", type(cause).__name__, reason)
+        raise _sentence(error) from None
+
+
+def changed_meanwhile() -> ChangedMeanwhileError:
+    return ChangedMeanwhileError("Somebody else changed this meanwhile", "Look at the new values, then change it again")
+
+
+def _is_locked(error: Exception) -> bool:
+    cause = error.orig if isinstance(error, DBAPIError) else error
+    return getattr(cause, "sqlstate", "") == PG_LOCKED or "is locked" in str(cause)
+
+
+def _sentence(error: DBAPIError | sqlite.Error) -> LibraryError:
+    words = str(error.orig if isinstance(error, DBAPIError) else error)
+    if isinstance(error, IntegrityError):
+        return LibraryError("This contradicts what the library holds already", "Reload what is shown, then try again")
+    if _is_locked(error):
+        return LibraryBusyError(
+            "Another program keeps the library busy", "Wait a moment and try again; recordings go on meanwhile"
+        )
+    if "not a database" in words:
+        return LibraryError(
+            "The library does not open with this key, or its first page is damaged", "Restore it from a backup"
+        )
+    if "malformed" in words:
+        return LibraryError("The library's file is damaged", "Restore it from a backup")
+    if "is full" in words:
+        return LibraryError("The disk is full, so nothing was saved", "Make room, then try again")
+    if "readonly" in words or "unable to open" in words:
+        return LibraryError("The library's file cannot be opened for writing", "See to the rights of its folder")
+    if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
+        return LibraryError("The clinic's server does not answer", "Recordings go on; try again when it is back")
+    return LibraryError("The library's database refused this", "Try again; if it stays so, restore it from a backup")

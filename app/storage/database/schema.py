@@ -1,0 +1,68 @@
+"""Are the tables those that this version knows? If they are older they are brought up to date, in one go."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sqlalchemy import Connection, inspect, text
+
+from app.storage.database.engine import Database
+from app.storage.stored import LibraryError
+
+if TYPE_CHECKING:  # it takes long to load, and is needed after an update only
+    from alembic.config import Config
+
+NEWEST = "0002"
+
+
+def bring_up_to_date(database: Database) -> None:
+    """Take the steps that are missing, all or none; two stations may ask at once.
+
+    Raises
+    ------
+    LibraryError
+        A later version of Gaitwright has written the library.
+    """
+    with database.reading() as session:
+        if _step_of(session.connection()) == NEWEST:
+            return
+    with database.rebuilding() as connection:
+        if (found := _step_of(connection)) == NEWEST:
+            return  # somebody else was quicker
+        _refuse_unknown(found)
+        move(connection, "head")
+
+
+def move(connection: Connection, step: str) -> None:
+    """Go to `step`, forwards or back ("base" has no tables), in the transaction that `connection` is in."""
+    from alembic import command
+
+    config = alembic_config()
+    config.attributes["connection"] = connection
+    current = _step_of(connection)
+    if step == "base" or (step != "head" and current is not None and step < current):
+        command.downgrade(config, step)
+    else:
+        command.upgrade(config, step)
+
+
+def alembic_config() -> "Config":
+    from alembic.config import Config
+
+    config = Config()
+    config.set_main_option("script_location", str(Path(__file__).with_name("migrations")).replace("%", "%%"))
+    config.set_main_option("path_separator", "os")
+    return config
+
+
+def _step_of(connection: Connection) -> str | None:
+    if not inspect(connection).has_table("alembic_version"):
+        return None
+    return connection.execute(text("SELECT version_num FROM alembic_version")).scalar()
+
+
+def _refuse_unknown(step: str | None) -> None:
+    from alembic.script import ScriptDirectory
+
+    known = {script.revision for script in ScriptDirectory.from_config(alembic_config()).walk_revisions()}
+    if step is not None and step not in known:
+        raise LibraryError("A later version of Gaitwright has written this library", "Install the latest version")

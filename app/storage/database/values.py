@@ -1,0 +1,100 @@
+"""How do rows become the plain values that leave `app.storage`?"""
+
+from dataclasses import fields
+
+from sqlalchemy import func, select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.database.models import OperatorRow, PatientRow, PlacementRow, RecordingRow, ResultRow, SessionRow
+from app.storage.stored import (
+    Operator,
+    PlacedSensor,
+    Placement,
+    StoredJournal,
+    StoredPatient,
+    StoredRecording,
+    StoredResult,
+    StoredSession,
+)
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import Patient, Recording, SensorInfo, Session
+
+PATIENT_FIELDS = tuple(field.name for field in fields(Patient))
+SENSOR_FIELDS = tuple(field.name for field in fields(SensorInfo))
+RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name != "imu")
+SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_simulated", "unknown")
+
+
+def told_patient(row: PatientRow) -> Patient:
+    return Patient(**{name: getattr(row, name) for name in PATIENT_FIELDS})
+
+
+def stored_patient(session: OrmSession, row: PatientRow) -> StoredPatient:
+    visits = select(func.count(), func.max(SessionRow.started)).where(
+        SessionRow.patient_id == row.id, SessionRow.deleted_at.is_(None)
+    )
+    count, last = session.execute(visits).one()
+    return StoredPatient(row.id, row.version, told_patient(row), row.created_at, row.deleted_at, count, last or "")
+
+
+def placement_of(row: PlacementRow) -> Placement:
+    sensors = {
+        sensor.site: PlacedSensor(sensor.name, SensorInfo(**{name: getattr(sensor, name) for name in SENSOR_FIELDS}))
+        for sensor in row.sensors
+    }
+    return Placement(row.id, row.number, {site: sensors[site] for site in Site if site in sensors})
+
+
+def stored_recording(row: RecordingRow) -> StoredRecording:
+    return StoredRecording(
+        row.id,
+        row.version,
+        row.session_id,
+        Recording(imu={}, **{name: getattr(row, name) for name in RECORDING_FIELDS}),
+        row.state,
+        row.is_simulated,
+        placement_of(row.placement) if row.placement is not None else None,
+        tuple(StoredJournal(j.segment, j.file, j.wrapped_key, j.sha256) for j in row.journals),
+    )
+
+
+def stored_session(row: SessionRow) -> StoredSession:
+    recordings = tuple(stored_recording(recording) for recording in row.recordings)
+    placements = tuple(placement_of(placement) for placement in row.placements)
+    worn: dict[Site, PlacedSensor] = {}
+    for placement in placements:  # the latest word on each site
+        worn |= placement.sensors
+    told = Session(
+        recordings=tuple(recording.told for recording in recordings),
+        patient=told_patient(row.patient),
+        sensors={site: worn[site].info for site in Site if site in worn and worn[site].info != SensorInfo()},
+        zero_rad={joint.joint: joint.zero_rad for joint in row.joints if joint.zero_rad is not None},
+        turned_sign={joint.joint: joint.turned_sign for joint in row.joints if joint.turned_sign is not None},
+        findings=tuple(
+            Finding(finding["key"], Severity(finding["severity"]), finding["where"], finding["numbers"])
+            for finding in row.findings
+        ),
+        **{name: getattr(row, name) for name in SESSION_FIELDS},
+    )
+    return StoredSession(
+        row.id,
+        row.version,
+        row.patient_id,
+        told,
+        row.comment,
+        row.created_at,
+        row.deleted_at,
+        placements,
+        recordings,
+    )
+
+
+def stored_result(row: ResultRow) -> StoredResult:
+    return StoredResult(
+        row.id, row.session_id, row.kind, row.key, row.algorithm, row.created_at, row.format, row.content
+    )
+
+
+def operator_of(row: OperatorRow) -> Operator:
+    return Operator(row.code, row.name, row.role, row.is_active, row.version)

@@ -1,0 +1,84 @@
+"""Who is at work, and what may they do? Everything that is read or written passes here."""
+
+import datetime
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+from sqlalchemy import exists, func, or_, select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.database.engine import Database
+from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
+from app.storage.stored import LibraryError, NotAllowedError, Operator, Role
+
+DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
+
+
+class Desk:
+    """One operator at one library. `operator` is None while nobody is logged in, and then nothing can be done."""
+
+    def __init__(
+        self, database: Database, now: Callable[[], datetime.datetime], is_demonstration: bool = False
+    ) -> None:
+        self.database, self.now, self.is_demonstration = database, now, is_demonstration
+        self.operator: Operator | None = None
+
+    @property
+    def code(self) -> str:
+        if self.operator is None:
+            raise NotAllowedError("Nobody is logged in", "Log in first")
+        return self.operator.code
+
+    @contextmanager
+    def reading(self) -> Iterator[OrmSession]:
+        """What the library holds at one instant.
+
+        Raises
+        ------
+        NotAllowedError
+            Nobody is logged in.
+        LibraryError
+            The database cannot be read.
+        """
+        _ = self.code
+        with self.database.reading() as session:
+            yield session
+
+    @contextmanager
+    def writing(self, needed: Role) -> Iterator[OrmSession]:
+        """All or nothing, under the write lock; see `Database.writing`.
+
+        Raises
+        ------
+        NotAllowedError
+            The operator is not, or no longer, allowed to.
+        LibraryError
+            The database cannot be written, or a simulated recording would get among real ones.
+        """
+        code = self.code
+        with self.database.writing() as session:
+            # as it is now: an administrator at another station may have changed it
+            row = session.get(OperatorRow, code)
+            if row is None or not row.is_active or not row.role.includes(needed):
+                raise NotAllowedError(f"This needs the role of {needed}", "Ask somebody who has it")
+            yield session
+            session.flush()
+            self._keep_simulated_apart(session)
+
+    def _keep_simulated_apart(self, session: OrmSession) -> None:
+        if self.is_demonstration:
+            if session.scalar(select(exists().where(RecordingRow.is_simulated.is_(False)))):
+                raise LibraryError("The demonstration keeps simulated recordings only", "Open your own library")
+            return
+        misplaced = (
+            select(SessionRow.id)
+            .join(PatientRow)
+            .outerjoin(RecordingRow, RecordingRow.session_id == SessionRow.id)
+            .where(func.substr(PatientRow.code, 1, len(DEMO)) != DEMO)
+            .where(or_(SessionRow.is_simulated, RecordingRow.is_simulated))
+        )
+        if session.scalar(select(misplaced.exists())):
+            raise LibraryError(
+                f"Simulated recordings belong to patients whose code starts with {DEMO}",
+                "Choose or create such a patient",
+            )

@@ -1,0 +1,193 @@
+"""A clinic's library: patients, sessions, recordings, results, and who did what with them.
+
+This is what the application calls. Plain values go in and out (`app.storage.stored`), trouble is a `LibraryError` that
+can be shown as it is. Every call may come from any thread and may wait for the disk, so the screen's thread makes none.
+The database is loaded when a library is opened, not when this module is.
+"""
+
+import datetime
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Self
+
+from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
+
+if TYPE_CHECKING:
+    from app.storage.database.engine import Database
+
+FILE_NAME = "library.db"
+DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
+
+
+def now_utc() -> datetime.datetime:
+    return datetime.datetime.now(datetime.UTC)
+
+
+class Library:
+    """An open library. Nothing but `log_in` works until somebody is logged in."""
+
+    def __init__(
+        self,
+        database: "Database",
+        is_demonstration: bool = False,
+        now: Callable[[], datetime.datetime] = now_utc,
+    ) -> None:
+        from app.storage.audit import Audit
+        from app.storage.corrections import Corrections
+        from app.storage.database.schema import bring_up_to_date
+        from app.storage.desk import Desk
+        from app.storage.operators import Operators, Settings
+        from app.storage.patients import Patients
+        from app.storage.recordings import Recordings
+        from app.storage.results import Results
+        from app.storage.sessions import Sessions
+
+        bring_up_to_date(database)
+        self._database = database
+        self._desk = Desk(database, now, is_demonstration)
+        self.patients = Patients(self._desk)
+        self.sessions = Sessions(self._desk)
+        self.recordings = Recordings(self._desk)
+        self.results = Results(self._desk)
+        self.corrections = Corrections(self._desk)
+        self.operators = Operators(self._desk)
+        self.settings = Settings(self._desk)
+        self.audit = Audit(self._desk)
+
+    @classmethod
+    def create(
+        cls,
+        folder: Path,
+        data_key: bytes | None,
+        operator: Operator,
+        now: Callable[[], datetime.datetime] = now_utc,
+    ) -> Self:
+        """Make an empty library in `folder` and log `operator` in, who becomes its first administrator.
+
+        Raises
+        ------
+        LibraryError
+            There is a library already, or the folder cannot be written.
+        """
+        if (folder / FILE_NAME).exists():
+            raise LibraryError("This folder holds a library already", "Open it, or choose another folder")
+        try:
+            folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+        except OSError as error:
+            raise LibraryError("This folder cannot be written", "Choose another folder") from error
+        library = cls(_database(folder, data_key), data_key is None, now)
+        try:
+            library.begin(operator)
+        except BaseException:
+            library.close()
+            raise
+        return library
+
+    @classmethod
+    def open(cls, folder: Path, data_key: bytes | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
+        """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
+
+        Raises
+        ------
+        LibraryError
+            There is none, it does not open with this key, it is damaged, or a later version has written it.
+        """
+        if not (folder / FILE_NAME).exists():
+            raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+        database = _database(folder, data_key)
+        try:
+            return cls(database, data_key is None, now)
+        except BaseException:
+            database.close()
+            raise
+
+    @classmethod
+    @contextmanager
+    def demonstration(cls) -> Iterator[Self]:
+        """An unencrypted library of simulated recordings in a folder of its own, gone when it is closed."""
+        with (
+            tempfile.TemporaryDirectory(prefix="gaitwright-demo-") as folder,
+            cls.create(Path(folder), None, DEMONSTRATOR) as library,
+        ):
+            yield library
+
+    @property
+    def operator(self) -> Operator | None:
+        return self._desk.operator
+
+    @property
+    def is_demonstration(self) -> bool:
+        return self._desk.is_demonstration
+
+    def begin(self, operator: Operator) -> Operator:
+        """Log the first operator of an empty library in, as its administrator.
+
+        Raises
+        ------
+        NotAllowedError
+            It has operators already.
+        """
+        from dataclasses import replace
+
+        from sqlalchemy import select
+
+        from app.storage.database.models import OperatorRow, folded
+        from app.storage.operators import add_operator
+
+        first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
+        with self._database.writing() as session:
+            if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
+                raise NotAllowedError("This library has operators already", "Log in")
+            self._desk.operator = first
+            add_operator(session, self._desk, first)
+        return self.log_in(first.code)
+
+    def log_in(self, code: str, failed_before: int = 0) -> Operator:
+        """Let the operator work whose key slot was opened; `failed_before` counts the wrong passphrases before.
+
+        Raises
+        ------
+        NotAllowedError
+            This library does not know the operator, or no longer.
+        """
+        from app.storage.audit import about, append
+        from app.storage.database.models import OperatorRow, folded
+        from app.storage.database.values import operator_of
+
+        with self._database.writing() as session:
+            row = session.get(OperatorRow, folded(code))
+            if row is None or not row.is_active:
+                raise NotAllowedError("This operator does not work here", "Ask an administrator of this library")
+            operator = operator_of(row)
+            details = {"failed_before": failed_before}
+            append(session, self._desk.now(), row.code, Action.LOGIN, about("operator", row.code), details)
+        self._desk.operator = operator
+        return operator
+
+    def log_out(self) -> None:
+        self._desk.operator = None
+
+    def faults(self) -> tuple[str, ...]:
+        """Read every page of the database and check it; what is wrong, for a report. Nothing: it is whole."""
+        return self._database.faults()
+
+    def close(self) -> None:
+        self.log_out()
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+def _database(folder: Path, data_key: bytes | None) -> "Database":
+    from app.storage.database.engine import Database, sqlite_engine
+
+    return Database(sqlite_engine(folder / FILE_NAME, data_key))

@@ -1,0 +1,224 @@
+"""The patients of a library: found, created, corrected, merged, deleted."""
+
+import datetime
+from dataclasses import replace
+from uuid import UUID
+
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.audit import about, entry_of, note
+from app.storage.corrections import apply, corrections_of_patient, differences
+from app.storage.database.engine import changed_meanwhile
+from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
+from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_result, stored_session
+from app.storage.desk import Desk
+from app.storage.sessions import refuse_early
+from app.storage.stored import Action, LibraryError, PatientFile, Role, StoredPatient
+from core.samples import Patient
+from devices.files.session_toml import PATIENT
+
+CORRECTABLE = tuple(name for name in PATIENT_FIELDS if name != "unknown")
+
+
+class Patients:
+    """One row for each person, by a code that the clinic gives."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def create(self, told: Patient) -> StoredPatient:
+        """Add a patient.
+
+        Raises
+        ------
+        LibraryError
+            The code is empty or another patient's, or a value is out of range.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            told = _checked(told)
+            _refuse_taken(session, told.code)
+            row = PatientRow(created_at=self._desk.now(), **{name: getattr(told, name) for name in PATIENT_FIELDS})
+            session.add(row)
+            session.flush()
+            note(self._desk, session, Action.CREATE, about("patient", row.id))
+            return stored_patient(session, row)
+
+    def get(self, patient_id: UUID) -> StoredPatient:
+        """A patient who may be deleted, but not destroyed.
+
+        Raises
+        ------
+        LibraryError
+            There is no such patient.
+        """
+        with self._desk.reading() as session:
+            return stored_patient(session, _existing(session, patient_id))
+
+    def find(self, code: str) -> StoredPatient | None:
+        """The patient with this code, however it is typed."""
+        with self._desk.reading() as session:
+            row = session.scalars(select(PatientRow).where(PatientRow.code_folded == folded(code))).first()
+            return None if row is None or row.merged_into_id or row.deleted_at else stored_patient(session, row)
+
+    def search(self, text: str = "", is_deleted: bool = False) -> tuple[StoredPatient, ...]:
+        """Those whose code holds `text`, the latest seen first; or those that are deleted and can be restored."""
+        with self._desk.reading() as session:
+            wanted = select(PatientRow).where(
+                PatientRow.code_folded.contains(folded(text), autoescape=True),
+                PatientRow.merged_into_id.is_(None),
+                PatientRow.deleted_at.is_not(None) if is_deleted else PatientRow.deleted_at.is_(None),
+            )
+            found = [stored_patient(session, row) for row in session.scalars(wanted)]
+        return tuple(sorted(found, key=lambda patient: (patient.last_session, str(patient.id)), reverse=True))
+
+    def change(self, patient: StoredPatient, told: Patient) -> StoredPatient:
+        """Correct what was told of a patient; kept in the history, and undone from there.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            `patient` is not what the library holds any more.
+        LibraryError
+            As in `create`.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _current(session, patient)
+            told = _checked(told)
+            if folded(told.code) != row.code_folded:
+                _refuse_taken(session, told.code)
+            apply(
+                self._desk, session, differences(row, {name: getattr(told, name) for name in CORRECTABLE}), patient.id
+            )
+            session.flush()
+            return stored_patient(session, row)
+
+    def merge(self, kept: StoredPatient, double: StoredPatient) -> StoredPatient:
+        """Give `kept` all sessions of `double`, and what only `double` tells; `double` is then no longer listed.
+
+        One correction of `kept`, undone as any other.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            One of them is not what the library holds any more.
+        LibraryError
+            They are the same, or one was deleted.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row, other = _current(session, kept), _current(session, double)
+            if row is other or row.deleted_at or other.deleted_at:
+                raise LibraryError("These two cannot be merged", "Choose two patients that are not deleted")
+            filled = {
+                name: getattr(other, name)
+                for name in CORRECTABLE
+                if getattr(row, name) in (None, "") and getattr(other, name) not in (None, "")
+            }
+            moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
+            changes = differences(row, filled)
+            changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
+            changes += differences(other, {"merged_into_id": row.id})
+            apply(self._desk, session, changes, row.id)
+            session.flush()
+            return stored_patient(session, row)
+
+    def delete(self, patient: StoredPatient) -> StoredPatient:
+        """Take a patient and all sessions out of sight; they can be restored for 30 days."""
+        return self._set_deleted(patient, self._desk.now(), Action.DELETE)
+
+    def restore(self, patient: StoredPatient) -> StoredPatient:
+        return self._set_deleted(patient, None, Action.EDIT)
+
+    def destroy(self, patient_id: UUID) -> None:
+        """Remove a patient for good, with all sessions and doubles. Their journals' keys have to be destroyed first.
+
+        Raises
+        ------
+        LibraryError
+            The patient was not deleted, or less than 30 days ago.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, patient_id)
+            refuse_early(row.deleted_at, self._desk.now())
+            gone = [row.id, *session.scalars(select(PatientRow.id).where(PatientRow.merged_into_id == row.id))]
+            session.execute(delete(SessionRow).where(SessionRow.patient_id.in_(gone)))
+            # the doubles before the one that they refer to
+            session.execute(delete(PatientRow).where(PatientRow.merged_into_id == row.id))
+            session.execute(delete(PatientRow).where(PatientRow.id == row.id))
+            note(self._desk, session, Action.DELETE, about("patient", patient_id), is_final=True)
+
+    def everything(self, patient_id: UUID) -> PatientFile:
+        """All that the library holds of one patient, for an export; it is noted as one.
+
+        Raises
+        ------
+        LibraryError
+            There is no such patient, or the export cannot be noted.
+        """
+        with self._desk.writing(Role.VIEWER) as session:
+            patient = stored_patient(session, _existing(session, patient_id))
+            note(self._desk, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
+            rows = session.scalars(
+                select(SessionRow).where(SessionRow.patient_id == patient_id).order_by(SessionRow.started)
+            )
+            sessions = tuple(stored_session(row) for row in rows)
+            ids = [visit.id for visit in sessions]
+            results = session.scalars(select(ResultRow).where(ResultRow.session_id.in_(ids)).order_by(ResultRow.id))
+            subjects = [about("patient", patient_id), *(about("session", visit) for visit in ids)]
+            subjects += [about("recording", recording.id) for visit in sessions for recording in visit.recordings]
+            entries = session.scalars(select(AuditRow).where(AuditRow.subject.in_(subjects)).order_by(AuditRow.number))
+            return PatientFile(
+                patient,
+                sessions,
+                corrections_of_patient(session, patient_id),
+                tuple(stored_result(row) for row in results),
+                tuple(entry_of(row) for row in entries),
+            )
+
+    def _set_deleted(self, patient: StoredPatient, at: datetime.datetime | None, action: Action) -> StoredPatient:
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _current(session, patient)
+            row.deleted_at = at
+            note(self._desk, session, action, about("patient", patient.id), is_deleted=at is not None)
+            session.flush()
+            return stored_patient(session, row)
+
+
+def _existing(session: OrmSession, patient_id: UUID) -> PatientRow:
+    row = session.get(PatientRow, patient_id)
+    if row is None:
+        raise LibraryError("This patient is not in the library any more", "Reload the list")
+    return row
+
+
+def _current(session: OrmSession, patient: StoredPatient) -> PatientRow:
+    row = _existing(session, patient.id)
+    if row.version != patient.version:
+        raise changed_meanwhile()
+    return row
+
+
+def _refuse_taken(session: OrmSession, code: str) -> None:
+    row = session.scalars(select(PatientRow).where(PatientRow.code_folded == folded(code))).first()
+    if row is None:
+        return
+    if row.deleted_at is not None:
+        raise LibraryError("A deleted patient has this code", "Restore that patient, or choose another code")
+    if row.merged_into_id is not None:
+        raise LibraryError("This code was merged into another patient's", "Open that patient, or choose another code")
+    raise LibraryError("Another patient has this code", "Open that patient, or choose another code")
+
+
+def _checked(told: Patient) -> Patient:
+    """What a session folder can hold too; the limits are its own."""
+    told = replace(told, code=told.code.strip())
+    if not told.code:
+        raise LibraryError("A patient needs a code", "Type one that the clinic knows the patient by")
+    for key, (name, check) in PATIENT.items():
+        value = getattr(told, name)
+        try:
+            if value is not None:
+                check(value)
+        except ValueError as error:
+            raise LibraryError(f"{key} has to be {error}", "Correct it") from None
+    return told

@@ -1,0 +1,178 @@
+"""The recordings of a library's sessions: which journals they are in, and what was told of them."""
+
+from collections.abc import Mapping
+from uuid import UUID
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.audit import about, note
+from app.storage.corrections import apply, differences
+from app.storage.database.engine import changed_meanwhile
+from app.storage.database.ids import uuid7
+from app.storage.database.models import JournalRow, RecordingRow, SessionRow
+from app.storage.database.values import RECORDING_FIELDS, stored_recording
+from app.storage.desk import Desk
+from app.storage.stored import (
+    Action,
+    LibraryError,
+    RecordingState,
+    Role,
+    StoredJournal,
+    StoredRecording,
+)
+from core.samples import Recording
+
+CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
+
+
+class Recordings:
+    """One row for each start and stop. The row comes first, then the journal; the samples are there, not here."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def start(
+        self, session_id: UUID, told: Recording, is_simulated: bool, recording_id: UUID | None = None
+    ) -> StoredRecording:
+        """Add a recording that is open, worn as the session's latest placement says, after all earlier ones.
+
+        `recording_id` is that of a journal which nobody here knows of.
+
+        Raises
+        ------
+        LibraryError
+            There is no such session, it has a recording of this name, or `is_simulated` and its patient is not.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            visit = session.get(SessionRow, session_id)
+            if visit is None:
+                raise LibraryError("This session is not in the library any more", "Reload the list")
+            _refuse_taken(visit, told.name)
+            row = RecordingRow(
+                id=recording_id or uuid7(),
+                session_id=session_id,
+                placement=visit.placements[-1] if visit.placements else None,
+                number=max((other.number for other in visit.recordings), default=0) + 1,
+                is_simulated=is_simulated,
+                state=RecordingState.OPEN,
+                **{name: getattr(told, name) for name in RECORDING_FIELDS},
+            )
+            session.add(row)
+            visit.is_simulated = visit.is_simulated or is_simulated
+            session.flush()
+            note(self._desk, session, Action.CREATE, about("recording", row.id))
+            return stored_recording(row)
+
+    def add_journal(self, recording_id: UUID, journal: StoredJournal) -> None:
+        """Say in which file the next segment is, and by which key it is sealed.
+
+        Raises
+        ------
+        LibraryError
+            There is no such recording, or it has this segment.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, recording_id)
+            row.journals.append(
+                JournalRow(
+                    segment=journal.segment,
+                    file=journal.file,
+                    wrapped_key=journal.wrapped_key,
+                    sha256=journal.sha256,
+                )
+            )
+
+    def close(self, recording_id: UUID, state: RecordingState, sha256: Mapping[int, str]) -> StoredRecording:
+        """End a recording: closed with a footer, or recovered after a crash. `sha256` of each segment's file.
+
+        Raises
+        ------
+        LibraryError
+            There is no such recording, or a segment is missing.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, recording_id)
+            if {journal.segment for journal in row.journals} != set(sha256):
+                raise LibraryError("The recording has other files than the library knows of", "Recover it first")
+            for journal in row.journals:
+                journal.sha256 = sha256[journal.segment]
+            row.state = state
+            session.flush()
+            note(self._desk, session, Action.EDIT, about("recording", row.id), state=state.value)
+            return stored_recording(row)
+
+    def discard(self, recording_id: UUID) -> None:
+        """Forget a recording's keys, once those in its files are destroyed: nothing opens it any more.
+
+        Raises
+        ------
+        LibraryError
+            There is no such recording.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, recording_id)
+            for journal in row.journals:
+                journal.wrapped_key = None
+            row.state = RecordingState.DISCARDED
+            note(self._desk, session, Action.DELETE, about("recording", row.id), is_final=True)
+
+    def change(self, recording: StoredRecording, told: Recording) -> StoredRecording:
+        """Correct what was told of a recording: condition, kept, re-strapped and so on; undone from the history.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            `recording` is not what the library holds any more.
+        LibraryError
+            Another recording of the session has this name.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = current_recording(session, recording)
+            visit = session.get_one(SessionRow, row.session_id)
+            if told.name != row.name:
+                _refuse_taken(visit, told.name)
+            changes = differences(row, {name: getattr(told, name) for name in CORRECTABLE})
+            apply(self._desk, session, changes, visit.patient_id, visit.id)
+            session.flush()
+            return stored_recording(row)
+
+    def find(self, recording_id: UUID) -> StoredRecording | None:
+        """The recording that a journal says it is; None: an orphan."""
+        with self._desk.reading() as session:
+            row = session.get(RecordingRow, recording_id)
+            return None if row is None else stored_recording(row)
+
+    def still_open(self) -> tuple[StoredRecording, ...]:
+        """Those that nobody stopped: they are to be recovered, unless they are being recorded now."""
+        with self._desk.reading() as session:
+            rows = session.scalars(
+                select(RecordingRow).where(RecordingRow.state == RecordingState.OPEN).order_by(RecordingRow.id)
+            )
+            return tuple(stored_recording(row) for row in rows)
+
+
+def current_recording(session: OrmSession, recording: StoredRecording) -> RecordingRow:
+    """The row, as long as it is what `recording` says.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        It was changed since.
+    """
+    row = _existing(session, recording.id)
+    if row.version != recording.version:
+        raise changed_meanwhile()
+    return row
+
+
+def _existing(session: OrmSession, recording_id: UUID) -> RecordingRow:
+    row = session.get(RecordingRow, recording_id)
+    if row is None:
+        raise LibraryError("This recording is not in the library any more", "Reload the session")
+    return row
+
+
+def _refuse_taken(visit: SessionRow, name: str) -> None:
+    if any(other.name == name for other in visit.recordings):
+        raise LibraryError("The session has a recording of this name already", "Choose another name")

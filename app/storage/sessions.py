@@ -1,0 +1,276 @@
+"""The visits of a library's patients: created, found, corrected, deleted."""
+
+import datetime
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from uuid import UUID
+
+from sqlalchemy import delete, func, or_, select
+from sqlalchemy.orm import Session as OrmSession
+from sqlalchemy.orm import selectinload
+
+from app.storage.audit import about, note
+from app.storage.corrections import apply, differences
+from app.storage.database.engine import changed_meanwhile
+from app.storage.database.models import (
+    JointRow,
+    PatientRow,
+    PlacedSensorRow,
+    PlacementRow,
+    RecordingRow,
+    SessionRow,
+)
+from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement_of, stored_recording, stored_session
+from app.storage.desk import Desk
+from app.storage.recordings import current_recording
+from app.storage.stored import (
+    Action,
+    LibraryError,
+    PlacedSensor,
+    Placement,
+    Role,
+    SessionLine,
+    StoredRecording,
+    StoredSession,
+)
+from core.body import Joint, Site
+from core.samples import Session
+
+KEPT_DELETED = datetime.timedelta(days=30)
+CORRECTABLE = ("started", "operator", "surface", "notes", "software")
+SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRow.comment, PatientRow.code)
+
+
+class Sessions:
+    """One row for each visit; its recordings are `Recordings`' business."""
+
+    def __init__(self, desk: Desk) -> None:
+        self._desk = desk
+
+    def create(self, patient_id: UUID, told: Session) -> StoredSession:
+        """Add a visit that has no recordings yet; who the patient is stands in the patient's own row.
+
+        Raises
+        ------
+        LibraryError
+            There is no such patient, or `told` is simulated and the patient is not.
+        """
+        if told.recordings or told.sensors:
+            raise ValueError("a session is created without recordings and sensors: place and start them")
+        with self._desk.writing(Role.CLINICIAN) as session:
+            patient = session.get(PatientRow, patient_id)
+            if patient is None or patient.deleted_at or patient.merged_into_id:
+                raise LibraryError("This patient is not in the library any more", "Reload the list")
+            row = SessionRow(
+                patient=patient,
+                comment="",
+                findings=[asdict(finding) for finding in told.findings],
+                created_at=self._desk.now(),
+                joints=[
+                    JointRow(joint=joint, zero_rad=told.zero_rad.get(joint), turned_sign=told.turned_sign.get(joint))
+                    for joint in Joint
+                ],
+                **{name: getattr(told, name) for name in SESSION_FIELDS},
+            )
+            session.add(row)
+            session.flush()
+            note(self._desk, session, Action.CREATE, about("session", row.id))
+            return stored_session(row)
+
+    def get(self, session_id: UUID) -> StoredSession:
+        """A visit, to go on with what is open already.
+
+        Raises
+        ------
+        LibraryError
+            There is no such visit.
+        """
+        with self._desk.reading() as session:
+            return stored_session(_existing(session, session_id))
+
+    def view(self, session_id: UUID) -> StoredSession:
+        """A visit that somebody opens to look at: it is noted who.
+
+        Raises
+        ------
+        LibraryError
+            There is no such visit, or it cannot be noted.
+        """
+        with self._desk.writing(Role.VIEWER) as session:
+            row = _existing(session, session_id)
+            note(self._desk, session, Action.VIEW, about("session", session_id))
+            return stored_session(row)
+
+    def list(self, patient_id: UUID | None = None, text: str = "", is_deleted: bool = False) -> tuple[SessionLine, ...]:
+        """Visits of one patient or of all, latest first, that hold `text` in their words, conditions or patient's code.
+
+        Those of deleted patients are not listed; `is_deleted` lists the visits that were deleted by themselves.
+        """
+        wanted = (
+            select(SessionRow)
+            .join(PatientRow)
+            .where(PatientRow.deleted_at.is_(None))
+            .where(SessionRow.deleted_at.is_not(None) if is_deleted else SessionRow.deleted_at.is_(None))
+            .options(selectinload(SessionRow.recordings), selectinload(SessionRow.patient))
+            .order_by(SessionRow.started.desc(), SessionRow.id.desc())
+        )
+        if patient_id is not None:
+            wanted = wanted.where(SessionRow.patient_id == patient_id)
+        if text := text.strip().lower():
+            in_condition = select(RecordingRow.session_id).where(
+                func.lower(RecordingRow.condition).contains(text, autoescape=True)
+            )
+            in_words = [func.lower(column).contains(text, autoescape=True) for column in SEARCHED]
+            wanted = wanted.where(or_(*in_words, SessionRow.id.in_(in_condition)))
+        with self._desk.reading() as session:
+            return tuple(_line(row) for row in session.scalars(wanted))
+
+    def change(self, visit: StoredSession, told: Session, comment: str | None = None) -> StoredSession:
+        """Correct what was told of a visit: words, goniometer, turned signs, and the clinician's `comment`.
+
+        Kept in the history, and undone from there. Recordings, sensors and patient are changed where they belong.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            `visit` is not what the library holds any more.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, visit.id)
+            if row.version != visit.version:
+                raise changed_meanwhile()
+            wanted = {name: getattr(told, name) for name in CORRECTABLE}
+            if comment is not None:
+                wanted["comment"] = comment
+            changes = differences(row, wanted)
+            for joint in row.joints:
+                zero_rad, turned_sign = told.zero_rad.get(joint.joint), told.turned_sign.get(joint.joint)
+                changes += differences(joint, {"zero_rad": zero_rad, "turned_sign": turned_sign})
+            apply(self._desk, session, changes, row.patient_id, row.id)
+            session.flush()
+            return stored_session(row)
+
+    def place(self, session_id: UUID, sensors: Mapping[Site, PlacedSensor]) -> Placement:
+        """Say which sensor is worn where from now on: what is recorded next takes the latest placement.
+
+        Raises
+        ------
+        LibraryError
+            One sensor at two sites, or there is no such visit.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = self._placed(session, _existing(session, session_id), sensors)
+            note(self._desk, session, Action.EDIT, about("session", session_id), fields=["placement"])
+            return placement_of(row)
+
+    def correct_placement(
+        self, recordings: Sequence[StoredRecording], sensors: Mapping[Site, PlacedSensor]
+    ) -> tuple[StoredRecording, ...]:
+        """Say which sensor was worn where in recordings of one visit that were made already; undone from the history.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            A recording is not what the library holds any more.
+        LibraryError
+            One sensor at two sites.
+        """
+        (session_id,) = {recording.session_id for recording in recordings}
+        with self._desk.writing(Role.CLINICIAN) as session:
+            visit = _existing(session, session_id)
+            rows = [current_recording(session, recording) for recording in recordings]
+            placement = self._placed(session, visit, sensors)
+            changes = [change for row in rows for change in differences(row, {"placement_id": placement.id})]
+            apply(self._desk, session, changes, visit.patient_id, session_id)
+            session.flush()
+            session.expire_all()
+            return tuple(stored_recording(row) for row in rows)
+
+    def delete(self, visit: StoredSession) -> None:
+        """Take a visit out of sight; it can be restored for 30 days."""
+        self._set_deleted(visit, self._desk.now(), Action.DELETE)
+
+    def restore(self, visit: StoredSession) -> None:
+        self._set_deleted(visit, None, Action.EDIT)
+
+    def overdue(self) -> tuple[StoredSession, ...]:
+        """Visits that were deleted, or their patient was, more than 30 days ago: their keys are to be destroyed."""
+        before = self._desk.now() - KEPT_DELETED
+        with self._desk.reading() as session:
+            wanted = select(SessionRow).join(PatientRow)
+            rows = session.scalars(wanted.where(or_(SessionRow.deleted_at <= before, PatientRow.deleted_at <= before)))
+            return tuple(stored_session(row) for row in rows)
+
+    def destroy(self, session_id: UUID) -> None:
+        """Remove a visit for good. Its journals' keys have to be destroyed first.
+
+        Raises
+        ------
+        LibraryError
+            Neither it nor its patient was deleted, or less than 30 days ago.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, session_id)
+            deleted = [at for at in (row.deleted_at, row.patient.deleted_at) if at is not None]
+            refuse_early(min(deleted, default=None), self._desk.now())
+            session.execute(delete(SessionRow).where(SessionRow.id == session_id))
+            note(self._desk, session, Action.DELETE, about("session", session_id), is_final=True)
+
+    def _placed(self, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]) -> PlacementRow:
+        if len({sensor.name for sensor in sensors.values()}) < len(sensors):
+            raise LibraryError("One sensor cannot be worn at two sites", "Assign each sensor once")
+        row = PlacementRow(
+            session_id=visit.id,
+            number=len(visit.placements) + 1,
+            made_at=self._desk.now(),
+            made_by=self._desk.code,
+            sensors=[
+                PlacedSensorRow(site=site, name=one.name, **{name: getattr(one.info, name) for name in SENSOR_FIELDS})
+                for site, one in sensors.items()
+            ],
+        )
+        visit.placements.append(row)
+        session.flush()
+        return row
+
+    def _set_deleted(self, visit: StoredSession, at: datetime.datetime | None, action: Action) -> None:
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, visit.id)
+            if row.version != visit.version:
+                raise changed_meanwhile()
+            row.deleted_at = at
+            note(self._desk, session, action, about("session", visit.id), is_deleted=at is not None)
+
+
+def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -> None:
+    """See that what is to be destroyed was deleted long enough ago.
+
+    Raises
+    ------
+    LibraryError
+        It was not.
+    """
+    if deleted_at is None or now - deleted_at < KEPT_DELETED:
+        raise LibraryError(f"Only what was deleted {KEPT_DELETED.days} days ago is destroyed", "Wait until then")
+
+
+def _existing(session: OrmSession, session_id: UUID) -> SessionRow:
+    row = session.get(SessionRow, session_id)
+    if row is None:
+        raise LibraryError("This session is not in the library any more", "Reload the list")
+    return row
+
+
+def _line(row: SessionRow) -> SessionLine:
+    conditions = dict.fromkeys(recording.condition for recording in row.recordings if recording.condition)
+    return SessionLine(
+        row.id,
+        row.patient_id,
+        row.patient.code,
+        row.started,
+        row.operator,
+        tuple(conditions),
+        len(row.recordings),
+        row.is_simulated,
+        row.deleted_at,
+    )

@@ -1,0 +1,299 @@
+"""What does the library hand out? Plain, frozen values; nothing here knows of a database.
+
+`told` is what the clinic or a file said, in the core's own words and without samples: those are in the journals.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import datetime
+from enum import StrEnum
+from typing import Self
+from uuid import UUID
+
+from core.body import Joint, Site
+from core.samples import Patient, Recording, SensorInfo, Session
+
+
+class LibraryError(Exception):
+    """The library cannot do what was asked. Says what is wrong and what to do; names no patient."""
+
+    def __init__(self, what: str, remedy: str) -> None:
+        super().__init__(f"{what}. {remedy}.")
+        self.what, self.remedy = what, remedy
+
+
+class ChangedMeanwhileError(LibraryError):
+    """Somebody else changed it since it was read: nothing was written, so nothing of theirs is lost."""
+
+
+class LibraryBusyError(LibraryError):
+    """Another program holds the library for longer than anyone waits; nothing was written."""
+
+
+class NotAllowedError(LibraryError):
+    """The operator's role does not allow it."""
+
+
+class Role(StrEnum):
+    """What an operator may do. Enforced by the application; whoever has the data key can read everything."""
+
+    VIEWER = "viewer"
+    CLINICIAN = "clinician"
+    ADMINISTRATOR = "administrator"
+
+    def includes(self, needed: "Role") -> bool:
+        order = list(Role)
+        return order.index(self) >= order.index(needed)
+
+
+class RecordingState(StrEnum):
+    """Discarded: its keys are destroyed. A walk that the clinician does not want is merely not kept."""
+
+    OPEN = "open"
+    CLOSED = "closed"
+    RECOVERED = "recovered"
+    DISCARDED = "discarded"
+
+
+class ResultKind(StrEnum):
+    CALIBRATION = "calibration"
+    ANALYSIS = "analysis"
+
+
+class Action(StrEnum):
+    VIEW = "view"
+    CREATE = "create"
+    EDIT = "edit"
+    DELETE = "delete"
+    EXPORT = "export"
+    PRINT = "print"
+    LOGIN = "login"
+    BACKUP = "backup"
+
+
+@dataclass(frozen=True, slots=True)
+class Operator:
+    """Who works here. `code` is that of the key slot and of the audit; `name` stands on reports."""
+
+    code: str
+    name: str
+    role: Role
+    is_active: bool = True
+    version: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class StoredPatient:
+    """`last_session` is when the latest session started; empty where there is none."""
+
+    id: UUID
+    version: int
+    told: Patient
+    created_at: datetime
+    deleted_at: datetime | None
+    sessions: int
+    last_session: str
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedSensor:
+    """A sensor as its driver or file calls it, and what is known of it."""
+
+    name: str
+    info: SensorInfo
+
+
+@dataclass(frozen=True, slots=True)
+class Placement:
+    """Which sensor was worn where. Never changed: correcting it makes another one, and the old one stays."""
+
+    id: UUID
+    number: int
+    sensors: Mapping[Site, PlacedSensor]
+
+    @property
+    def site_of(self) -> dict[str, Site]:
+        """Site by the sensor's name."""
+        return {sensor.name: site for site, sensor in self.sensors.items()}
+
+
+@dataclass(frozen=True, slots=True)
+class StoredJournal:
+    """One segment of a recording. `sha256` is empty until it is closed; no `wrapped_key`: not sealed, or destroyed."""
+
+    segment: int
+    file: str
+    wrapped_key: bytes | None
+    sha256: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredRecording:
+    id: UUID
+    version: int
+    session_id: UUID
+    told: Recording
+    state: RecordingState
+    is_simulated: bool
+    placement: Placement | None
+    journals: tuple[StoredJournal, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class StoredSession:
+    """One visit. `told` holds the recordings too, in order, without samples; `comment` is the clinician's."""
+
+    id: UUID
+    version: int
+    patient_id: UUID
+    told: Session
+    comment: str
+    created_at: datetime
+    deleted_at: datetime | None
+    placements: tuple[Placement, ...]
+    recordings: tuple[StoredRecording, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SessionLine:
+    """One line of a list of sessions."""
+
+    id: UUID
+    patient_id: UUID
+    patient_code: str
+    started: str
+    operator: str
+    conditions: tuple[str, ...]
+    recordings: int
+    is_simulated: bool
+    deleted_at: datetime | None
+
+
+@dataclass(frozen=True, slots=True)
+class Change:
+    """One value of one row, before and after."""
+
+    table: str
+    row: UUID
+    field: str
+    old: str | float | bool | None
+    new: str | float | bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class Correction:
+    """What one operator changed in one go. `undoes` is the correction that this one takes back."""
+
+    id: UUID
+    at: datetime
+    operator: str
+    changes: tuple[Change, ...]
+    undoes: UUID | None
+    is_undone: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AnalysedRecording:
+    """One recording as an analysis saw it. `sha256` of its journals, in order."""
+
+    name: str
+    sha256: tuple[str, ...]
+    site_of: Mapping[str, Site]
+    is_kept: bool
+    is_restrapped_before: bool
+
+
+@dataclass(frozen=True, slots=True)
+class AnalysisInputs:
+    """Everything that an analysis depends on: the same inputs give the same result, byte for byte.
+
+    `parameters` holds method and settings, by name. `calibration` is the key of a stored calibration that was taken
+    instead of being identified from the recordings.
+    """
+
+    recordings: tuple[AnalysedRecording, ...]
+    zero_rad: Mapping[Joint, float]
+    turned_sign: Mapping[Joint, int]
+    algorithm: str
+    parameters: Mapping[str, str | float | bool]
+    calibration: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class StoredResult:
+    """What was computed from `key`'s inputs. `content` is the application's own, in the format that `format` names."""
+
+    id: UUID
+    session_id: UUID
+    kind: ResultKind
+    key: str
+    algorithm: str
+    created_at: datetime
+    format: str
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True)
+class AuditEntry:
+    """One link of the chain: `hash` is over `previous_hash` and all other fields. `details` is canonical JSON."""
+
+    number: int
+    at: str
+    operator: str
+    action: str
+    subject: str
+    details: str
+    previous_hash: str
+    hash: str
+
+
+@dataclass(frozen=True, slots=True)
+class Checkpoint:
+    """How far the audit had come, to be kept elsewhere: without it nobody notices that its end is missing."""
+
+    number: int
+    hash: str
+
+    def __str__(self) -> str:
+        return f"gaitwright-audit/1 {self.number} {self.hash}"
+
+    @classmethod
+    def parsed(cls, text: str) -> Self:
+        """Read what `str` wrote.
+
+        Raises
+        ------
+        LibraryError
+            It is not a checkpoint.
+        """
+        match text.split():
+            case ["gaitwright-audit/1", number, digest] if number.isdecimal() and len(digest) == 64:
+                return cls(int(number), digest)
+        raise LibraryError("This is not a checkpoint of an audit", "Choose a file that the audit's export has written")
+
+
+@dataclass(frozen=True, slots=True)
+class AuditFault:
+    """What is wrong at one number."""
+
+    number: int
+    what: str
+
+
+@dataclass(frozen=True, slots=True)
+class AuditReport:
+    """What a verification found; `end` is where the chain ends now."""
+
+    end: Checkpoint
+    faults: tuple[AuditFault, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PatientFile:
+    """Everything of one patient, as the patient may ask for."""
+
+    patient: StoredPatient
+    sessions: tuple[StoredSession, ...]
+    corrections: tuple[Correction, ...]
+    results: tuple[StoredResult, ...]
+    audit: tuple[AuditEntry, ...]

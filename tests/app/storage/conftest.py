@@ -1,0 +1,82 @@
+"""Libraries to test with: on an encrypted file, and on a PostgreSQL of the test run's own."""
+
+import shutil
+import tempfile
+import uuid
+import warnings
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy import Engine, create_engine, text
+
+from app.storage.database.engine import Database, postgres_engine, sqlite_engine
+from app.storage.library import FILE_NAME, Library
+from app.storage.stored import Operator, Role
+
+DATA_KEY = bytes(range(32))
+ADMINISTRATOR = Operator("hk", "H. Keller", Role.ADMINISTRATOR)
+
+MakeEngine = Callable[[], Engine]
+
+
+@pytest.fixture(scope="session")
+def postgres_url() -> Iterator[str]:
+    """Where a PostgreSQL listens, on a socket in a folder of its own."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it minds that a machine without desktop has no folder for sockets
+        pgserver = pytest.importorskip("pgserver", reason="there is no PostgreSQL for this Python")
+    folder = Path(tempfile.mkdtemp(prefix="pg"))  # pytest's own is too deep: a socket's path has 107 letters at most
+    try:
+        server = pgserver.get_server(folder, cleanup_mode="stop")
+    except Exception as error:  # whatever a machine has against it
+        shutil.rmtree(folder, ignore_errors=True)
+        pytest.skip(f"PostgreSQL does not start here: {error}")
+    yield server.get_uri().replace("postgresql://", "postgresql+psycopg://", 1)
+    server.cleanup()
+    shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(params=["sqlite", "postgres"])
+def make_engine(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[MakeEngine]:
+    """Makes engines on one new, empty database, as many stations as are wanted."""
+    made: list[Engine] = []
+    if request.param == "sqlite":
+
+        def make() -> Engine:
+            made.append(sqlite_engine(tmp_path / FILE_NAME, DATA_KEY, try_s=0.1))
+            return made[-1]
+
+        yield make
+    else:
+        url: str = request.getfixturevalue("postgres_url")
+        name = f"t{uuid.uuid4().hex}"
+        server = create_engine(url, isolation_level="AUTOCOMMIT")
+        with server.connect() as connection:
+            connection.execute(text(f"CREATE DATABASE {name}"))
+
+        def make() -> Engine:
+            made.append(postgres_engine(url.replace("/postgres?", f"/{name}?"), try_s=0.1))
+            return made[-1]
+
+        yield make
+    for engine in made:
+        engine.dispose()
+    if request.param == "postgres":
+        with server.connect() as connection:
+            connection.execute(text(f"DROP DATABASE {name}"))
+        server.dispose()
+
+
+@pytest.fixture
+def database(make_engine: MakeEngine) -> Database:
+    """A new, empty database, without tables."""
+    return Database(make_engine(), busy_s=1.0)
+
+
+@pytest.fixture
+def library(database: Database) -> Iterator[Library]:
+    """An empty library with an administrator logged in."""
+    with Library(database) as library:
+        library.begin(ADMINISTRATOR)
+        yield library
