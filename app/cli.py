@@ -16,6 +16,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
+from app.logs import log_folder, start_logging
+
 if TYPE_CHECKING:
     from core.findings import Finding
     from core.results import Analysis
@@ -45,8 +47,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")  # a terminal without a degree sign is no reason to stop
-    if argv is None and not sys.warnoptions:
-        warnings.simplefilter("ignore")  # meant for developers; what concerns the clinician is a finding
+    if argv is None:
+        _begin_program()
     arguments = list(sys.argv[1:] if argv is None else argv)
     if not arguments:
         return _open_window(arguments)
@@ -55,6 +57,20 @@ def main(argv: Sequence[str] | None = None) -> int:
         return _run(wanted)
     except KeyboardInterrupt:
         return _say_last(f"Stopped. {wanted.out} is as it was before.", INTERRUPTED)
+
+
+def _begin_program() -> None:
+    """What the process as a whole needs, which tests do without."""
+    start_logging(log_folder())
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")  # meant for developers; what concerns the clinician is a finding
+    if sys.platform != "win32":
+        import resource
+
+        # a core dump would hold the patients' data; Linux takes 1 for "not to another program either", 0 only for files
+        highest = resource.getrlimit(resource.RLIMIT_CORE)[1]
+        least = 1 if sys.platform == "linux" and highest != 0 else 0
+        resource.setrlimit(resource.RLIMIT_CORE, (least, least))
 
 
 def _run(wanted: argparse.Namespace) -> int:
