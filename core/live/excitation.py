@@ -26,10 +26,10 @@ from core.robust import robust_sd
 from core.samples import FloatArray
 
 MIN_SETS = 10  # a second of movement; before, nothing is known
-REFIT_SETS, REFIT_SHARE = 10, 5  # the best hypothesis is found anew after each second or each fifth more movement
+REFIT_SETS, SELDOM_SETS = 10, 20  # the best hypothesis is found anew each second, later each other second
 LAG_PRIOR_S = 0.03
 MAX_LAG_S = 1.5 * NODE_S  # farther the parabola through three instants does not reach
-FIRST_STEPS, STEPS = 10, 2
+FIRST_STEPS = 10
 MAX_CENTRE_STEP_M = 0.1
 MIN_RATE_SCALE_RAD_S = 0.01
 AXIS_PRIOR_RAD = 1.0
@@ -51,6 +51,8 @@ class Wanted:
         In step with the motion, so that no length of it averages them out.
     wobble
         Share of a segment's rate that its sensor may turn beside it; a relative rate below shows no joint.
+    is_hinge
+        One axis by construction: its floors grow with what the sensors turn across it, and no centre shows along it.
     """
 
     axis_rad: float
@@ -60,6 +62,7 @@ class Wanted:
     tilt_rad: float
     shift_m: float
     wobble: float
+    is_hinge: bool
 
 
 HUMAN = Wanted(
@@ -70,6 +73,7 @@ HUMAN = Wanted(
     tilt_rad=np.deg2rad(0.5),
     shift_m=IN_STEP_M,
     wobble=0.06,
+    is_hinge=False,
 )
 PROSTHESIS = Wanted(
     axis_rad=np.deg2rad(0.5),
@@ -79,6 +83,7 @@ PROSTHESIS = Wanted(
     tilt_rad=np.deg2rad(0.1),
     shift_m=0.3 * IN_STEP_M,
     wobble=0.02,
+    is_hinge=True,
 )
 
 
@@ -141,7 +146,8 @@ class Excitation:
         self._collector = SetCollector()
         self._axis = _AxisInformation(closes_at.tilt_rad, closes_at.wobble)
         self._centre = _CentreInformation(closes_at.shift_m)
-        self._used, self._next_refit = 0, MIN_SETS
+        self._used = 0
+        self._next_refit = MIN_SETS + list(Joint).index(joint)  # not all joints at the same moment
         self._heading_in_force = 0  # of the sets that tell the axis: where an orientation began anew, the longer part
         self._wanting: deque[float] = deque(maxlen=PROGRESS_OVER + 1)
         self._is_closed = False
@@ -152,6 +158,11 @@ class Excitation:
     @property
     def state(self) -> ExcitationState:
         return self._state
+
+    @property
+    def heading_rad(self) -> float | None:
+        """Of the distal earth in the proximal one, None while it is not known."""
+        return None if self._axis.profile is None else self._axis.profile.heading_rad
 
     def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> ExcitationState:
         """Take samples of both sensors, any number of either; the state after the last whole tenth of a second."""
@@ -176,7 +187,7 @@ class Excitation:
             if self._collector.headings == self._heading_in_force:
                 self._axis.add(newest, self._centre.lag_s)
             return False
-        self._next_refit = self._used + max(REFIT_SETS, self._used // REFIT_SHARE)
+        self._next_refit = self._used + (REFIT_SETS if self._used < PLATEAU_AFTER // 2 else SELDOM_SETS)
         self._centre.refit(self._collector.sets)
         of_one_heading = self._collector.of_one_heading
         is_same = self._collector.headings == self._heading_in_force
@@ -189,7 +200,7 @@ class Excitation:
         profile, wanted = self._axis.profile, self._wanted
         axis_rad = self._axis.sd_rad()
         covariance = self._centre.covariance()
-        if self._joint.is_knee and profile is not None:
+        if (self._joint.is_knee or wanted.is_hinge) and profile is not None:
             covariance = profile.across @ covariance @ profile.across
         of_each = np.linalg.eigvalsh(np.stack([covariance[:3, :3], covariance[3:, 3:]]))
         centre_m = math.sqrt(of_each[:, -1].max())
@@ -203,13 +214,16 @@ class Excitation:
             self._wanting.append(wanting)
         if is_refitted:  # not more often: nobody can follow a hint that changes ten times a second
             self._missing = self._hint(axis_wanting, wanting, margin, covariance)
+        loose = self._axis.looseness if wanted.is_hinge else 0.0
         trend = 1 - wanting / self._wanting[0] if len(self._wanting) > PROGRESS_OVER else 1.0
         is_plateau = not self._is_closed and self._used >= PLATEAU_AFTER and trend < MIN_PROGRESS
         return ExcitationState(
             axis_sd_rad=axis_rad,
             centre_sd_m=centre_m,
-            axis_sd_with_floor_rad=math.hypot(axis_rad, wanted.axis_floor_rad),
-            centre_sd_with_floor_m=math.hypot(SD_FACTOR_HUMAN * centre_m, wanted.centre_floor_m),
+            axis_sd_with_floor_rad=math.hypot(axis_rad, wanted.axis_floor_rad, loose),
+            centre_sd_with_floor_m=math.hypot(
+                SD_FACTOR_HUMAN * centre_m, wanted.centre_floor_m, CENTRE_PRIOR_M * loose
+            ),
             sign_margin=margin,
             is_closed=self._is_closed,
             is_plateau=is_plateau,
@@ -222,7 +236,8 @@ class Excitation:
         """The motion that would tell most now."""
         proximal, distal = self._joint.proximal, self._joint.distal
         # a foot bends too little about one line to tell where its joint lies
-        bending = Missing(distal, Movement.BEND if self._joint.is_knee else Movement.CIRCLE)
+        is_bending_enough = self._joint.is_knee or self._wanted.is_hinge
+        bending = Missing(distal, Movement.BEND if is_bending_enough else Movement.CIRCLE)
         profile = self._axis.profile
         if profile is None:
             return self._missing
@@ -280,6 +295,11 @@ class _AxisInformation:
         in_step = self.count * self._tilt_rad**2 * along / across
         return 1 / math.sqrt(information / (1 + in_step) + AXIS_PRIOR_RAD**-2)
 
+    @property
+    def looseness(self) -> float:
+        """Rate across the axis over the rate along it, as `certainty.looseness` has it."""
+        return math.sqrt(0.5 * self._across / max(self._along, 1e-12))
+
     def sd_rad(self) -> float:
         if self.profile is None:
             return AXIS_PRIOR_RAD
@@ -312,8 +332,7 @@ class _CentreInformation:
         return max(-MAX_LAG_S, min(MAX_LAG_S, float(self._x[12])))
 
     def refit(self, sets: Sets) -> None:
-        steps = FIRST_STEPS if self._scale is None else STEPS
-        for _ in range(steps):
+        for _ in range(FIRST_STEPS if self._scale is None else 1):
             error, slope = self._linear(sets)
             self._scale = max(robust_sd(error), MIN_SCALE_M_S2)
             weight = self._weight(error)

@@ -16,15 +16,11 @@ from core.live.sample_sets import Sets, parabola
 from core.rotations import cross_matrix, wrap
 from core.samples import FloatArray
 
-STEP_RAD = np.deg2rad(5.0)
+STEP_RAD = np.deg2rad(7.5)
 HEADINGS = np.arange(0.0, 2 * np.pi, STEP_RAD)
 # A heading r times as costly as the best counts r^-2.7: at the offline margin of doubt, 1.3, half as much as the best.
 COST_EXPONENT = 2.7
 NEAR_RAD = np.deg2rad(30.0)  # within, headings are told apart by the information about the axes, not by their costs
-UNKNOWNS = np.array(
-    [0, 1, 2, 3, 4, 5, 7, 8, 9, 10, 11, 12]
-)  # o1, b1, o2, b2 among the columns of both sensors' equations
-KNOWN = np.array([6, 13])
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,22 +143,15 @@ def _force_cost(one: FloatArray, two: FloatArray) -> FloatArray:
     flat_1, flat_2 = one[:, 0] + 1j * one[:, 1], two[:, 0] + 1j * two[:, 1]
     turned = np.real(np.exp(1j * HEADINGS)[:, None, None] * (np.conj(flat_1).T @ flat_2))
     mixed = turned + one[:, 2].T @ two[:, 2]
-    sums = np.empty((len(HEADINGS), 14, 14))
-    sums[:, :7, :7], sums[:, 7:, 7:] = _squared(one), _squared(two)
-    sums[:, :7, 7:], sums[:, 7:, :7] = -mixed, -np.swapaxes(mixed, 1, 2)
-    matrix = sums[:, UNKNOWNS[:, None], UNKNOWNS]
-    right = sums[:, UNKNOWNS[:, None], KNOWN].sum(axis=2)
+    own_1, own_2 = (rows.T @ rows for rows in (one.reshape(-1, 7), two.reshape(-1, 7)))
+    matrix = np.empty((len(HEADINGS), 12, 12))
+    matrix[:, :6, :6], matrix[:, 6:, 6:] = own_1[:6, :6], own_2[:6, :6]
+    matrix[:, :6, 6:], matrix[:, 6:, :6] = -mixed[:, :6, :6], -np.swapaxes(mixed[:, :6, :6], 1, 2)
+    right = np.concatenate([own_1[:6, 6] - mixed[:, :6, 6], own_2[:6, 6] - mixed[:, 6, :6]], axis=1)
     prior = np.repeat([CENTRE_PRIOR_M, BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, BIAS_PRIOR_M_S2], 3) ** -2.0 * SCALE_M_S2**2
     x = np.linalg.solve(matrix + np.diag(prior), right[:, :, None])[:, :, 0]
-    left = sums[:, KNOWN[:, None], KNOWN].sum(axis=(1, 2)) - 2 * np.sum(x * right, axis=1)
-    left += np.sum(x * (matrix @ x[:, :, None])[:, :, 0], axis=1)
+    left = own_1[6, 6] + own_2[6, 6] - 2 * mixed[:, 6, 6] - np.sum(x * right, axis=1) - (x**2) @ prior
     return _loss(left / len(one) / SCALE_M_S2**2)
-
-
-def _squared(equations: FloatArray) -> FloatArray:
-    rows = equations.reshape(-1, 7)
-    squared: FloatArray = rows.T @ rows
-    return squared
 
 
 def _equations(earth_from: FloatArray, k: FloatArray, a: FloatArray) -> FloatArray:

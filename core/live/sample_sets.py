@@ -138,7 +138,7 @@ class SetCollector:
             return False
         g1, g2 = one.gyr_rad_s, two.gyr_rad_s
         squares = np.einsum("ni,ni->n", g1, g1), np.einsum("ni,ni->n", g2, g2)
-        self._speeds.append(float(np.sqrt(squares[0] + squares[1]).mean()))
+        self._speeds.append(float(np.sqrt(squares[0] + squares[1]).sum()) / len(NODES))
         is_moving = sum(self._speeds) > MOVING_RAD_S * len(self._speeds)
         is_fast = max(squares[0].max(), squares[1].max()) > FAST_RAD_S**2
         if not is_moving or is_fast or not (one.is_measured and two.is_measured):
@@ -146,11 +146,14 @@ class SetCollector:
         if self._count == MAX_SETS:
             self._drop_oldest()
         kept, n = self._kept, self._count
-        dg1, dg2 = _angular_acceleration(g1)[1], _angular_acceleration(g2)
+        rates = np.concatenate([g1, g2], axis=1)
+        accelerations = _angular_acceleration(rates)
+        dg1, dg2 = accelerations[:, :3], accelerations[:, 3:]
         kept.g1[n], kept.g2[n], kept.dg2[n] = g1[3], g2[3], dg2[1]
-        kept.effort[n] = dg1 @ dg1, dg2[1] @ dg2[1]
+        kept.effort[n] = dg1[1] @ dg1[1], dg2[1] @ dg2[1]
         kept.a1[n], kept.a2[n] = one.acc_m_s2[1], two.acc_m_s2
-        kept.k1[n], kept.k2[n] = lever_matrix(g1[3], dg1), lever_matrix(g2[2:5], dg2)
+        levers = lever_matrix(np.concatenate([g1[3:4], g2[2:5]]), np.concatenate([dg1[1:2], dg2]))
+        kept.k1[n], kept.k2[n] = levers[0], levers[1:]
         turned = _matrices(np.stack([one.q_earth_from_sensor, two.q_earth_from_sensor]))
         kept.earth_from_1[n], kept.earth_from_2[n] = turned
         self._count += 1
@@ -166,7 +169,7 @@ class SetCollector:
 
 
 def _angular_acceleration(rate: FloatArray) -> FloatArray:
-    """Derivatives (3, 3) at the three middle nodes of rates (7, 3); Seel et al. 2014, doi 10.3390/s140406891, eq 1."""
+    """Derivatives (3, k) at the three middle nodes of rates (7, k); Seel et al. 2014, doi 10.3390/s140406891, eq 1."""
     slopes: FloatArray = (rate[0:3] - 8 * rate[1:4] + 8 * rate[3:6] - rate[4:7]) / (12 * NODE_S)
     return slopes
 

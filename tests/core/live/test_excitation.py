@@ -11,11 +11,12 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from core.body import Joint, Site
-from core.live.excitation import HUMAN, Excitation, ExcitationState, Missing, Movement
+from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState, Missing, Movement
 from core.live.orientation import OrientedSamples
 from core.live.sample_sets import MAX_SETS, _matrices
 from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray
+from tests.benchmarks.excitation import QUANTITIES, stopped_calibrations
 
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SITES = {
@@ -181,7 +182,7 @@ def test_the_motion_that_is_asked_for_is_the_one_that_tells_most(joint: Joint, b
         and not (missing.movement is Movement.BEND and missing.site is joint.proximal)
     }
     assert asked is not None
-    assert left[asked] < 1.15 * min(left.values())
+    assert left[asked] < 1.25 * min(left.values())  # where several are alike, any of them
 
 
 def test_bending_a_knee_in_one_plane_for_long_is_a_plateau() -> None:
@@ -197,6 +198,26 @@ def test_a_plateau_ends_when_another_motion_brings_more() -> None:
     assert any(state.is_plateau for state in states)
     assert not states[-1].is_plateau
     assert states[-1].is_closed
+
+
+def test_a_prosthetic_joint_has_to_close_tighter_and_shows_nothing_along_its_axis() -> None:
+    hinge = {name: value for name, value in ALL_AT_ONCE.items() if name != "inversion"}
+    samples = moved((STILL, 1.0), (hinge, 12.0))
+    one, two = samples[ANKLE.proximal], samples[ANKLE.distal]
+    human, prosthetic = Excitation(ANKLE).update(one, two), Excitation(ANKLE, PROSTHESIS).update(one, two)
+    assert prosthetic.centre_sd_m < PROSTHESIS.centre_m < 0.1 * human.centre_sd_m
+    assert prosthetic.is_closed
+    assert not human.is_closed
+
+
+def test_what_turns_across_a_prosthetic_joint_is_its_floor() -> None:
+    hinge = {name: value for name, value in ALL_AT_ONCE.items() if name != "inversion"}
+    tight, loose = (moved((STILL, 1.0), (motion, 10.0)) for motion in (hinge, ALL_AT_ONCE))
+    floors = [
+        Excitation(ANKLE, PROSTHESIS).update(one[ANKLE.proximal], one[ANKLE.distal]).axis_sd_with_floor_rad
+        for one in (tight, loose)
+    ]
+    assert floors[1] > 3 * floors[0]
 
 
 def test_a_stiff_joint_says_nothing_of_its_axis() -> None:
@@ -274,3 +295,13 @@ def test_the_sets_of_the_last_forty_seconds_count() -> None:
 def test_matrices_are_those_of_the_quaternions() -> None:
     q = Rotation.random(20, rng=np.random.default_rng(0)).as_quat(scalar_first=True)
     assert _matrices(1.1 * q) == pytest.approx(matrix_from_quaternion(q))
+
+
+@pytest.mark.endurance
+def test_nine_of_ten_calibrations_lie_within_twice_what_was_predicted() -> None:
+    told = [one for seed in range(60) for one in stopped_calibrations(seed)]
+    for quantity in QUANTITIES:
+        mine = [one for one in told if one.quantity == quantity]
+        assert len(mine) > 50
+        assert np.mean([one.is_covered for one in mine]) >= 0.9
+    assert all(one.is_covered for one in told if one.is_closed)
