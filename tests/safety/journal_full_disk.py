@@ -22,6 +22,7 @@ import numpy as np
 from app.storage.journal.disk import Room, Trouble
 from app.storage.journal.records import Kind
 from app.storage.journal.writer import JournalWriter, State
+from devices.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LINES, NO_ROOM_ASKED, read_all
 
 DISK_BYTES = 8_000_000
@@ -94,7 +95,7 @@ def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
     """Record some 30 MB/s until the journal says that it stopped; what is wrong with what is kept, if anything is."""
     said: list[tuple[Trouble, int]] = []
     journal = JournalWriter.create(
-        folder, ID, KEY, room=room, on_trouble=lambda trouble: said.append((trouble, time.monotonic_ns()))
+        folder, ID, KEY, room=room, on_trouble=lambda trouble: said.append((trouble, host_time_ns()))
     )
     source = journal.source(LINES)
     begin_s, number, sent_bytes = time.monotonic(), 0, 0

@@ -23,6 +23,7 @@ from app.storage.journal.header import find_segments, read_header
 from app.storage.journal.payloads import STREAM
 from app.storage.journal.records import Kind
 from app.storage.journal.writer import JournalWriter
+from devices.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, NO_ROOM_ASKED, WALKER, block, line, read_all
 
 LONGEST_S = 1.2  # over two syncs; the first instants, before the journal is there, are among them
@@ -118,7 +119,7 @@ def record_until_killed(folder: Path) -> None:
         for k, name in enumerate(NAMES):
             journal.samples(walker, k, block(name, number))
         journal.received(lines, line(number))
-        noted[:] = time.monotonic_ns().to_bytes(8, "little")
+        noted[:] = host_time_ns().to_bytes(8, "little")
         number += 1
         time.sleep(max(begin_s + number / 200 - time.monotonic(), 0.0))
 

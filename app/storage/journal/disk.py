@@ -38,8 +38,8 @@ TOLD = {
         "What was recorded is kept. Delete or move files, then record again",
     ),
     Trouble.DISK_GONE: (
-        "The disk can no longer be written to, so the recording was stopped",
-        "What was recorded until then is kept on it. Check the disk, then record again",
+        "The recording can no longer be written, so it was stopped",
+        "What was recorded until then is kept. Check the disk, then record again",
     ),
     Trouble.DISK_SLOW: (
         "The disk answers late",

@@ -43,7 +43,7 @@ class JournalRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class JournalHeader:
-    """`opened_wall_ns` since 1970 in UTC, `opened_ns` by the host's monotonic clock. No `wrapped_key`: not sealed."""
+    """`opened_wall_ns` since 1970 in UTC, `opened_ns` by `devices.host_clock`. No `wrapped_key`: not sealed."""
 
     recording_id: UUID
     segment: int

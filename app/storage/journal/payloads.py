@@ -3,7 +3,7 @@
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -88,6 +88,11 @@ class Rows:
         packed = ROWS.pack(self.source, self.sensor, len(self.numbers)) + self.numbers.tobytes()
         return packed + json.dumps(self.texts).encode() if self.texts else packed
 
+    def halves(self) -> "tuple[Rows, Rows]":
+        k = len(self.numbers) // 2
+        head, tail = [column[:k] for column in self.texts], [column[k:] for column in self.texts]
+        return replace(self, numbers=self.numbers[:k], texts=head), replace(self, numbers=self.numbers[k:], texts=tail)
+
     @classmethod
     def parsed(cls, payload: bytes, layout: SampleLayout) -> "Rows":
         source, sensor, count = ROWS.unpack_from(payload)
@@ -118,7 +123,7 @@ def rows_of(block: ImuBlock, layout: SampleLayout) -> tuple[FloatArray, list[lis
     """
     columns, texts = _columns_of(block)
     if (columns, texts) != (layout.columns, layout.texts):
-        raise ValueError(f"the block has columns {columns + texts}, expected {layout.columns + layout.texts}")
+        raise ValueError("the block has other columns than its source's layout")  # which may be somebody's words
     parts = [block.time_s[:, None], block.gyr_rad_s, block.acc_m_s2]
     parts += [part for part in (block.q_earth_from_sensor, block.mag) if part is not None]
     parts += [column.astype(float)[:, None] for name, column in block.unknown.items() if name in columns]
@@ -130,7 +135,7 @@ def _columns_of(block: ImuBlock) -> tuple[tuple[str, ...], tuple[str, ...]]:
     if not block.unknown:
         return own, ()  # a live sensor's block, a thousand times a second
     if taken := [name for name in block.unknown if name in own]:
-        raise ValueError(f"the unknown columns {taken} are the block's own")
+        raise ValueError(f"unknown columns bear our own names: {taken}")
     numbers = [name for name, column in block.unknown.items() if np.issubdtype(column.dtype, np.floating)]
     return (*own, *numbers), tuple(name for name in block.unknown if name not in numbers)
 

@@ -5,12 +5,13 @@ queue, never a port; what no longer fits is dropped, counted and told. A kill co
 cut what was not yet synced.
 """
 
+import contextlib
 import json
 import logging
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from errno import EDQUOT, EFBIG, ENOSPC
 from pathlib import Path
@@ -20,15 +21,17 @@ from uuid import UUID
 
 from app.storage.journal.disk import FULL_RATE_BYTES_S, ROOM, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalHeader, find_segments, segment_path
-from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, SourceEntry, rows_of
-from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, OVERHEAD_BYTES, Kind, Record, Seal
+from app.storage.journal.inlet import Inlet
+from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, rows_of
+from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, Kind, Record, Seal
 from core.samples import ImuBlock
+from devices.host_clock import host_time_ns
 from devices.source import SourceInfo
 
 WRITE_EVERY_S, SYNC_EVERY_S = 0.02, 0.5
 QUEUE_BYTES = 8 << 20  # ten seconds and more of six sensors at 400 Hz
 WRITE_BYTES = 1 << 20  # at most so much at a time, for memory's sake
-SLOW_NS = 1_000_000_000
+SLOW_S = 1.0
 MEASURED_S = 10.0  # after which the rate is what was seen, not what was expected
 OUT_OF_SPACE = {ENOSPC, EDQUOT, EFBIG}
 
@@ -43,12 +46,12 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class JournalStatus:
-    """`waiting_s`: how old the oldest record is that is not yet written. `left_s`: until there is no more room."""
+    """`stuck_s`: for how long records have waited and none was written. `left_s`: until there is no more room."""
 
     state: State
     records: int
     bytes: int
-    waiting_s: float
+    stuck_s: float
     left_s: float
     dropped_records: int
     dropped_bytes: int
@@ -85,25 +88,13 @@ class JournalWriter:
         bytes_per_s: float,
         room: Room,
         on_trouble: Callable[[Trouble], None] | None,
-        now_ns: Callable[[], int],
-        queue_bytes: int,
+        inlet: Inlet,
     ) -> None:
         self.path, self.header = path, header
         self._file, self._seal, self._room = file, Seal(header, key), room
-        self._expected_bytes_s, self._on_trouble, self._now_ns = bytes_per_s, on_trouble, now_ns
-        self._queue_bytes = queue_bytes
-
-        self._lock = threading.Lock()  # of all below up to the thread
-        self._queue: list[tuple[Kind, int, bytes]] = []
-        self._queued_bytes = 0  # those being written included
-        self._oldest_ns: int | None = None
-        self._last_ns = header.opened_ns
-        self._sources: dict[int, SourceEntry] = {}
-        self._dropped_records = self._dropped_bytes = 0
+        self._expected_bytes_s, self._on_trouble = bytes_per_s, on_trouble
+        self._inlet = inlet
         self._troubles: set[Trouble] = set()
-        self._takes_records = True
-
-        # the thread's own
         self._number = FIRST_NUMBER
         self._records = 0
         self._left_s = float("inf")
@@ -125,7 +116,7 @@ class JournalWriter:
         bytes_per_s: float = FULL_RATE_BYTES_S,
         room: Room = ROOM,
         on_trouble: Callable[[Trouble], None] | None = None,
-        now_ns: Callable[[], int] = time.monotonic_ns,
+        now_ns: Callable[[], int] = host_time_ns,
         wall_ns: Callable[[], int] = time.time_ns,
         queue_bytes: int = QUEUE_BYTES,
     ) -> Self:
@@ -152,8 +143,8 @@ class JournalWriter:
         if data_key is not None:
             header, key = header.with_new_key(data_key)
         path = segment_path(folder, recording_id, segment)
-        file = JournalFile(path, header.packed())
-        return cls(file, path, header, key, bytes_per_s, room, on_trouble, now_ns, queue_bytes)
+        inlet = Inlet(queue_bytes, now_ns, header.opened_ns)
+        return cls(JournalFile(path, header.packed()), path, header, key, bytes_per_s, room, on_trouble, inlet)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
         """Tell of a source before its first byte; returns its number. `layout` for one that gives samples.
@@ -163,19 +154,11 @@ class JournalWriter:
         ValueError, TypeError
             The settings are more than JSON can hold.
         """
-        with self._lock:
-            entry = SourceEntry(len(self._sources), info, layout)
-            self._put(Kind.SOURCE, entry.packed())
-            self._sources[entry.number] = entry
-        return entry.number
+        return self._inlet.source(info, layout)
 
     def change(self, source: int, info: SourceInfo, layout: SampleLayout | None = None) -> None:
         """Tell of a source whose settings changed, or which came back: what follows does not join what was before."""
-        with self._lock:
-            was = self._sources[source]
-            entry = replace(was, info=info, layout=layout)
-            self._put(Kind.SOURCE, entry.packed())
-            self._sources[source] = replace(entry, dropped_records=0, dropped_bytes=0)
+        self._inlet.change(source, info, layout)
 
     def received(self, source: int, data: bytes) -> bool:
         """Keep what was read from a source, before anything looks at it."""
@@ -185,24 +168,25 @@ class JournalWriter:
         """Keep what was written to a source."""
         return self._stream(Kind.SENT, source, data)
 
-    def samples(self, source: int, sensor: int, block: ImuBlock) -> bool:
+    def samples(self, source: int, sensor: int, block: ImuBlock, *, waits: bool = False) -> bool:
         """Keep samples of the source's sensor of that index; their times are seconds since the journal was opened.
+
+        `waits` is for imports, which no clock drives: rather than being dropped, samples wait for the disk.
 
         Raises
         ------
         ValueError
             The source gives no samples, has no such sensor, or the block's columns are not those of its layout.
         """
-        entry = self._sources[source]
+        entry = self._inlet.sources[source]
         if entry.layout is None or not 0 <= sensor < len(entry.info.sensors):
-            raise ValueError(f"source {source} gives no samples of sensor {sensor}: {entry.info.sensors}")
+            raise ValueError(f"source {source} gives no samples of a sensor {sensor}")
         numbers, texts = rows_of(block, entry.layout)
-        return self._rows(Rows(source, sensor, numbers, texts))
+        return self._rows(Rows(source, sensor, numbers, texts), waits)
 
     def mark(self, text: str) -> bool:
         """Keep what the operator noted, at this moment."""
-        with self._lock:
-            return self._put(Kind.MARK, json.dumps(text).encode())
+        return self._inlet.put_mark(json.dumps(text).encode())
 
     def stop(self) -> JournalSummary:
         """Write all that is waiting, the footer, and close. Waits for the disk."""
@@ -216,24 +200,22 @@ class JournalWriter:
             sha256=self._file.sha256() if is_closed else "",
             records=self._records,
             bytes=self._file.size,
-            dropped_records=self._dropped_records,
-            dropped_bytes=self._dropped_bytes,
+            dropped_records=self._inlet.dropped_records,
+            dropped_bytes=self._inlet.dropped_bytes,
         )
 
     @property
     def status(self) -> JournalStatus:
-        with self._lock:
-            waiting_ns = self._now_ns() - self._oldest_ns if self._oldest_ns is not None else 0
-            return JournalStatus(
-                state=self._state,
-                records=self._records,
-                bytes=self._file.size,
-                waiting_s=max(waiting_ns, 0) / 1e9,
-                left_s=self._left_s,
-                dropped_records=self._dropped_records,
-                dropped_bytes=self._dropped_bytes,
-                troubles=frozenset(self._troubles),
-            )
+        return JournalStatus(
+            state=self._state,
+            records=self._records,
+            bytes=self._file.size,
+            stuck_s=self._inlet.stuck_s,
+            left_s=self._left_s,
+            dropped_records=self._inlet.dropped_records,
+            dropped_bytes=self._inlet.dropped_bytes,
+            troubles=frozenset(self._troubles.copy()),
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -245,74 +227,34 @@ class JournalWriter:
 
     def _stream(self, kind: Kind, source: int, data: bytes) -> bool:
         if len(data) > MAX_PAYLOAD - STREAM.size:
-            half = len(data) // 2
-            return all([self._stream(kind, source, data[:half]), self._stream(kind, source, data[half:])])
-        return self._put_for(source, kind, STREAM.pack(source) + data)
+            k = len(data) // 2
+            return self._stream(kind, source, data[:k]) & self._stream(kind, source, data[k:])
+        return self._put(kind, source, STREAM.pack(source) + data, waits=False)
 
-    def _rows(self, rows: Rows) -> bool:
+    def _rows(self, rows: Rows, waits: bool) -> bool:
         payload = rows.packed()
         if len(payload) > MAX_PAYLOAD and len(rows.numbers) > 1:
-            half = len(rows.numbers) // 2
-            head, tail = [texts[:half] for texts in rows.texts], [texts[half:] for texts in rows.texts]
-            first = replace(rows, numbers=rows.numbers[:half], texts=head)
-            return all([self._rows(first), self._rows(replace(rows, numbers=rows.numbers[half:], texts=tail))])
-        return self._put_for(rows.source, Kind.SAMPLES, payload)
+            first, second = rows.halves()
+            return self._rows(first, waits) & self._rows(second, waits)  # both, whatever became of the first
+        return self._put(Kind.SAMPLES, rows.source, payload, waits)
 
-    def _put_for(self, source: int, kind: Kind, payload: bytes) -> bool:
-        """Put a source's record; after some had to be dropped, the source is told of anew, with their count."""
-        news: list[Trouble] = []
-        with self._lock:
-            entry = self._sources[source]
-            has_room = self._queued_bytes + len(payload) + OVERHEAD_BYTES <= self._queue_bytes
-            is_taken = has_room and self._takes_records
-            if is_taken:
-                if entry.dropped_records:
-                    self._put(Kind.SOURCE, entry.packed())
-                    self._sources[source] = replace(entry, dropped_records=0, dropped_bytes=0)
-                self._put(kind, payload)
-                if self._last_ns - (self._oldest_ns or 0) > SLOW_NS:
-                    news.append(Trouble.DISK_SLOW)
-            else:
-                self._drop(1, len(payload))
-                self._sources[source] = replace(
-                    entry,
-                    dropped_records=entry.dropped_records + 1,
-                    dropped_bytes=entry.dropped_bytes + len(payload),
-                )
-                if self._takes_records:
-                    news.append(Trouble.DROPPED)
-        if news:
-            self._tell(*news)
+    def _put(self, kind: Kind, source: int, payload: bytes, waits: bool) -> bool:
+        is_taken = self._inlet.put(kind, source, payload, waits=waits)
+        if self._inlet.stuck_s > SLOW_S:
+            self._tell(Trouble.DISK_SLOW)
+        if not is_taken and self._inlet.is_open:
+            self._tell(Trouble.DROPPED)
         return is_taken
 
-    def _put(self, kind: Kind, payload: bytes) -> bool:
-        """Queue a record, the lock being held. Sources and marks, being few and small, are never too many."""
-        if len(payload) > MAX_PAYLOAD:
-            raise ValueError(f"a record holds {len(payload)} bytes, expected {MAX_PAYLOAD} at most")
-        if not self._takes_records:
-            self._drop(1, len(payload))
-            return False
-        self._last_ns = max(self._now_ns(), self._last_ns)  # inside the lock: the order of numbers is that of times
-        if self._oldest_ns is None:
-            self._oldest_ns = self._last_ns
-        self._queue.append((kind, self._last_ns, payload))
-        self._queued_bytes += len(payload) + OVERHEAD_BYTES
-        return True
-
-    def _drop(self, records: int, size: int) -> None:
-        self._dropped_records += records
-        self._dropped_bytes += size
-
-    def _tell(self, *troubles: Trouble) -> None:
-        for trouble in troubles:
-            with self._lock:
-                is_known = trouble in self._troubles
-                self._troubles.add(trouble)
-            if not is_known and self._on_trouble is not None:
-                try:
-                    self._on_trouble(trouble)
-                except Exception:  # whoever listens must not end the recording
-                    _log.exception("a listener failed on %s", trouble)
+    def _tell(self, trouble: Trouble) -> None:
+        if trouble in self._troubles:
+            return
+        self._troubles.add(trouble)
+        if self._on_trouble is not None:
+            try:
+                self._on_trouble(trouble)
+            except Exception:  # whoever listens must not end the recording
+                _log.exception("a listener failed on %s", trouble)
 
     # the journal's thread
 
@@ -327,36 +269,26 @@ class JournalWriter:
             self._give_up(Trouble.DISK_GONE)
 
     def _write_until_stopped(self) -> None:
-        while not self._stop.wait(WRITE_EVERY_S) and self._has_room():
-            self._write_waiting()
+        pause_s = WRITE_EVERY_S
+        while not self._stop.wait(pause_s) and self._has_room():
+            self._write_batch()
+            pause_s = WRITE_EVERY_S if self._inlet.is_empty else 0.0
             if time.monotonic() - self._synced_s >= SYNC_EVERY_S:
                 self._file.sync()
                 self._synced_s = time.monotonic()
-        with self._lock:
-            self._takes_records = False
-        self._write_waiting()
+        self._inlet.close()
+        while not self._inlet.is_empty:
+            self._write_batch()
 
-    def _write_waiting(self) -> None:
-        with self._lock:
-            batch, self._queue = self._queue, []
-        first = 0
-        while first < len(batch):
-            out, last = bytearray(), first
-            while last < len(batch) and len(out) < WRITE_BYTES:
-                out += self._sealed(*batch[last])
-                last += 1
-            try:
-                self._file.append(out)
-            except OSError:
-                with self._lock:
-                    self._queue[:0] = batch[first:]  # not written: counted as dropped with the rest
-                raise
-            with self._lock:
-                self._records += last - first
-                self._queued_bytes -= sum(len(payload) + OVERHEAD_BYTES for _, _, payload in batch[first:last])
-                waiting = batch[last:] or self._queue
-                self._oldest_ns = waiting[0][1] if waiting else None
-            first = last
+    def _write_batch(self) -> None:
+        batch = self._inlet.take(WRITE_BYTES)
+        out = bytearray()
+        for kind, time_ns, payload in batch:
+            out += self._sealed(kind, time_ns, payload)
+        if out:
+            self._file.append(out)
+            self._records += len(batch)
+            self._inlet.written(len(batch))
 
     def _sealed(self, kind: Kind, time_ns: int, payload: bytes) -> bytes:
         # a number is spent when it is used, not when it is written: its nonce must not come again
@@ -364,12 +296,13 @@ class JournalWriter:
         return self._seal.closed(Record(number, kind, time_ns, payload))
 
     def _has_room(self) -> bool:
-        is_looked_at_lately = time.monotonic() - self._looked_s < SYNC_EVERY_S
-        if is_looked_at_lately and self._file.size - self._looked_size <= self._room.kept_bytes / 8:
+        """Whether the recording may go on; looked at twice a second, and sooner where much was written since."""
+        now_s, size = time.monotonic(), self._file.size
+        if now_s - self._looked_s < SYNC_EVERY_S and size - self._looked_size <= self._room.kept_bytes / 8:
             return True
-        self._looked_s, self._looked_size = time.monotonic(), self._file.size
-        elapsed_s = time.monotonic() - self._began_s
-        rate = self._file.size / elapsed_s if elapsed_s > MEASURED_S else self._expected_bytes_s
+        self._looked_s, self._looked_size = now_s, size
+        elapsed_s = now_s - self._began_s
+        rate = size / elapsed_s if elapsed_s > MEASURED_S else self._expected_bytes_s
         spare = self._file.free_bytes() - self._room.kept_bytes
         self._left_s = max(spare, 0) / max(rate, 1.0)
         if spare <= 0:
@@ -380,33 +313,23 @@ class JournalWriter:
         return spare > 0
 
     def _close(self, reason: str) -> None:
-        with self._lock:
-            footer = Footer(reason, self._dropped_records, self._dropped_bytes)
-            self._last_ns = max(self._now_ns(), self._last_ns)
-        self._file.append(self._sealed(Kind.FOOTER, self._last_ns, footer.packed()))
+        footer = Footer(reason, self._inlet.dropped_records, self._inlet.dropped_bytes)
+        self._file.append(self._sealed(Kind.FOOTER, self._inlet.last_ns(), footer.packed()))
         self._file.sync()
         self._file.close()
         self._state = State.CLOSED
 
     def _give_up(self, trouble: Trouble) -> None:
         """End on a disk that fails: nothing more is taken, what was not written is counted, the file is let go."""
-        with self._lock:
-            self._takes_records = False
-            self._drop(len(self._queue), sum(len(payload) for _, _, payload in self._queue))
-            self._queue, self._queued_bytes, self._oldest_ns = [], 0, None
+        self._inlet.abandon()
         self._reason = trouble
         self._tell(trouble)
         try:
             if trouble is Trouble.DISK_FULL:
                 self._close(trouble)  # the cut-off piece is gone again, which most often leaves room for a footer
+                return
         except OSError:
             _log.warning("there was no room for the journal's footer")
-        if self._state is not State.CLOSED:
-            self._state = State.BROKEN
-            self._let_go()
-
-    def _let_go(self) -> None:
-        try:
+        self._state = State.BROKEN
+        with contextlib.suppress(OSError):
             self._file.close()
-        except OSError:
-            _log.warning("the journal's file did not close")

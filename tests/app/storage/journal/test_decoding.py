@@ -121,7 +121,7 @@ def test_columns_that_mean_nothing_to_us_come_back_as_they_were(tmp_path: Path) 
         source = journal.source(info, layout_of(whole))
         for piece in pieces(whole, 3):
             journal.samples(source, 0, piece)
-        with pytest.raises(ValueError, match="the block has columns"):
+        with pytest.raises(ValueError, match="other columns"):
             journal.samples(source, 0, replace(whole, mag=None))
     assert_same_block(decoded(tmp_path).sensors["imported"].block, whole)
 
@@ -298,7 +298,6 @@ def test_a_clock_that_steps_back_all_the_same_gives_no_negative_time(tmp_path: P
         journal.mark("before")
         clock.host_ns -= 5_000_000_000
         journal.mark("after")
-        assert journal.status.waiting_s >= 0.0
     assert [mark.time_s for mark in decoded(tmp_path).marks] == [0.0, 0.0]
 
 

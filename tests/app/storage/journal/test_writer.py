@@ -14,7 +14,7 @@ from app.storage.journal.disk import TOLD, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError, find_segments
 from app.storage.journal.payloads import Footer, SourceEntry
 from app.storage.journal.records import MAX_PAYLOAD, Kind
-from app.storage.journal.writer import JournalWriter, State
+from app.storage.journal.writer import SLOW_S, JournalWriter, State
 from devices.source import SourceInfo
 from tests.safety.journal_material import (
     ID,
@@ -39,16 +39,6 @@ def wait_for(is_so: Callable[[], bool]) -> None:
     while not is_so():
         assert time.monotonic() < give_up_s, "waited in vain"
         time.sleep(0.002)
-
-
-class Clock:
-    """Both of the machine's clocks, moved by hand."""
-
-    def __init__(self) -> None:
-        self.ns = 50_000_000_000
-
-    def __call__(self) -> int:
-        return self.ns
 
 
 class Disk:
@@ -116,7 +106,7 @@ def test_what_was_put_in_can_be_read_while_the_recording_goes_on(tmp_path: Path,
         assert report.footer is None
         wait_for(lambda: len(disk.syncs) >= 3)
         assert disk.syncs[2] - disk.syncs[1] < 5.0  # half a second on a machine that is not busy
-        assert journal.status.waiting_s == 0.0
+        wait_for(lambda: journal.status.stuck_s == 0.0)
 
 
 def test_resuming_opens_the_next_segment(tmp_path: Path) -> None:
@@ -128,23 +118,24 @@ def test_resuming_opens_the_next_segment(tmp_path: Path) -> None:
 
 
 def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, disk: Disk) -> None:
-    clock, said = Clock(), list[Trouble]()
-    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, now_ns=clock, on_trouble=said.append) as journal:
+    said: list[Trouble] = []
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append) as journal:
         source = journal.source(LINES)
         wait_for(lambda: journal.status.records == 1)
         disk.answers.clear()
         slowest_s = 0.0
         for number in range(2000):
-            clock.ns += 5_000_000
             begin_s = time.perf_counter()
             assert journal.received(source, line(number))
             slowest_s = max(slowest_s, time.perf_counter() - begin_s)
         assert slowest_s < 1.0  # the stall itself lasts until this test ends it
-        assert journal.status.waiting_s > 9.0
+        wait_for(lambda: journal.status.stuck_s > SLOW_S)
+        assert said == []
+        journal.received(source, line(2000))
         assert said == [Trouble.DISK_SLOW]
         disk.answers.set()
     records, _, report = read_all(journal.path, KEY)
-    assert [r.payload[2:] for r in records if r.kind is Kind.BYTES] == [line(k) for k in range(2000)]
+    assert [r.payload[2:] for r in records if r.kind is Kind.BYTES] == [line(k) for k in range(2001)]
     assert report.is_whole
 
 
@@ -171,7 +162,7 @@ def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_pat
         assert said == [Trouble.DROPPED]
         assert journal.mark("still here")
         disk.answers.set()
-        wait_for(lambda: journal.status.waiting_s == 0.0)
+        wait_for(lambda: journal.status.stuck_s == 0.0)
         assert journal.received(source, b"after")
         assert journal.received(other, b"nothing dropped here")
     records, _, report = read_all(journal.path, KEY)
@@ -320,6 +311,24 @@ def test_what_is_too_long_for_a_record_is_kept_in_pieces(tmp_path: Path) -> None
     assert report.is_whole
 
 
+def test_an_import_waits_for_the_disk_and_loses_nothing(tmp_path: Path) -> None:
+    whole = block(NAMES[0], 0, 30_000)
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, queue_bytes=300_000) as journal:
+        walker = journal.source(WALKER, LAYOUT)
+        assert not journal.samples(walker, 0, whole)
+        assert all(journal.samples(walker, 0, block(NAMES[0], k, 3000), waits=True) for k in range(0, 30_000, 3000))
+    assert journal.stop().dropped_records > 0  # of the first attempt, which did not wait
+
+
+def test_an_import_that_waits_is_let_go_when_the_disk_fails(tmp_path: Path, disk: Disk) -> None:
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, queue_bytes=300_000) as journal:
+        walker = journal.source(WALKER, LAYOUT)
+        wait_for(lambda: journal.status.records == 1)
+        disk.error = errno.EIO
+        pieces = (block(NAMES[0], k, 3000) for k in range(0, 30_000, 3000))
+        assert not all(journal.samples(walker, 0, piece, waits=True) for piece in pieces)
+
+
 def test_many_threads_may_put_in_at_once(tmp_path: Path) -> None:
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED) as journal:
 
@@ -344,7 +353,7 @@ def test_samples_that_a_source_never_promised_are_refused_at_once(tmp_path: Path
         lines, walker = journal.source(LINES), journal.source(WALKER, LAYOUT)
         with pytest.raises(ValueError, match="gives no samples"):
             journal.samples(lines, 0, block("a", 0))
-        with pytest.raises(ValueError, match="of sensor 6"):
+        with pytest.raises(ValueError, match="of a sensor 6"):
             journal.samples(walker, 6, block("a", 0))
 
 
