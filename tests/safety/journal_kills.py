@@ -27,6 +27,7 @@ from devices.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, NO_ROOM_ASKED, WALKER, block, line, read_all
 
 LONGEST_S = 1.2  # over two syncs; the first instants, before the journal is there, are among them
+FORGOTTEN_S = 60  # after which a child whose parent is gone ends by itself
 NOTE = "noted"
 
 
@@ -115,7 +116,7 @@ def record_until_killed(folder: Path) -> None:
     walker, lines = journal.source(WALKER, LAYOUT), journal.source(LINES)
     begin_s = time.monotonic()
     number = 0
-    while True:
+    while number < FORGOTTEN_S * 200:
         for k, name in enumerate(NAMES):
             journal.samples(walker, k, block(name, number))
         journal.received(lines, line(number))

@@ -1,13 +1,15 @@
 """A journal is read in bounded memory, over damage and to the end, and the reader says what it met."""
 
 import tracemalloc
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from crc32c import crc32c
 
 from app.storage.journal.header import HEADER_BYTES, JournalHeader
 from app.storage.journal.reader import Damage, JournalReader
-from app.storage.journal.records import MAX_PAYLOAD, RECORD_HEADER, Kind, Record, Seal
+from app.storage.journal.records import CHECKSUM, MAX_PAYLOAD, RECORD_HEADER, Kind, Record, Seal
 from app.storage.journal.writer import JournalWriter
 from tests.safety.journal_material import (
     ID,
@@ -56,6 +58,23 @@ def test_a_forged_record_with_a_right_checksum_fails_its_tag() -> None:
     forged = Seal(HEADER, None).closed(RECORD._replace(payload=bytes(40)))
     assert Seal(HEADER, None).opened(memoryview(forged), None) is not None
     assert Seal(HEADER, OWN_KEY).opened(memoryview(forged), None) is None
+
+
+def test_who_has_no_key_can_neither_change_a_records_header_nor_move_it_to_another_recording() -> None:
+    content = bytearray(Seal(HEADER, OWN_KEY).closed(RECORD))
+    stranger = replace(HEADER, recording_id=OTHER_ID)
+    for place in (4, 16, 17):  # number, kind, time
+        changed = content.copy()
+        changed[place] ^= 1
+        assert Seal(HEADER, None).opened(with_checksum(changed, HEADER), None) is not None
+        assert Seal(HEADER, OWN_KEY).opened(with_checksum(changed, HEADER), None) is None
+    assert Seal(stranger, None).opened(with_checksum(content, stranger), None) is not None
+    assert Seal(stranger, OWN_KEY).opened(with_checksum(content, stranger), None) is None
+
+
+def with_checksum(content: bytearray, header: JournalHeader) -> memoryview:
+    body = bytes(content[: -CHECKSUM.size])
+    return memoryview(body + CHECKSUM.pack(crc32c(body, crc32c(header.identity))))
 
 
 @pytest.mark.parametrize("key", [KEY, None], ids=["sealed", "open"])
