@@ -37,7 +37,7 @@ HEADING_LOOKS = Looks(first_scale=np.deg2rad(5.0), min_scale=np.deg2rad(0.3), co
 # How far the twist is off while filters that begin amid a movement look for the vertical: measured on walks cut open.
 START_MOVING_RAD, SETTLES_S = np.deg2rad(15.0), 1.5
 SETTLED_RAD = np.deg2rad(0.5)
-SETTLING_S = 4.0  # after which the twist is better than a human joint's integral
+SETTLING_KNEE_S, SETTLING_ANKLE_S = 4.0, 8.0  # after which the twist is better than a human joint's integral
 START_RESTING_RAD = np.deg2rad(2.0)
 RESTING_FORCE_M_S2 = (9.4, 10.2)  # of a sensor that hardly moves
 MAX_START_RAD = np.deg2rad(6.0)  # no angle is told as long as its start is less sure
@@ -147,15 +147,16 @@ class LiveAngle:
             self._look(float(start_sd[0]))
         self._beat, self._next = beat, int(rows.tick[-1]) + 1
         heading = self._heading.at(time_s)
-        twist = frames.twist(heading)
+        twist, heading_sd = frames.twist(heading), self._heading.sd_rad * frames.steepness
         if is_new_beat or is_new_stretch or self._is_switched:
             self._choose(float(time_s[0]), float(twist[0]), float(start_sd[0]))
         if self._integral is not None:
             twist, start_sd = self._integral.follow(rows), np.full(len(rows), self._integral.sd_rad)
+            heading_sd = np.zeros(len(rows))
         self._see(rows, frames)
         self._certainty.take(rows, frames, self._geometry, heading, twist)
         angle = self._geometry.clinical(twist)
-        sd = np.sqrt(self._certainty.sd_rad**2 + start_sd**2 + (self._heading.sd_rad * frames.steepness) ** 2)
+        sd = np.sqrt(self._certainty.sd_rad**2 + start_sd**2 + heading_sd**2)
         if self._is_switched and self._last is not None:
             turned = self._geometry.calibration.clinical_sign * self._step_s * self._geometry.bending_rate(rows)[0]
             self._blend = float(time_s[0]), float(wrap(self._last + turned - angle[0]))
@@ -188,7 +189,8 @@ class LiveAngle:
     def _choose(self, time_s: float, twist_rad: float, start_sd_rad: float) -> None:
         """Which of the two forms is shown from here on."""
         is_moving_start = self._start_sd_rad > START_RESTING_RAD
-        is_settling = is_moving_start and self._geometry.has_centre and time_s < self._started_s + SETTLING_S
+        settling_s = SETTLING_KNEE_S if self._geometry.calibration.joint.is_knee else SETTLING_ANKLE_S
+        is_settling = is_moving_start and self._geometry.has_centre and time_s < self._started_s + settling_s
         is_wanted = self._geometry.is_hinge or is_settling
         if is_wanted and (self._integral is None or self._is_switched):
             is_unknown = is_moving_start and time_s == self._started_s

@@ -110,7 +110,7 @@ class SlowDrift:
             scale = max(robust_sd(np.array(self._errors)), self._looks.min_scale)
         variance = (scale / length) ** 2
         robust = (1 + error_rad**2 / (variance + angle + unsure_rad**2)) ** 0.5
-        variance = variance * robust * max(1.0, self._looks.correlation_s / duration_s) + unsure_rad**2
+        variance = (variance * robust + unsure_rad**2) * max(1.0, self._looks.correlation_s / duration_s)
         gain = 1 / (variance + angle)
         self._angle += gain * angle * error_rad
         self._slope += gain * both * error_rad

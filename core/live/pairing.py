@@ -1,5 +1,6 @@
 """What did both sensors of a joint measure at the same instants, as their samples come in?"""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -45,6 +46,11 @@ NO_PAIRS = PairedSamples(
     np.empty(0, dtype=np.bool_),
     np.empty(0, dtype=np.bool_),
 )
+
+
+def joined_rows(parts: Collection[PairedSamples]) -> PairedSamples:
+    """Samples that follow each other; there has to be a part."""
+    return PairedSamples(*(np.concatenate([getattr(part, name) for part in parts]) for name in PairedSamples.__slots__))
 
 
 class Pairing:

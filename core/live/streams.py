@@ -6,7 +6,6 @@ import numpy as np
 
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
 from core.tracks import (
-    EVEN_CLOCK_TOLERANCE,
     MAX_BRIDGED_GAP_S,
     MAX_FORCE_M_S2,
     MAX_HELD_S,
@@ -17,9 +16,13 @@ from core.tracks import (
     is_heard,
 )
 
+ON_GRID = 2e-3  # of a step: closer to a tick than this, a sample is used as it is
 CLOCK_MEMORY_S = 2.0  # stamps of this long say where the sensor's own clock stands
+NOMINAL_STAMPS = 10  # how many stamps its nominal rate is worth
 LIMITS = np.array([MAX_RATE_RAD_S] * 3 + [MAX_FORCE_M_S2] * 3)
-MAX_STEP_ERROR = 0.6  # of the nominal step: how far the sensor's own may be off
+MAX_ERROR = 0.25  # of a step; a stamp that is off by more says no more
+LATE_STEPS = 0.15  # so much later than by half a step a sample has to be before one is taken for lost
+MAX_STEP_ERROR = 0.05  # of the nominal step: how far the sensor's own may be off
 MIN_APART = 0.1  # of a step, between samples whose stamps scatter by more than a step
 CONTEXT = 2  # samples beyond an interval's ends that its interpolation needs
 
@@ -58,7 +61,8 @@ class Stream:
 
     A tick is told as soon as the samples around it are there, two or three after it; at once where a sample lies on
     it. Sensors sample evenly while their stamps scatter: each sample is placed by the line through the stamps up to
-    its own. Samples that are not later than those before them are dropped and counted in `late`.
+    its own. Its rate may differ from the nominal one by a few percent. Samples that are not later than those before
+    them are dropped and counted in `late`.
     """
 
     def __init__(self, rate_hz: float) -> None:
@@ -137,8 +141,8 @@ class Stream:
             is_still = np.maximum(speed[:-1], speed[1:]) < STILL_RAD_S
             is_cut &= ~is_still | (gap_s > max(MAX_STILL_GAP_S, 1.5 * self.step_s))
             for end in (np.flatnonzero(is_cut) + 1).tolist():
-                self._place(at[start:end], values[start:end], int(np.floor(at[end - 1] + EVEN_CLOCK_TOLERANCE)))
-                self._next = int(np.ceil(at[end] - EVEN_CLOCK_TOLERANCE))
+                self._place(at[start:end], values[start:end], int(np.floor(at[end - 1] + ON_GRID)))
+                self._next = int(np.ceil(at[end] - ON_GRID))
                 start = end
             at, values = at[start:], values[start:]
         self._place(at, values, self._last_known(at))
@@ -149,9 +153,9 @@ class Stream:
         """The last tick that no further sample can change."""
         last = self._next - 1
         if len(at) > CONTEXT:
-            last = max(last, int(np.floor(at[-1 - CONTEXT] + EVEN_CLOCK_TOLERANCE)))
+            last = max(last, int(np.floor(at[-1 - CONTEXT] + ON_GRID)))
         for one in at[-CONTEXT:].tolist():
-            if round(one) == last + 1 and abs(one - round(one)) < EVEN_CLOCK_TOLERANCE:
+            if round(one) == last + 1 and abs(one - round(one)) < ON_GRID:
                 last += 1
         return last
 
@@ -162,7 +166,7 @@ class Stream:
         tick = np.arange(self._next, last + 1)
         self._next = last + 1
         whole = np.round(at)
-        is_on_grid = np.abs(at - whole) < EVEN_CLOCK_TOLERANCE
+        is_on_grid = np.abs(at - whole) < ON_GRID
         if whole[-1] - whole[0] == len(at) - 1 and is_on_grid.all():
             at_tick = values[tick - int(whole[0])]
             self._placed.append((tick, at_tick, np.ones(len(tick), dtype=np.bool_)))
@@ -172,7 +176,7 @@ class Stream:
         nearest = left + (tick - at[left] > at[left + 1] - tick)
         is_same = is_on_grid[nearest] & (whole[nearest] == tick)
         at_tick[is_same] = values[nearest[is_same]]
-        is_gap = (at[left + 1] - at[left]) * self.step_s > MAX_REPORTED_GAP_S
+        is_gap = (at[left + 1] - at[left]) * self.step_s > MAX_REPORTED_GAP_S + 1e-6  # five steps of 0.01 s are 0.05 s
         is_measured = ~is_gap | (tick <= at[left] + 0.5) | (tick >= at[left + 1] - 0.5)
         self._placed.append((tick, at_tick, is_measured))
 
@@ -192,7 +196,7 @@ class _EvenClock:
 
     def __init__(self, step_s: float) -> None:
         self._step_s = self._nominal_s = step_s
-        self._memory = max(2, round(CLOCK_MEMORY_S / step_s))
+        self._memory = max(NOMINAL_STAMPS, round(CLOCK_MEMORY_S / step_s))
         self._count = 0
         self._last_s = 0.0
 
@@ -202,16 +206,17 @@ class _EvenClock:
         slowest_s, fastest_s = (1 + MAX_STEP_ERROR) * nominal_s, (1 - MAX_STEP_ERROR) * nominal_s
         placed_s = []
         for stamp in stamp_s.tolist():
-            steps = max(1, round((stamp - last_s) / step_s)) if count else 0
+            steps = max(1, round((stamp - last_s) / nominal_s - LATE_STEPS)) if count else 0
             expected_s = last_s + steps * step_s
             error_s = stamp - expected_s
             if count == 0 or abs(error_s) > nominal_s:  # another line begins
                 step_s = nominal_s
                 last_s = max(stamp, last_s + MIN_APART * nominal_s) if count else stamp
-                count = 1
+                count = NOMINAL_STAMPS
             else:
                 count = min(count + 1, self._memory)
                 share = 2 / (count * (count + 1))
+                error_s = min(max(error_s, -MAX_ERROR * nominal_s), MAX_ERROR * nominal_s)
                 last_s = max(expected_s + share * (2 * count - 1) * error_s, last_s + MIN_APART * nominal_s)
                 step_s = min(max(step_s + 3 * share * error_s / steps, fastest_s), slowest_s)
             placed_s.append(last_s)
