@@ -1,17 +1,19 @@
-"""Who did what, and is that record whole? Every entry's hash covers the hash before it.
+"""Who did what, and is that record whole? Every entry's hash is keyed and covers the hash before it.
 
-This is tamper-evident against outsiders only: whoever changes, removes, adds or moves an entry without making all later
-hashes anew is found out by `verify`. Whoever has the data key and the program can make them anew, and whoever can
-replace the file can cut entries off at the end; a checkpoint kept elsewhere shows both. Entries name rows by
-their ids and hold no names and no values, so they may outlive what they tell of.
+This is tamper-evident against outsiders only: who has no data key, a database server's keeper for one, can neither
+change, remove, add nor move an entry unseen. They can cut entries off at the end, which a checkpoint kept elsewhere
+shows. Whoever has the data key and the skill can make the whole chain anew; against them only the checkpoint helps.
+Entries name rows by their ids and hold no names and no values, so they may outlive what they tell of.
 """
 
 import datetime
-import hashlib
+import hmac
 import json
 from collections.abc import Iterable, Mapping
 from uuid import UUID
 
+from cryptography.hazmat.primitives.hashes import SHA256
+from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
@@ -50,16 +52,22 @@ class Audit:
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
         """Check every link, and that the chain still holds what `checkpoint` tells of."""
         with self._desk.reading() as session:
-            return verify_rows(session, checkpoint)
+            return verify_rows(session, self._desk.audit_key, checkpoint)
 
 
 def note(desk: Desk, session: OrmSession, action: Action, subject: str, **details: object) -> None:
     """Add an entry in the same transaction as what it tells of."""
-    append(session, desk.now(), desk.code, action, subject, details)
+    append(session, desk.audit_key, desk.now(), desk.code, action, subject, details)
+
+
+def audit_key(data_key: bytes | None) -> bytes:
+    """The key of the chain's hashes; a demonstration's is known to all."""
+    return HKDF(SHA256(), 32, salt=None, info=b"gaitwright audit 1").derive(data_key or b"")
 
 
 def append(
     session: OrmSession,
+    key: bytes,
     at: datetime.datetime,
     operator: str,
     action: Action,
@@ -80,7 +88,7 @@ def append(
         hash="",
     )
     row = AuditRow(**{name: getattr(entry, name) for name in AuditEntry.__slots__})
-    row.hash = hash_of(entry)
+    row.hash = hash_of(entry, key)
     session.add(row)
     session.flush()  # the next one in this transaction has to see it
     return Checkpoint(row.number, row.hash)
@@ -91,18 +99,18 @@ def canonical(content: object) -> str:
     return json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
-def hash_of(entry: AuditEntry) -> str:
-    """SHA-256 of all that an entry says and of the hash before it."""
+def hash_of(entry: AuditEntry, key: bytes) -> str:
+    """HMAC-SHA256 of all that an entry says and of the hash before it."""
     content = [entry.number, entry.at, entry.operator, entry.action, entry.subject, entry.details, entry.previous_hash]
-    return hashlib.sha256(canonical(content).encode()).hexdigest()
+    return hmac.digest(key, canonical(content).encode(), "sha256").hex()
 
 
-def verify_rows(session: OrmSession, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
+def verify_rows(session: OrmSession, key: bytes, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
     rows = session.scalars(select(AuditRow).order_by(AuditRow.number).execution_options(yield_per=MANY))
-    return verify(map(entry_of, rows), checkpoint)
+    return verify(map(entry_of, rows), key, checkpoint)
 
 
-def verify(entries: Iterable[AuditEntry], checkpoint: Checkpoint = BEGINNING) -> AuditReport:
+def verify(entries: Iterable[AuditEntry], key: bytes, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
     """Follow the chain from its beginning; after a fault it goes on from what is there, so that one is told once."""
     end, faults = BEGINNING, []
     is_held = checkpoint.number == 0
@@ -111,7 +119,7 @@ def verify(entries: Iterable[AuditEntry], checkpoint: Checkpoint = BEGINNING) ->
             faults.append(AuditFault(entry.number, f"follows number {end.number}"))
         elif entry.previous_hash != end.hash:
             faults.append(AuditFault(entry.number, "does not follow from the entry before"))
-        if entry.hash != hash_of(entry):
+        if not hmac.compare_digest(entry.hash, hash_of(entry, key)):
             faults.append(AuditFault(entry.number, "was changed"))
         end = Checkpoint(entry.number, entry.hash)
         is_held = is_held or end == checkpoint

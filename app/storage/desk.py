@@ -18,9 +18,13 @@ class Desk:
     """One operator at one library. `operator` is None while nobody is logged in, and then nothing can be done."""
 
     def __init__(
-        self, database: Database, now: Callable[[], datetime.datetime], is_demonstration: bool = False
+        self,
+        database: Database,
+        audit_key: bytes,
+        now: Callable[[], datetime.datetime],
+        is_demonstration: bool,
     ) -> None:
-        self.database, self.now, self.is_demonstration = database, now, is_demonstration
+        self.database, self.audit_key, self.now, self.is_demonstration = database, audit_key, now, is_demonstration
         self.operator: Operator | None = None
 
     @property

@@ -9,6 +9,7 @@ import datetime
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
@@ -27,15 +28,18 @@ def now_utc() -> datetime.datetime:
 
 
 class Library:
-    """An open library. Nothing but `log_in` works until somebody is logged in."""
+    """An open library. Nothing but `log_in` works until somebody is logged in.
+
+    No `data_key`: it is a demonstration, which is not encrypted and takes simulated recordings only.
+    """
 
     def __init__(
         self,
         database: "Database",
-        is_demonstration: bool = False,
+        data_key: bytes | None,
         now: Callable[[], datetime.datetime] = now_utc,
     ) -> None:
-        from app.storage.audit import Audit
+        from app.storage.audit import Audit, audit_key
         from app.storage.corrections import Corrections
         from app.storage.database.schema import bring_up_to_date
         from app.storage.desk import Desk
@@ -47,7 +51,7 @@ class Library:
 
         bring_up_to_date(database)
         self._database = database
-        self._desk = Desk(database, now, is_demonstration)
+        self._desk = Desk(database, audit_key(data_key), now, is_demonstration=data_key is None)
         self.patients = Patients(self._desk)
         self.sessions = Sessions(self._desk)
         self.recordings = Recordings(self._desk)
@@ -67,18 +71,18 @@ class Library:
     ) -> Self:
         """Make an empty library in `folder` and log `operator` in, who becomes its first administrator.
 
+        One that was interrupted before is finished.
+
         Raises
         ------
         LibraryError
             There is a library already, or the folder cannot be written.
         """
-        if (folder / FILE_NAME).exists():
-            raise LibraryError("This folder holds a library already", "Open it, or choose another folder")
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
             raise LibraryError("This folder cannot be written", "Choose another folder") from error
-        library = cls(_database(folder, data_key), data_key is None, now)
+        library = cls(_database(folder, data_key), data_key, now)
         try:
             library.begin(operator)
         except BaseException:
@@ -99,7 +103,7 @@ class Library:
             raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
         database = _database(folder, data_key)
         try:
-            return cls(database, data_key is None, now)
+            return cls(database, data_key, now)
         except BaseException:
             database.close()
             raise
@@ -130,8 +134,6 @@ class Library:
         NotAllowedError
             It has operators already.
         """
-        from dataclasses import replace
-
         from sqlalchemy import select
 
         from app.storage.database.models import OperatorRow, folded
@@ -140,7 +142,7 @@ class Library:
         first = replace(operator, code=folded(operator.code), role=Role.ADMINISTRATOR, is_active=True)
         with self._database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
-                raise NotAllowedError("This library has operators already", "Log in")
+                raise NotAllowedError("There is a library already", "Log in to it, or choose another folder")
             self._desk.operator = first
             add_operator(session, self._desk, first)
         return self.log_in(first.code)
@@ -163,7 +165,8 @@ class Library:
                 raise NotAllowedError("This operator does not work here", "Ask an administrator of this library")
             operator = operator_of(row)
             details = {"failed_before": failed_before}
-            append(session, self._desk.now(), row.code, Action.LOGIN, about("operator", row.code), details)
+            subject = about("operator", row.code)
+            append(session, self._desk.audit_key, self._desk.now(), row.code, Action.LOGIN, subject, details)
         self._desk.operator = operator
         return operator
 

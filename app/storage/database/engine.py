@@ -92,7 +92,8 @@ class Database:
         with self.reading() as session:
             if self.engine.dialect.name != "sqlite":
                 return ()  # the server's business: it has checksums and tools of its own
-            found = [row[0] for row in session.execute(text("PRAGMA cipher_integrity_check"))]
+            sealed = session.connection().execute(text("PRAGMA cipher_integrity_check"))
+            found = [row[0] for row in sealed] if sealed.returns_rows else []  # none where nothing is sealed
             if not found:  # what does not open cannot be looked into
                 found = [row[0] for row in session.execute(text("PRAGMA integrity_check")) if row[0] != "ok"]
                 found += _dangling(session)
@@ -129,10 +130,16 @@ def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> E
 
 def postgres_engine(url: str, try_s: float = TRY_S) -> Engine:
     """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`."""
-    engine = create_engine(
-        url, hide_parameters=True, connect_args={"options": f"-c lock_timeout={round(try_s * 1000)}"}
-    )
-    event.listen(engine, "begin", _begin_postgres)
+    engine = create_engine(url, hide_parameters=True)
+
+    def begin(connection: Connection) -> None:
+        if connection.get_execution_options().get("takes_write_lock"):
+            connection.exec_driver_sql(f"SET LOCAL lock_timeout = {round(try_s * 1000)}")
+            connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_WRITE_LOCK})")
+        else:
+            connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
+
+    event.listen(engine, "begin", begin)
     return engine
 
 
@@ -172,13 +179,6 @@ def _begin_sqlite(connection: Connection) -> None:
     options = connection.get_execution_options()
     connection.exec_driver_sql(f"PRAGMA foreign_keys = {'OFF' if options.get('leaves_references') else 'ON'}")
     connection.exec_driver_sql("BEGIN IMMEDIATE" if options.get("takes_write_lock") else "BEGIN")
-
-
-def _begin_postgres(connection: Connection) -> None:
-    if connection.get_execution_options().get("takes_write_lock"):
-        connection.exec_driver_sql(f"SELECT pg_advisory_xact_lock({PG_WRITE_LOCK})")
-    else:
-        connection.exec_driver_sql("SET TRANSACTION ISOLATION LEVEL REPEATABLE READ READ ONLY")
 
 
 def _dangling(session: OrmSession) -> list[str]:

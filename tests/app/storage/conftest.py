@@ -51,20 +51,20 @@ def make_engine(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Make
     else:
         url: str = request.getfixturevalue("postgres_url")
         name = f"t{uuid.uuid4().hex}"
-        server = create_engine(url, isolation_level="AUTOCOMMIT")
-        with server.connect() as connection:
-            connection.execute(text(f"CREATE DATABASE {name}"))
+        server = create_engine(url)
+        with server.begin() as connection:
+            connection.execute(text(f"CREATE SCHEMA {name}"))
 
         def make() -> Engine:
-            made.append(postgres_engine(url.replace("/postgres?", f"/{name}?"), try_s=0.1))
+            made.append(postgres_engine(f"{url}&options=-csearch_path%3D{name}", try_s=0.1))
             return made[-1]
 
         yield make
     for engine in made:
         engine.dispose()
     if request.param == "postgres":
-        with server.connect() as connection:
-            connection.execute(text(f"DROP DATABASE {name}"))
+        with server.begin() as connection:
+            connection.execute(text(f"DROP SCHEMA {name} CASCADE"))
         server.dispose()
 
 
@@ -77,6 +77,6 @@ def database(make_engine: MakeEngine) -> Database:
 @pytest.fixture
 def library(database: Database) -> Iterator[Library]:
     """An empty library with an administrator logged in."""
-    with Library(database) as library:
+    with Library(database, DATA_KEY) as library:
         library.begin(ADMINISTRATOR)
         yield library
