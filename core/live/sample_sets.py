@@ -18,7 +18,8 @@ NODE_S = 0.03
 NODES = NODE_S * np.arange(-3, 4)
 MAX_SETS = 400  # forty seconds of movement
 DROPPED_AT_ONCE = 100
-MAX_GAP_S = 0.05  # between two samples that are read between
+MAX_GAP_S = 0.05  # between two samples that are read between; after more, the orientation may have begun anew
+KEPT_S = 10.0  # so long samples of one sensor wait for the other's
 
 
 @dataclass(slots=True)
@@ -100,6 +101,7 @@ class SetCollector:
         self._kept = Sets(*(np.empty((MAX_SETS, *shape)) for shape in _SHAPES))
         self._count = 0
         self._same_heading = 0  # the first set since both orientations began
+        self._stretches = 0, 0
         self.headings = 0  # counts up where an orientation begins anew
 
     @property
@@ -120,28 +122,30 @@ class SetCollector:
         for end, samples in zip(self._ends, (proximal, distal), strict=True):
             end.add(samples)
         first_s, last_s = (max(end.first_s for end in self._ends), min(end.last_s for end in self._ends))
-        if last_s < first_s:
+        if last_s < first_s:  # one is silent
+            for end in self._ends:
+                end.forget_before(end.last_s - KEPT_S)
             return
-        if self._next is None:
-            self._next = int(np.ceil((first_s - NODES[0]) / SPACING_S))
+        earliest = int(np.ceil((first_s - NODES[0]) / SPACING_S))
+        self._next = earliest if self._next is None else max(self._next, earliest)
         while self._next * SPACING_S + NODES[-1] <= last_s:
             yield self._take(self._next * SPACING_S)
             self._next += 1
         for end in self._ends:
-            end.forget_before(self._next * SPACING_S + NODES[0])
+            end.forget_before(max(self._next * SPACING_S + NODES[0], end.last_s - KEPT_S))
 
     def _take(self, at_s: float) -> bool:
         one, two = (end.read(at_s) for end in self._ends)
-        if one.is_cut or two.is_cut:
-            self._same_heading = self._count
+        stretches = self._ends[0].stretch, self._ends[1].stretch
+        if stretches != self._stretches:  # an orientation has begun anew
+            self._stretches, self._same_heading = stretches, self._count
             self.headings += 1
-            return False
         g1, g2 = one.gyr_rad_s, two.gyr_rad_s
         squares = np.einsum("ni,ni->n", g1, g1), np.einsum("ni,ni->n", g2, g2)
         self._speeds.append(float(np.sqrt(squares[0] + squares[1]).sum()) / len(NODES))
         is_moving = sum(self._speeds) > MOVING_RAD_S * len(self._speeds)
         is_fast = max(squares[0].max(), squares[1].max()) > FAST_RAD_S**2
-        if not is_moving or is_fast or not (one.is_measured and two.is_measured):
+        if not is_moving or is_fast or not (one.is_usable and two.is_usable):
             return False
         if self._count == MAX_SETS:
             self._drop_oldest()
@@ -176,11 +180,10 @@ def _angular_acceleration(rate: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class _Reading:
-    """One sensor's signals at the nodes (7, 10); `is_cut`: a stretch ended between them."""
+    """One sensor's signals at the nodes (7, 10); not `is_usable` where a sample near them is missing."""
 
     signals: FloatArray
-    is_cut: bool
-    is_measured: bool
+    is_usable: bool
 
     @property
     def q_earth_from_sensor(self) -> FloatArray:
@@ -200,6 +203,8 @@ class _Recent:
 
     def __init__(self) -> None:
         self._samples = NOTHING
+        self._starts: deque[float] = deque()  # of stretches that have not been read yet
+        self.stretch = 0
 
     @property
     def first_s(self) -> float:
@@ -210,21 +215,24 @@ class _Recent:
         return float(self._samples.time_s[-1]) if len(self._samples) else -np.inf
 
     def add(self, samples: OrientedSamples) -> None:
+        known = max(len(self._samples) - 1, 0)
         self._samples = joined([self._samples, samples])
+        new_s = self._samples.time_s[known:]
+        self._starts.extend(new_s[1:][np.diff(new_s) > MAX_GAP_S].tolist())
 
     def forget_before(self, time_s: float) -> None:
         first = int(np.searchsorted(self._samples.time_s, time_s)) - 1
         self._samples = self._samples.part(slice(max(first, 0), None))
 
     def read(self, at_s: float) -> _Reading:
+        while self._starts and self._starts[0] <= at_s:
+            self._starts.popleft()
+            self.stretch += 1
         wanted_s, time_s = at_s + NODES, self._samples.time_s
         right = np.minimum(np.maximum(np.searchsorted(time_s, wanted_s), 1), len(time_s) - 1)
         left_s = time_s[right - 1]
         apart_s = time_s[right] - left_s
         before, after = self._samples.signals[right - 1], self._samples.signals[right]
         share = (wanted_s - left_s) / apart_s
-        return _Reading(
-            signals=before + share[:, None] * (after - before),
-            is_cut=bool(apart_s.max() > MAX_GAP_S),
-            is_measured=bool(self._samples.is_measured[right[0] - 1 : right[-1] + 1].all()),
-        )
+        is_measured = self._samples.is_measured[right[0] - 1 : right[-1] + 1].all()
+        return _Reading(before + share[:, None] * (after - before), bool(is_measured and apart_s.max() < MAX_GAP_S))

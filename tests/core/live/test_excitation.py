@@ -274,6 +274,24 @@ def test_a_gap_after_which_the_heading_starts_anew_costs_little() -> None:
     assert with_gap.state.sign_margin > 10.0
 
 
+def test_a_sensor_that_was_silent_for_long_goes_on_with_another_heading() -> None:
+    samples = moved((STILL, 1.0), (ALL_AT_ONCE, 29.0), rate_hz=60.0)
+    thigh, shank = samples[Site.LEFT_THIGH], samples[Site.LEFT_SHANK]
+    silent = slice(360, 1200)  # longer than samples wait
+    turned = shank.signals.copy()
+    after = Rotation.from_rotvec([0.0, 0.0, 2.0]) * Rotation.from_quat(turned[1200:, :4], scalar_first=True)
+    turned[1200:, :4] = after.as_quat(scalar_first=True)
+    broken = replace(shank, signals=turned)
+    told = Excitation(KNEE)
+    for k in range(0, len(thigh), 6):
+        is_there = not silent.start <= k < silent.stop
+        told.update(thigh.part(slice(k, k + 6)), broken.part(slice(k, k + 6 if is_there else k)))
+        assert len(told._collector._ends[0]._samples) < 620
+    assert told.state.is_closed
+    assert told.state.sign_margin > 10.0
+    assert 14.0 < told.state.moved_s < 16.0
+
+
 def test_a_bridged_gap_is_not_used() -> None:
     samples = moved((STILL, 1.0), (ALL_AT_ONCE, 5.0))
     is_measured = np.ones(600, dtype=np.bool_)
