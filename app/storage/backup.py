@@ -1,0 +1,324 @@
+"""Is there a second copy, and does it open?
+
+A backup is a folder with the database, the journals and the keys' file as the library has them, encrypted as they are
+there, and a list of their hashes. It is made while the library is in use. Only when everything was read back and
+checked does the folder get its name; whatever happens before leaves nothing.
+
+What is destroyed in the library stays in the backups that were made before, until they are ninety days old.
+"""
+
+import datetime
+import hashlib
+import json
+import os
+import re
+import shutil
+from collections.abc import Callable, Iterable
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from sqlalchemy import select
+from sqlalchemy.orm import Session as OrmSession
+
+from app.storage.audit import audit_key, verify_rows
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import AuditRow, JournalRow
+from app.storage.files import replace_file, sync_folder
+from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
+from app.storage.library import FILE_NAME, Library, now_utc
+from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, made_beside
+from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+
+FORMAT = "gaitwright-backup/1"
+LIST = "backup.json"
+NAME = "gaitwright-backup-"
+KEPT = datetime.timedelta(days=90)
+OUR_FILES = re.compile(rf"{re.escape(KEYS)}|{RECORDINGS}/[0-9a-f-]{{36}}\.\d+{re.escape(SUFFIX)}")
+PIECE_BYTES = 1 << 20
+SPARE_BYTES = 100_000_000  # left free on the disk of the backups
+PAGES = 256  # of the database, copied between two reports
+
+Report = Callable[[float, str], None]
+"""Called with the share done (0 to 1) and what is being done. What it raises ends the work, and nothing is left."""
+
+
+def silent(_share: float, _what: str) -> None:
+    """For whom progress is nothing."""
+
+
+@dataclass(frozen=True, slots=True)
+class Backup:
+    """A copy that was checked.
+
+    Attributes
+    ----------
+    checkpoint
+        Where the library's audit ended.
+    files, bytes
+        How much it holds.
+    faults
+        What is wrong with it and was wrong with the library already: recordings that are missing or damaged.
+    """
+
+    folder: Path
+    made_at: datetime.datetime
+    checkpoint: Checkpoint
+    files: int
+    bytes: int
+    faults: tuple[str, ...] = ()
+
+
+def back_up(
+    opened: OpenedLibrary, into: Path, report: Report = silent, now: Callable[[], datetime.datetime] = now_utc
+) -> Backup:
+    """Copy the library into a new folder in `into`, and check the copy.
+
+    Raises
+    ------
+    LibraryError
+        There is too little room, the copy is not what the library is, or the library's database is damaged.
+    """
+    made_at = now().astimezone(datetime.UTC)
+    folder = into.resolve() / f"{NAME}{made_at:%Y-%m-%dT%H-%M-%SZ}"
+    if folder.is_relative_to(opened.folder.resolve()):
+        raise LibraryError("A backup cannot be kept inside of its library", "Choose another folder, on another disk")
+    opened.library.audit.note(Action.BACKUP, "library")
+    with made_beside(folder) as beside:
+        # the database first: what it knows of is then there, and what came later is found as left over
+        work = _Work(report, opened.folder / FILE_NAME, [opened.folder / KEYS, *opened.recordings.glob(f"*{SUFFIX}")])
+        work.refuse_too_little_room(into)
+        _copy_database(opened.folder, beside, opened.data_key, work)
+        journals = sorted(opened.recordings.glob(f"*{SUFFIX}"))
+        hashes = _copy_files(opened.folder, beside, [KEYS, *(f"{RECORDINGS}/{path.name}" for path in journals)], work)
+        checkpoint = _end_of_audit(beside, opened.data_key)
+        backup = Backup(folder, made_at, checkpoint, len(hashes) + 1, work.database_bytes + work.bytes)
+        _write_list(beside, backup, hashes)
+        faults = _check(beside, opened.data_key, checkpoint, hashes, work)
+    opened.library.audit.note(Action.BACKUP, "library", is_checked=True, files=backup.files, faults=len(faults))
+    return replace(backup, faults=faults)
+
+
+def find_backups(into: Path) -> tuple[Backup, ...]:
+    """The backups in a folder, oldest first, as they say they are; `restore` checks what it takes."""
+    found = []
+    for folder in into.glob(f"{NAME}*"):
+        try:
+            found.append(_read_list(folder)[0])
+        except LibraryError:
+            continue
+    return tuple(sorted(found, key=lambda backup: backup.made_at))
+
+
+def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_utc) -> tuple[Backup, ...]:
+    """Remove those that are older than ninety days, but never the latest; what was destroyed is gone with them.
+
+    Raises
+    ------
+    OSError
+        A folder cannot be removed.
+    """
+    old = tuple(backup for backup in find_backups(into)[:-1] if now() - backup.made_at > KEPT)
+    for backup in old:
+        (backup.folder / LIST).unlink()  # first: half a backup is none
+        shutil.rmtree(backup.folder)
+    return old
+
+
+def restore(backup: Path, folder: Path, data_key: bytes | None, code: str, report: Report = silent) -> tuple[str, ...]:
+    """Make a library of a backup in `folder`, which is empty or not there; returns the faults that it had.
+
+    What was deleted after the backup is there again, and what was recorded after it is not.
+
+    Parameters
+    ----------
+    data_key
+        As the keys' file of the backup gives it for a passphrase or for the recovery key.
+    code
+        The operator who restores it, for the audit.
+
+    Raises
+    ------
+    LibraryError
+        Not a backup, it is not what it was, it does not open with this key, or there is something in `folder`.
+    """
+    told, hashes = _read_list(backup)
+    with made_beside(folder) as beside:
+        work = _Work(report, backup / FILE_NAME, [backup / name for name in hashes])
+        work.refuse_too_little_room(folder.resolve().parent)
+        _copy(backup / FILE_NAME, beside / FILE_NAME, work)
+        _copy_files(backup, beside, hashes, work)
+        faults = _check(beside, data_key, told.checkpoint, hashes, work)
+    with Library.open(folder, data_key) as library:
+        library.log_in(code)
+        library.audit.note(Action.BACKUP, "library", is_restored=True)
+    return faults
+
+
+class _Work:
+    """How much of the copying and checking is done; everything is written once and read back once."""
+
+    def __init__(self, report: Report, database: Path, files: Iterable[Path]) -> None:
+        self._report, self._done = report, 0
+        try:
+            self.database_bytes = database.stat().st_size
+            self.bytes = sum(path.stat().st_size for path in files)
+        except OSError as error:
+            raise LibraryError(f"{Path(error.filename).name} is missing", "Choose another backup") from error
+        report(0.0, "backup")
+
+    def refuse_too_little_room(self, into: Path) -> None:
+        needed = self.database_bytes + self.bytes + SPARE_BYTES
+        while not into.exists():
+            into = into.parent
+        if (free := shutil.disk_usage(into).free) < needed:
+            raise LibraryError(
+                f"This needs {needed / 1e6:.0f} MB of free disk, and {free / 1e6:.0f} MB are left",
+                "Make room, or choose another disk",
+            )
+
+    def add(self, count: int, what: str) -> None:
+        self._done += count
+        self._report(min(1.0, self._done / max(2 * (self.database_bytes + self.bytes), 1)), what)
+
+
+def _copy_database(library: Path, folder: Path, data_key: bytes | None, work: _Work) -> None:
+    """Copy page by page, as the library is at this moment, while others go on writing to it."""
+    source, target = (sqlite_engine(place / FILE_NAME, data_key) for place in (library, folder))
+    try:
+        with closing(source.raw_connection()) as reading, closing(target.raw_connection()) as writing:
+            connection, copy = reading.driver_connection, writing.driver_connection
+            assert connection is not None  # both are open
+            assert copy is not None
+            connection.execute("BEGIN")
+            connection.execute("SELECT count(*) FROM sqlite_master").fetchone()  # from here on it stands still
+
+            def told(_status: int, left: int, total: int) -> None:
+                work.add(work.database_bytes * min(PAGES, total) // max(total, 1), "backup")
+
+            connection.backup(copy, pages=PAGES, progress=told)
+            connection.execute("COMMIT")
+    finally:
+        source.dispose()
+        target.dispose()  # the last one to close puts everything into the file itself
+
+
+def _copy_files(source: Path, target: Path, names: Iterable[str], work: _Work) -> dict[str, str]:
+    """SHA-256 of each file that was copied."""
+    (target / RECORDINGS).mkdir(mode=0o700)
+    hashes = {name: _copy(source / name, target / name, work) for name in names}
+    sync_folder(target / RECORDINGS)
+    return hashes
+
+
+def _copy(source: Path, target: Path, work: _Work) -> str:
+    """Copy as much as there is now, for a journal may grow; gives the SHA-256 of what was read."""
+    digest = hashlib.sha256()
+    with source.open("rb") as file, os.fdopen(os.open(target, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "wb") as to:
+        left = os.fstat(file.fileno()).st_size
+        while left and (piece := file.read(min(PIECE_BYTES, left))):
+            digest.update(piece)
+            to.write(piece)
+            left -= len(piece)
+            work.add(len(piece), "backup")
+        to.flush()
+        os.fsync(to.fileno())
+        if hasattr(os, "posix_fadvise"):  # what is read back shall come from the disk, not from memory
+            os.posix_fadvise(to.fileno(), 0, 0, os.POSIX_FADV_DONTNEED)
+    return digest.hexdigest()
+
+
+def _check(
+    folder: Path, data_key: bytes | None, checkpoint: Checkpoint, hashes: dict[str, str], work: _Work
+) -> tuple[str, ...]:
+    """Open the copy and read all of it; what the library knows to be otherwise comes back.
+
+    Raises
+    ------
+    LibraryError
+        It is not what was copied, or the database is damaged.
+    """
+    for name, sha256 in hashes.items():
+        if _sha256(folder / name, work) != sha256:
+            raise LibraryError(f"{name} was not copied as it is", "Try again, or choose another disk")
+    database = Database(sqlite_engine(folder / FILE_NAME, data_key))
+    try:
+        if database.faults():
+            raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
+        with database.reading() as session:
+            faults = [f"audit {fault.number} {fault.what}" for fault in _audit_faults(session, data_key, checkpoint)]
+            for row in session.scalars(select(JournalRow).order_by(JournalRow.file)):
+                faults += _journal_faults(folder, row, data_key, hashes.get(f"{RECORDINGS}/{row.file}"))
+    finally:
+        database.close()
+    work.add(work.database_bytes, "backup")
+    return tuple(faults)
+
+
+def _audit_faults(session: OrmSession, data_key: bytes | None, checkpoint: Checkpoint) -> tuple[AuditFault, ...]:
+    return verify_rows(session, audit_key(data_key), checkpoint).faults
+
+
+def _journal_faults(folder: Path, row: JournalRow, data_key: bytes | None, sha256: str | None) -> list[str]:
+    """What is wrong with one journal; one whose key was destroyed has nothing to be wrong."""
+    if row.wrapped_key is None and data_key is not None:
+        return []
+    if sha256 is None:
+        return [f"{row.file} is missing"]
+    if row.sha256 and row.sha256 != sha256:
+        return [f"{row.file} is not what it was when it was closed"]
+    try:
+        read_header(folder / RECORDINGS / row.file, row.wrapped_key).key(data_key, row.file)
+    except JournalRefusedError:
+        return [f"{row.file} does not open"]
+    return []
+
+
+def _sha256(path: Path, work: _Work) -> str:
+    digest = hashlib.sha256()
+    with path.open("rb") as file:
+        while piece := file.read(PIECE_BYTES):
+            digest.update(piece)
+            work.add(len(piece), "checking")
+    return digest.hexdigest()
+
+
+def _end_of_audit(folder: Path, data_key: bytes | None) -> Checkpoint:
+    database = Database(sqlite_engine(folder / FILE_NAME, data_key))
+    try:
+        with database.reading() as session:
+            last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).one()
+            return Checkpoint(last.number, last.hash)
+    finally:
+        database.close()
+
+
+def _write_list(folder: Path, backup: Backup, hashes: dict[str, str]) -> None:
+    content = {
+        "format": FORMAT,
+        "made_at": backup.made_at.isoformat(),
+        "checkpoint": str(backup.checkpoint),
+        "bytes": backup.bytes,
+        "files": hashes,
+    }
+    replace_file(folder / LIST, json.dumps(content, indent=1).encode())
+
+
+def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
+    """What a backup says of itself, and the hashes of its files but the database.
+
+    Raises
+    ------
+    LibraryError
+        It is none. What it says may come from anywhere, so only names that a library has are taken.
+    """
+    try:
+        told = json.loads((folder / LIST).read_bytes())
+        if told["format"] != FORMAT:
+            raise ValueError(told["format"])
+        hashes = {name: str(sha256) for name, sha256 in told["files"].items() if OUR_FILES.fullmatch(name)}
+        made_at, checkpoint = datetime.datetime.fromisoformat(told["made_at"]), Checkpoint.parsed(told["checkpoint"])
+        return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(told["bytes"])), hashes
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        what = "This folder is not a backup that this version can read"
+        raise LibraryError(what, f"Choose a folder whose name starts with {NAME}") from None

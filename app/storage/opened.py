@@ -1,0 +1,154 @@
+"""What stands where in a library's folder, and how is it opened with a passphrase?
+
+keys.json                          who may open it
+library.db                         the encrypted database
+recordings/ID.SEGMENT.journal      the samples
+in-use                             locked by the program that records here
+"""
+
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+from app.storage.files import sync_folder
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.library import Library
+from app.storage.stored import LibraryError, Operator
+
+KEYS = "keys.json"
+RECORDINGS = "recordings"
+IN_USE = "in-use"
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedLibrary:
+    """A library with somebody logged in, and its folder. No `data_key`: a demonstration."""
+
+    library: Library
+    folder: Path
+    data_key: bytes | None
+
+    @property
+    def recordings(self) -> Path:
+        """The folder of the journals; it is there once something was recorded."""
+        return self.folder / RECORDINGS
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.library.close()
+
+
+def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary:
+    """Open the library in `folder` for the operator with this code; without one, for the only operator there is.
+
+    Raises
+    ------
+    KeyRefusedError
+        The passphrase or the code is wrong, or there are several operators and no code.
+    LibraryError
+        There is no library, or it does not open.
+    """
+    slots = KeySlots(folder / KEYS)
+    if not slots.exists:
+        raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+    if not code:
+        if len(slots.codes) > 1:
+            raise KeyRefusedError("Several operators work with this library", "Say who you are")
+        (code,) = slots.codes
+    data_key = slots.open(code, passphrase)
+    library = Library.open(folder, data_key)
+    try:
+        library.log_in(code)
+    except BaseException:
+        library.close()
+        raise
+    return OpenedLibrary(library, folder, data_key)
+
+
+def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[OpenedLibrary, str]:
+    """Make a library in `folder`, which is empty or not there, and its recovery key, to be printed and typed back.
+
+    The folder is made beside its place and renamed: after a crash there is a whole library or none.
+
+    Raises
+    ------
+    KeyRefusedError
+        The code or the passphrase cannot be taken.
+    LibraryError
+        Something is in the folder, or it cannot be written.
+    """
+    with made_beside(folder) as beside:
+        data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase)
+        Library.create(beside, data_key, operator).close()
+    return open_library(folder, passphrase, operator.code), recovery_key
+
+
+@contextmanager
+def made_beside(folder: Path) -> Iterator[Path]:
+    """An empty folder, its owner's alone, that takes the place of `folder` when all is done, and else goes.
+
+    Raises
+    ------
+    LibraryError
+        There is something in `folder` already, or its place cannot be written.
+    """
+    folder = folder.resolve()
+    try:
+        if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+            raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        beside = Path(tempfile.mkdtemp(prefix=f".{folder.name}-", dir=folder.parent))
+        try:
+            yield beside
+            if folder.exists():
+                folder.rmdir()  # Windows renames onto nothing only
+            beside.rename(folder)
+            sync_folder(folder.parent)
+        finally:
+            shutil.rmtree(beside, ignore_errors=True)
+    except OSError as error:
+        raise LibraryError(f"This folder cannot be written ({error.strerror})", "Choose another folder") from error
+
+
+@contextmanager
+def held_alone(folder: Path) -> Iterator[None]:
+    """Be the one program that records into the library in `folder`; its open recordings are then left-overs.
+
+    The operating system lets go of it when the program ends, however it ends.
+
+    Raises
+    ------
+    LibraryError
+        Another program holds it.
+    """
+    descriptor = os.open(folder / IN_USE, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        _lock(descriptor)
+        yield
+    finally:
+        os.close(descriptor)  # and unlocks it
+
+
+def _lock(descriptor: int) -> None:
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+        else:
+            import fcntl
+
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise LibraryError("Gaitwright is open with this library already", "Use that window, or close it") from error

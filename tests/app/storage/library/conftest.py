@@ -1,0 +1,85 @@
+"""A library on the disk with somebody logged in, and recordings in it."""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from uuid import UUID
+
+import numpy as np
+import pytest
+
+from app.storage.database.ids import uuid7
+from app.storage.journal.disk import Room
+from app.storage.journal.payloads import layout_of
+from app.storage.journal.writer import JournalWriter
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.stored import Operator, PlacedSensor, RecordingState, Role, StoredJournal, StoredRecording
+from core.body import Site
+from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from devices.source import SourceInfo
+
+PASSPHRASE = "four short words here"
+SENSOR = "LT-1"
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
+
+Record = Callable[..., StoredRecording]
+
+
+@pytest.fixture
+def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
+    """A new library whose one operator is `hk`."""
+    folder = tmp_path / "library"
+    folder.mkdir(mode=0o700)
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
+    with OpenedLibrary(library, folder, data_key) as opened:
+        yield opened
+
+
+@pytest.fixture
+def session_id(opened: OpenedLibrary) -> UUID:
+    patient = opened.library.patients.create(Patient(code="P-001"))
+    visit = opened.library.sessions.create(patient.id, Session((), started="2026-11-20T09:00:00"))
+    opened.library.sessions.place(visit.id, {Site.LEFT_THIGH: PlacedSensor(SENSOR, SensorInfo())})
+    return visit.id
+
+
+def samples(count: int, seed: int = 0) -> ImuBlock:
+    rng = np.random.default_rng(seed)
+    time_s = np.arange(count) / 100
+    return ImuBlock(SENSOR, time_s, rng.normal(size=(count, 3)), rng.normal(size=(count, 3)))
+
+
+@pytest.fixture
+def record(opened: OpenedLibrary, session_id: UUID) -> Record:
+    """Make a recording of 100 Hz: stopped as it should be, or as a kill leaves it.
+
+    `has_row` False: the database did not answer. `is_told` False: killed before the row knew of the journal.
+    """
+
+    def record(
+        name: str, count: int = 500, *, is_stopped: bool = True, has_row: bool = True, is_told: bool = True
+    ) -> StoredRecording:
+        library, recording_id = opened.library, uuid7()
+        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+        if has_row:
+            library.recordings.start(session_id, told, False, recording_id)
+        writer = JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=ANY_ROOM)
+        header = writer.header
+        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
+        if has_row and is_told:
+            library.recordings.add_journal(recording_id, journal)
+        block = samples(count)
+        source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,)), layout_of(block))
+        writer.samples(source, 0, block, waits=True)
+        summary = writer.stop()
+        if is_stopped:
+            return library.recordings.close(recording_id, RecordingState.CLOSED, {header.segment: summary.sha256})
+        footer = 40  # and more: what a kill leaves has none, and most often half a record
+        with summary.path.open("r+b") as file:
+            file.truncate(summary.bytes - footer)
+        found = library.recordings.find(recording_id)
+        return found or StoredRecording(recording_id, 0, session_id, told, RecordingState.OPEN, False, None, (journal,))
+
+    return record

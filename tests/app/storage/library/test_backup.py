@@ -1,0 +1,201 @@
+"""A backup opens and holds everything, or there is none; a restored library is the one that was backed up."""
+
+import datetime
+import json
+import os
+import stat
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+
+from app.storage.backup import LIST, back_up, find_backups, remove_old_backups, restore
+from app.storage.journal.reader import JournalReader
+from app.storage.keys import KeySlots
+from app.storage.library import FILE_NAME
+from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, open_library
+from app.storage.stored import Action, LibraryError, StoredRecording
+from core.samples import Patient
+
+PASSPHRASE = "four short words here"
+NOON = datetime.datetime(2026, 11, 21, 12, tzinfo=datetime.UTC)
+
+Record = Callable[..., StoredRecording]
+
+
+class StoppedError(Exception):
+    """What a report raises when nobody waits any more."""
+
+
+def test_a_restored_library_opens_with_the_same_passphrase_and_holds_the_same(
+    opened: OpenedLibrary, session_id: UUID, record: Record, tmp_path: Path
+) -> None:
+    recordings = [record("walk 1"), record("walk 2", is_stopped=False)]
+    backup = back_up(opened, tmp_path / "backups", now=lambda: NOON)
+    assert backup.faults == ()
+    assert backup.files == 4
+    key = KeySlots(backup.folder / KEYS).open("hk", PASSPHRASE)
+    assert restore(backup.folder, tmp_path / "restored", key, "hk") == ()
+    with open_library(tmp_path / "restored", PASSPHRASE) as restored:
+        assert restored.library.faults() == ()
+        assert restored.library.audit.verify(backup.checkpoint).faults == ()
+        assert restored.library.audit.entries()[-2].details == '{"is_restored":true}'
+        assert restored.library.sessions.get(session_id) == opened.library.sessions.get(session_id)
+        for recording in recordings:
+            (journal,) = recording.journals
+            original, copy = ((place.recordings / journal.file).read_bytes() for place in (opened, restored))
+            assert copy == original
+            assert list(JournalReader(restored.recordings / journal.file, key).records())
+
+
+def test_a_backup_is_encrypted_and_its_owners(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    record("walk 1")
+    opened.library.patients.create(Patient(code="Kowalczyk"))
+    folder = back_up(opened, tmp_path / "backups").folder
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    assert {path.name for path in files if path.parent == folder} == {FILE_NAME, KEYS, LIST}
+    assert not [path for path in files if b"Kowalczyk" in path.read_bytes() or b"walk 1" in path.read_bytes()]
+    if os.name != "nt":
+        assert {stat.S_IMODE(path.stat().st_mode) for path in files} == {0o600}
+        assert {stat.S_IMODE(path.stat().st_mode) for path in (folder, folder / RECORDINGS)} == {0o700}
+
+
+def test_the_library_is_used_while_it_is_copied(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    record("walk 1")
+    made: list[int] = []
+
+    def use(_share: float, _what: str) -> None:
+        made.append(opened.library.patients.create(Patient(code=f"P-1{len(made):03d}")).version)
+
+    backup = back_up(opened, tmp_path / "backups", use)
+    assert len(made) > 3
+    assert restore(backup.folder, tmp_path / "restored", opened.data_key, "hk") == ()
+
+
+def test_progress_only_grows_and_ends_with_everything(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    record("walk 1", 20_000)
+    shares: list[float] = []
+    back_up(opened, tmp_path / "backups", lambda share, _: shares.append(share))
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1.0, abs=0.05)
+    assert len(shares) > 4
+
+
+@pytest.mark.parametrize("reports", [1, 2, 4, 6])
+def test_a_backup_that_is_stopped_leaves_nothing(
+    opened: OpenedLibrary, record: Record, tmp_path: Path, reports: int
+) -> None:
+    record("walk 1", 20_000)
+    told: list[float] = []
+
+    def stop(share: float, _: str) -> None:
+        told.append(share)
+        if len(told) == reports:
+            raise StoppedError
+
+    with pytest.raises(StoppedError):
+        back_up(opened, tmp_path / "backups", stop)
+    assert list((tmp_path / "backups").iterdir()) == []
+    assert '"is_checked":true' not in [entry.details for entry in opened.library.audit.entries()]
+
+
+def test_what_is_damaged_on_the_way_is_no_backup(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    record("walk 1")
+
+    def damage(_share: float, what: str) -> None:
+        for copy in (tmp_path / "backups").rglob("*.journal"):
+            if what == "backup" and copy.stat().st_size > 1000:
+                flip(copy, 700)
+
+    with pytest.raises(LibraryError, match="was not copied as it is"):
+        back_up(opened, tmp_path / "backups", damage)
+    assert list((tmp_path / "backups").iterdir()) == []
+
+
+def flip(path: Path, offset: int) -> None:
+    with path.open("r+b") as file:
+        file.seek(offset)
+        (byte,) = file.read(1)
+        file.seek(offset)
+        file.write(bytes([byte ^ 1]))
+
+
+def test_what_the_library_lacks_already_is_told_and_the_rest_is_kept(
+    opened: OpenedLibrary, record: Record, tmp_path: Path
+) -> None:
+    files = [record(f"walk {k}").journals[0].file for k in (1, 2, 3)]
+    (opened.recordings / files[0]).unlink()
+    flip(opened.recordings / files[1], 700)
+    backup = back_up(opened, tmp_path / "backups")
+    assert sorted(backup.faults) == sorted(
+        [f"{files[0]} is missing", f"{files[1]} is not what it was when it was closed"]
+    )
+    assert restore(backup.folder, tmp_path / "restored", opened.data_key, "hk") == backup.faults
+
+
+@pytest.mark.parametrize("what", [FILE_NAME, KEYS, RECORDINGS])
+def test_a_backup_that_was_damaged_since_is_not_restored(
+    opened: OpenedLibrary, record: Record, tmp_path: Path, what: str
+) -> None:
+    record("walk 1")
+    folder = back_up(opened, tmp_path / "backups").folder
+    for file in [folder / what] if (folder / what).is_file() else (folder / what).iterdir():
+        flip(file, file.stat().st_size // 2)
+    with pytest.raises(LibraryError):
+        restore(folder, tmp_path / "restored", opened.data_key, "hk")
+    assert not (tmp_path / "restored").exists()
+
+
+def test_nothing_is_restored_over_a_library_nor_with_another_key(
+    opened: OpenedLibrary, record: Record, tmp_path: Path
+) -> None:
+    record("walk 1")
+    folder = back_up(opened, tmp_path / "backups").folder
+    before = {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()}
+    with pytest.raises(LibraryError, match="something in this folder"):
+        restore(folder, opened.folder, opened.data_key, "hk")
+    assert {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()} == before
+    with pytest.raises(LibraryError, match="does not open with this key"):
+        restore(folder, tmp_path / "restored", bytes(32), "hk")
+    assert not (tmp_path / "restored").exists()
+
+
+def test_a_list_cannot_lead_out_of_its_backup(opened: OpenedLibrary, tmp_path: Path) -> None:
+    folder = back_up(opened, tmp_path / "backups").folder
+    told = json.loads((folder / LIST).read_text())
+    (tmp_path / "elsewhere").write_text("mine")
+    told["files"] |= {"../../elsewhere": "0" * 64, "recordings/../../elsewhere": "0" * 64, str(tmp_path): "0" * 64}
+    (folder / LIST).write_text(json.dumps(told))
+    assert restore(folder, tmp_path / "restored", opened.data_key, "hk") == ()
+    assert not (tmp_path / "restored" / "elsewhere").exists()
+
+
+def test_a_backup_stands_outside_of_its_library_and_needs_room(
+    opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(LibraryError, match="inside of its library"):
+        back_up(opened, opened.folder / "backups")
+    monkeypatch.setattr("app.storage.backup.SPARE_BYTES", 10**18)
+    with pytest.raises(LibraryError, match="MB are left"):
+        back_up(opened, tmp_path / "backups")
+
+
+def test_old_backups_go_and_the_latest_never(opened: OpenedLibrary, tmp_path: Path) -> None:
+    into = tmp_path / "backups"
+    for days in (200, 100, 50):
+        made_at = NOON - datetime.timedelta(days)
+        back_up(opened, into, now=partial(made_at.replace, microsecond=0))
+    (into / "gaitwright-backup-of-somebody-else").mkdir()
+    assert [(NOON - backup.made_at).days for backup in find_backups(into)] == [200, 100, 50]
+    assert len(remove_old_backups(into, lambda: NOON)) == 2
+    assert len(remove_old_backups(into, lambda: NOON + datetime.timedelta(1000))) == 0
+    assert [(NOON - backup.made_at).days for backup in find_backups(into)] == [50]
+    assert (into / "gaitwright-backup-of-somebody-else").exists()
+
+
+def test_a_backup_is_in_the_audit_before_it_is_made(opened: OpenedLibrary, tmp_path: Path) -> None:
+    back_up(opened, tmp_path / "backups")
+    noted = [entry for entry in opened.library.audit.entries() if entry.action == Action.BACKUP]
+    assert [json.loads(entry.details) for entry in noted] == [{}, {"is_checked": True, "files": 2, "faults": 0}]

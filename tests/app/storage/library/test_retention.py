@@ -1,0 +1,122 @@
+"""What was deleted can be restored for thirty days; then nothing opens it any more, and a kill changes nothing."""
+
+import datetime
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+
+from app.storage.journal.header import IDENTITY, WRAPPED_BYTES, JournalRefusedError
+from app.storage.journal.reader import JournalReader
+from app.storage.library import Library
+from app.storage.opened import OpenedLibrary
+from app.storage.retention import destroy_overdue, destroy_recording
+from app.storage.stored import LibraryError, StoredRecording
+
+Record = Callable[..., StoredRecording]
+
+
+class Later:
+    """The time of a library, which a test moves on."""
+
+    def __init__(self) -> None:
+        self.days = 0.0
+
+    def __call__(self) -> datetime.datetime:
+        return datetime.datetime.now(datetime.UTC) + datetime.timedelta(self.days)
+
+
+@pytest.fixture
+def later() -> Later:
+    return Later()
+
+
+@pytest.fixture
+def timed(opened: OpenedLibrary, later: Later) -> Iterator[OpenedLibrary]:
+    """The same library under the test's time."""
+    with replace(opened, library=Library.open(opened.folder, opened.data_key, later)) as timed:
+        timed.library.log_in("hk")
+        yield timed
+
+
+def test_a_deleted_session_is_destroyed_after_thirty_days_and_not_before(
+    timed: OpenedLibrary, session_id: UUID, record: Record, later: Later
+) -> None:
+    path = timed.recordings / record("walk 1").journals[0].file
+    kept = path.read_bytes()
+    timed.library.sessions.delete(timed.library.sessions.get(session_id))
+    later.days = 29.9
+    assert destroy_overdue(timed, later) == 0
+    assert path.read_bytes() == kept
+    later.days = 30.1
+    assert destroy_overdue(timed, later) == 1
+    assert not path.exists()
+    with pytest.raises(LibraryError):
+        timed.library.sessions.get(session_id)
+    assert destroy_overdue(timed, later) == 0
+
+
+def test_a_deleted_patient_goes_with_all_sessions(
+    timed: OpenedLibrary, session_id: UUID, record: Record, later: Later
+) -> None:
+    record("walk 1")
+    (patient,) = timed.library.patients.search()
+    timed.library.patients.delete(patient)
+    later.days = 31
+    assert destroy_overdue(timed, later) == 1
+    assert timed.library.patients.search(is_deleted=True) == ()
+    assert list(timed.recordings.iterdir()) == []
+    assert timed.library.audit.verify().faults == ()
+
+
+def test_a_restored_session_stays(timed: OpenedLibrary, session_id: UUID, record: Record, later: Later) -> None:
+    recording = record("walk 1")
+    timed.library.sessions.delete(timed.library.sessions.get(session_id))
+    later.days = 29
+    timed.library.sessions.restore(timed.library.sessions.get(session_id))
+    later.days = 100
+    assert destroy_overdue(timed, later) == 0
+    assert list(JournalReader(timed.recordings / recording.journals[0].file, timed.data_key).records())
+
+
+def test_the_keys_are_gone_before_the_file_is(
+    opened: OpenedLibrary, record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = record("walk 1")
+    path = opened.recordings / recording.journals[0].file
+    wrapped = recording.journals[0].wrapped_key
+    assert wrapped is not None
+    assert wrapped in path.read_bytes()
+
+    def killed(_: Path) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Path, "unlink", killed)
+        with pytest.raises(KeyboardInterrupt):
+            destroy_recording(opened, recording)
+    assert wrapped not in path.read_bytes()
+    with pytest.raises(JournalRefusedError, match="destroyed for good"):
+        JournalReader(path, opened.data_key)
+    destroy_recording(opened, recording)
+    assert not path.exists()
+    found = opened.library.recordings.find(recording.id)
+    assert found is not None
+    assert [journal.wrapped_key for journal in found.journals] == [None]
+    destroy_recording(opened, found)
+
+
+def test_a_journal_whose_beginning_is_damaged_is_destroyed_too(
+    opened: OpenedLibrary, record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recording = record("walk 1")
+    path = opened.recordings / recording.journals[0].file
+    with path.open("r+b") as file:
+        file.write(b"damaged")
+    gone: list[bytes] = []
+    monkeypatch.setattr(Path, "unlink", lambda path: gone.append(path.read_bytes()))
+    destroy_recording(opened, recording)
+    (left,) = gone
+    assert left[: IDENTITY.size + WRAPPED_BYTES] == bytes(IDENTITY.size + WRAPPED_BYTES)
