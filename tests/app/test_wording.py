@@ -64,8 +64,9 @@ def keys_used() -> Iterator[tuple[str, str]]:
             for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
                 parts = node.args if isinstance(node, ast.Call) else node.elts if isinstance(node, ast.Tuple) else []
                 if len(parts) > 1 and "severity" in ast.unparse(parts[1]).lower():
+                    looked_up = {id(part.slice) for part in ast.walk(parts[0]) if isinstance(part, ast.Subscript)}
                     for part in ast.walk(parts[0]):
-                        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+                        if isinstance(part, ast.Constant) and isinstance(part.value, str) and id(part) not in looked_up:
                             yield part.value, file.name
 
 
