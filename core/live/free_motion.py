@@ -1,0 +1,130 @@
+"""How well does the free motion show the joints, while it lasts, and what is missing? All joints of both legs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from core.body import Joint, Side, Site
+from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState, Wanted
+from core.live.lag import LagState, LiveLag
+from core.live.orientation import NOTHING, OrientedSamples, joined
+from core.live.pairing import MAX_WAIT_S
+from core.live.sensors import LiveSensor, LiveSensors
+from core.samples import ImuBlock
+
+LOOK_S = 4.0  # how often a lag is looked for
+
+
+@dataclass(frozen=True, slots=True)
+class FreeMotionState:
+    """Excitation and lag of every joint whose two sensors are worn; a lag appears once it has been looked for.
+
+    Attributes
+    ----------
+    weakest
+        The joint whose `missing` motion helps most now; None when all are as good as they get.
+    """
+
+    joints: Mapping[Joint, ExcitationState] = field(default_factory=dict)
+    lags: Mapping[Joint, LagState] = field(default_factory=dict)
+    weakest: Joint | None = None
+
+    @property
+    def is_done(self) -> bool:
+        """Whether every joint is closed, or as good as this motion gives."""
+        return bool(self.joints) and self.weakest is None
+
+
+class FreeMotion:
+    """Both legs while they are moved freely, block by block; of any size, and in any order of sites.
+
+    Parameters
+    ----------
+    prosthetic_sides
+        Whose joints can be had more exactly, and are asked for.
+    without_ankle
+        Sides whose prosthetic foot has no ankle joint: nothing can show it, and nothing asks for it.
+    """
+
+    def __init__(
+        self,
+        sensors: Mapping[Site, LiveSensor],
+        prosthetic_sides: frozenset[Side] = frozenset(),
+        without_ankle: frozenset[Side] = frozenset(),
+    ) -> None:
+        self._sensors = LiveSensors(sensors)
+        worn = [joint for joint in Joint if joint.proximal in sensors and joint.distal in sensors]
+        asked = [joint for joint in worn if joint.is_knee or joint.side not in without_ankle]
+        self._wanted = {joint: PROSTHESIS if joint.side in prosthetic_sides else HUMAN for joint in asked}
+        self._joints = {
+            joint: _JointMotion(
+                Excitation(joint, wanted), LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s)
+            )
+            for joint, wanted in self._wanted.items()
+        }
+
+    def update(self, blocks: Mapping[Site, ImuBlock]) -> FreeMotionState:
+        """Take new samples of some or all sites.
+
+        Raises
+        ------
+        KeyError
+            A site that was not announced.
+        """
+        turned = self._sensors.update(blocks)
+        for joint, motion in self._joints.items():
+            motion.update(turned.get(joint.proximal, NOTHING), turned.get(joint.distal, NOTHING))
+        joints = {joint: motion.excitation.state for joint, motion in self._joints.items()}
+        lags = {joint: motion.lag for joint, motion in self._joints.items() if motion.lag is not None}
+        return FreeMotionState(joints, lags, self._weakest(joints))
+
+    def _weakest(self, joints: Mapping[Joint, ExcitationState]) -> Joint | None:
+        is_open = [joint for joint, state in joints.items() if not (state.is_closed or state.is_plateau)]
+        return max(is_open, key=lambda joint: _wanting(joint, joints[joint], self._wanted[joint]), default=None)
+
+    @property
+    def late(self) -> dict[Site, int]:
+        """Samples of each site that came too late, or twice, and were dropped."""
+        return self._sensors.late
+
+
+class _JointMotion:
+    """One joint's excitation, and its lag, looked for whenever both sensors have passed a multiple of LOOK_S.
+
+    What one of them tells beyond it waits for the other, so that a look sees the same whatever came first.
+    """
+
+    def __init__(self, excitation: Excitation, lag: LiveLag) -> None:
+        self.excitation = excitation
+        self.lag: LagState | None = None
+        self._lag = lag
+        self._one, self._two = NOTHING, NOTHING
+        self._next_look_s: float | None = None
+
+    def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> None:
+        self._one, self._two = joined([self._one, proximal]), joined([self._two, distal])
+        if self._next_look_s is None and len(self._one):
+            self._next_look_s = LOOK_S * (np.floor(self._one.time_s[0] / LOOK_S) + 1)
+        while self._next_look_s is not None:
+            one, self._one = _cut(self._one, self._next_look_s)
+            two, self._two = _cut(self._two, self._next_look_s)
+            self.excitation.update(one, two)
+            self._lag.feed(one, two)
+            waits_s = max((held.time_s[-1] - held.time_s[0] for held in (self._one, self._two) if len(held)), default=0)
+            if not (len(self._one) and len(self._two)) and waits_s < MAX_WAIT_S:
+                return
+            self._next_look_s += LOOK_S
+            heading_rad = self.excitation.heading_rad
+            found = None if heading_rad is None else self._lag.look(heading_rad)
+            self.lag = found or self.lag
+
+
+def _cut(samples: OrientedSamples, at_s: float) -> tuple[OrientedSamples, OrientedSamples]:
+    first = int(np.searchsorted(samples.time_s, at_s))
+    return samples.part(slice(0, first)), samples.part(slice(first, None))
+
+
+def _wanting(joint: Joint, state: ExcitationState, wanted: Wanted) -> float:
+    axis = state.axis_sd_rad / wanted.axis_rad if joint.is_knee else 0.0
+    return max(axis, state.centre_sd_m / wanted.centre_m)
