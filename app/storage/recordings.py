@@ -74,6 +74,8 @@ class Recordings:
         """
         with self._desk.writing(Role.CLINICIAN) as session:
             row = _existing(session, recording_id)
+            if any(other.segment == journal.segment for other in row.journals):
+                raise LibraryError("The recording has this segment already", "Recover it first")
             row.journals.append(
                 JournalRow(
                     segment=journal.segment,
@@ -142,6 +144,11 @@ class Recordings:
         with self._desk.reading() as session:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
+
+    def known(self) -> frozenset[UUID]:
+        """All that have a row: a journal of any other is an orphan."""
+        with self._desk.reading() as session:
+            return frozenset(session.scalars(select(RecordingRow.id)))
 
     def still_open(self) -> tuple[StoredRecording, ...]:
         """Those that nobody stopped: they are to be recovered, unless they are being recorded now."""

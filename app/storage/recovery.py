@@ -1,0 +1,219 @@
+"""What was recorded when the program, or the machine, ended without stopping? Found at the next start, and closed.
+
+Two kinds are found: rows that nobody closed, and orphans, journals that no row tells of because the database did not
+answer when they were begun. Nothing is changed in a journal: whatever is proved in it is there, and is read in the
+same way as after a clean stop. Only the program that holds the library alone may ask (`opened.held_alone`), for what
+another program is recording is open, too.
+"""
+
+import datetime
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from uuid import UUID
+
+from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError, find_segments, read_header
+from app.storage.journal.payloads import SourceEntry
+from app.storage.journal.reader import Damage, JournalReader, ReadReport
+from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import RecordingState, StoredJournal, StoredRecording
+from core.samples import Recording
+
+LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
+EVERY_BYTES = 1 << 22  # between two reports
+
+Report = Callable[[float, str], None]
+"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
+
+
+@dataclass(frozen=True, slots=True)
+class Interrupted:
+    """A recording that nobody stopped, as its files' beginnings and ends tell.
+
+    Attributes
+    ----------
+    stored
+        Its row; None: an orphan, of which only a user can say where it belongs.
+    segments
+        Its journals, by segment.
+    began_at
+        None: it was ended before a journal was begun.
+    recorded_s
+        How much there is, up to the last record that was written.
+    problem, remedy
+        What keeps it from being recovered, and what to do; empty where nothing does.
+    """
+
+    recording_id: UUID
+    stored: StoredRecording | None
+    segments: Mapping[int, Path]
+    began_at: datetime.datetime | None
+    recorded_s: float
+    problem: str = ""
+    remedy: str = ""
+
+    @property
+    def is_orphan(self) -> bool:
+        return self.stored is None
+
+    @property
+    def ended_at(self) -> datetime.datetime | None:
+        """When its last record was written, where it was not resumed."""
+        return self.began_at + datetime.timedelta(seconds=self.recorded_s) if self.began_at else None
+
+
+@dataclass(frozen=True, slots=True)
+class Recovered:
+    """A recording that is closed now. `recorded_s` as all its records tell; one report for each segment."""
+
+    stored: StoredRecording
+    recorded_s: float
+    reports: tuple[ReadReport, ...]
+
+
+def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
+    """All recordings that nobody stopped, oldest first. Quick: only the ends of the files are looked at.
+
+    Raises
+    ------
+    LibraryError
+        The database does not answer.
+    OSError
+        The folder of the recordings cannot be read.
+    """
+    files = find_segments(opened.recordings)
+    known = opened.library.recordings.known()
+    rows = {recording.id: recording for recording in opened.library.recordings.still_open()}
+    orphans = [recording_id for recording_id in files if recording_id not in known]
+    wanted = [*rows, *orphans]
+    return tuple(_look(opened, one, rows.get(one), files.get(one, {})) for one in sorted(wanted, key=str))
+
+
+def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> Recovered:
+    """Read all that there is and close the recording's row.
+
+    Raises
+    ------
+    JournalRefusedError
+        It has a problem: it stays open.
+    LibraryError
+        The row cannot be written.
+    OSError
+        A file cannot be read.
+    """
+    if interrupted.stored is None:
+        raise ValueError("an orphan has no row to close: adopt it")
+    if interrupted.problem:
+        raise JournalRefusedError(interrupted.stored.told.name, interrupted.problem, interrupted.remedy)
+    return _close(opened, interrupted.stored, _Contents(opened, interrupted, report))
+
+
+def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Recording, report: Report) -> Recovered:
+    """Make an orphan a recording of a session, worn as the session's latest placement says.
+
+    Raises
+    ------
+    JournalRefusedError
+        It has a problem.
+    LibraryError
+        There is no such session, it has a recording of this name, or one of the two is simulated.
+    OSError
+        A file cannot be read.
+    """
+    if orphan.problem:
+        raise JournalRefusedError(str(orphan.recording_id), orphan.problem, orphan.remedy)
+    contents = _Contents(opened, orphan, report)
+    stored = opened.library.recordings.start(session_id, told, contents.is_simulated, orphan.recording_id)
+    return _close(opened, stored, contents)
+
+
+def _look(
+    opened: OpenedLibrary, recording_id: UUID, stored: StoredRecording | None, segments: Mapping[int, Path]
+) -> Interrupted:
+    keys = _row_keys(stored)
+    if missing := sorted(keys.keys() - segments.keys()):
+        problem = f"part {missing[0]} of this recording is missing"
+        return Interrupted(recording_id, stored, segments, None, 0.0, problem, RESTORE)
+    began_at, recorded_s = None, 0.0
+    try:
+        for number, path in segments.items():
+            header = read_header(path, keys.get(number))
+            last = _last_record(path, Seal(header, header.key(opened.data_key, path.name)))
+            recorded_s += (last.time_ns - header.opened_ns) / 1e9 if last else 0.0
+            began_at = began_at or datetime.datetime.fromtimestamp(header.opened_wall_ns / 1e9, datetime.UTC)
+    except JournalRefusedError as refusal:
+        return Interrupted(recording_id, stored, segments, began_at, recorded_s, refusal.what, refusal.remedy)
+    return Interrupted(recording_id, stored, segments, began_at, recorded_s)
+
+
+def _last_record(path: Path, seal: Seal) -> Record | None:
+    """The last record that is proved, where it is near the end of the file."""
+    with path.open("rb") as file:
+        size = path.stat().st_size
+        for count in LAST_BYTES:
+            file.seek(max(HEADER_BYTES, size - count))
+            if last := _last_of(file.read(), seal):
+                return last
+    return None
+
+
+def _last_of(content: bytes, seal: Seal) -> Record | None:
+    last, place = None, content.find(RECORD_MAGIC)
+    while place >= 0:
+        found = seal.opened(memoryview(content)[place:], last)
+        if found:
+            last, size = found
+            place += size - 1
+        place = content.find(RECORD_MAGIC, place + 1)
+    return last
+
+
+class _Contents:
+    """What a whole reading of all segments says."""
+
+    def __init__(self, opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> None:
+        self.recorded_s, self.is_simulated = 0.0, False
+        self.reports: list[ReadReport] = []
+        self.journals: list[StoredJournal] = []
+        keys = _row_keys(interrupted.stored)
+        self._total = max(sum(path.stat().st_size for path in interrupted.segments.values()), 1)
+        self._read = self._told = 0
+        for number, path in interrupted.segments.items():
+            reader = JournalReader(path, opened.data_key, keys.get(number))
+            self._read_segment(reader, report)
+            self.reports.append(reader.report)
+            wrapped_key = reader.header.wrapped_key or None
+            self.journals.append(StoredJournal(number, path.name, wrapped_key, reader.report.sha256))
+
+    def _read_segment(self, reader: JournalReader, report: Report) -> None:
+        last_ns = reader.header.opened_ns
+        for record in reader.records():
+            if isinstance(record, Damage):
+                self._read += record.size
+                continue
+            last_ns = record.time_ns
+            self._read += len(record.payload)
+            if record.kind is Kind.SOURCE:
+                self.is_simulated |= SourceEntry.parsed(record.payload).info.is_simulated
+            if self._read - self._told >= EVERY_BYTES:
+                self._told = self._read
+                report(min(self._read / self._total, 1.0), "recovering")
+        self.recorded_s += (last_ns - reader.header.opened_ns) / 1e9
+
+
+def _close(opened: OpenedLibrary, stored: StoredRecording, contents: _Contents) -> Recovered:
+    told = {journal.segment for journal in stored.journals}
+    for journal in contents.journals:
+        if journal.segment not in told:
+            opened.library.recordings.add_journal(stored.id, journal)
+    is_whole = bool(contents.reports) and all(report.is_whole for report in contents.reports)
+    state = RecordingState.CLOSED if is_whole else RecordingState.RECOVERED  # only its row was left over
+    hashes = {journal.segment: journal.sha256 for journal in contents.journals}
+    closed = opened.library.recordings.close(stored.id, state, hashes)
+    return Recovered(closed, contents.recorded_s, tuple(contents.reports))
+
+
+def _row_keys(stored: StoredRecording | None) -> Mapping[int, bytes | None]:
+    journals: Sequence[StoredJournal] = stored.journals if stored else ()
+    return {journal.segment: journal.wrapped_key for journal in journals}

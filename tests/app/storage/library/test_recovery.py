@@ -1,0 +1,153 @@
+"""What was not stopped is listed quickly, closed as it is, and never lost from sight."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+
+from app.storage.journal.decoding import decode
+from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError
+from app.storage.journal.reader import JournalReader
+from app.storage.opened import OpenedLibrary, held_alone
+from app.storage.recovery import adopt, find_interrupted, recover
+from app.storage.stored import LibraryError, RecordingState, StoredRecording
+from core.samples import Recording, RecordingKind
+
+Record = Callable[..., StoredRecording]
+
+
+def silent(_share: float, _what: str) -> None:
+    """Report to nobody."""
+
+
+def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
+    opened: OpenedLibrary, record: Record
+) -> None:
+    record("walk 1")
+    killed = record("walk 2", 3000, is_stopped=False)
+    path = opened.recordings / killed.journals[0].file
+    before = path.read_bytes()
+    (found,) = find_interrupted(opened)
+    assert found.stored is not None
+    assert found.stored.told.name == "walk 2"
+    assert not found.is_orphan
+    assert found.began_at is not None
+    assert found.ended_at is not None
+    recovered = recover(opened, found, silent)
+    assert recovered.stored.state is RecordingState.RECOVERED
+    assert recovered.recorded_s == pytest.approx(found.recorded_s)
+    assert path.read_bytes() == before
+    (journal,) = recovered.stored.journals
+    assert journal.sha256 == recovered.reports[0].sha256
+    (sensor,) = decode([path], opened.data_key, {}).sensors.values()
+    assert len(sensor.block) == 3000
+    assert find_interrupted(opened) == ()
+
+
+def test_what_a_kill_left_between_file_and_row_is_found(opened: OpenedLibrary, record: Record) -> None:
+    record("walk 1", is_stopped=False, is_told=False)
+    (found,) = find_interrupted(opened)
+    recovered = recover(opened, found, silent)
+    (journal,) = recovered.stored.journals
+    assert journal.wrapped_key == JournalReader(opened.recordings / journal.file, opened.data_key).header.wrapped_key
+
+
+def test_a_row_without_any_journal_is_closed_as_empty(opened: OpenedLibrary, session_id: UUID) -> None:
+    opened.library.recordings.start(session_id, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), False)
+    (found,) = find_interrupted(opened)
+    assert (found.began_at, found.recorded_s, found.problem) == (None, 0.0, "")
+    assert recover(opened, found, silent).stored.state is RecordingState.RECOVERED
+    assert find_interrupted(opened) == ()
+
+
+def test_a_recording_that_only_its_row_does_not_know_as_stopped_is_closed(
+    opened: OpenedLibrary, record: Record, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(type(opened.library.recordings), "close", lambda _self, recording_id, *_: recording_id)
+    record("walk 1")
+    monkeypatch.undo()
+    (found,) = find_interrupted(opened)
+    assert recover(opened, found, silent).stored.state is RecordingState.CLOSED
+
+
+def test_an_orphan_is_listed_until_somebody_says_where_it_belongs(
+    opened: OpenedLibrary, session_id: UUID, record: Record
+) -> None:
+    record("walk 1")
+    left = record("left over", is_stopped=False, has_row=False)
+    (found,) = find_interrupted(opened)
+    assert found.is_orphan
+    assert found.recording_id == left.id
+    with pytest.raises(ValueError, match="adopt it"):
+        recover(opened, found, silent)
+    with pytest.raises(LibraryError, match="of this name"):
+        adopt(opened, found, session_id, Recording("walk 1", RecordingKind.WALKING, "walk_1", {}), silent)
+    recovered = adopt(opened, found, session_id, Recording("walk 9", RecordingKind.WALKING, "walk_9", {}), silent)
+    assert recovered.stored.id == left.id
+    assert recovered.stored.placement is not None
+    assert find_interrupted(opened) == ()
+    assert [one.told.name for one in opened.library.sessions.get(session_id).recordings] == ["walk 1", "walk 9"]
+
+
+@pytest.mark.parametrize("damage", ["missing", "another key", "no journal"])
+def test_what_cannot_be_recovered_stays_open_and_says_what_to_do(
+    opened: OpenedLibrary, record: Record, damage: str
+) -> None:
+    path = opened.recordings / record("walk 1", is_stopped=False).journals[0].file
+    content = path.read_bytes()
+    path.unlink()
+    if damage == "no journal":
+        path.write_bytes(bytes(len(content)))
+    elif damage == "another key":
+        other = record("walk 2").journals[0]
+        path.write_bytes((opened.recordings / other.file).read_bytes()[:HEADER_BYTES] + content[HEADER_BYTES:])
+    (found,) = find_interrupted(opened)
+    assert found.problem
+    assert found.remedy == RESTORE
+    with pytest.raises(JournalRefusedError):
+        recover(opened, found, silent)
+    path.write_bytes(content)  # restored
+    (found,) = find_interrupted(opened)
+    recover(opened, found, silent)
+    assert find_interrupted(opened) == ()
+
+
+def test_fifty_journals_are_listed_within_two_seconds(opened: OpenedLibrary, record: Record) -> None:
+    for number in range(50):
+        record(f"walk {number}", 4000, is_stopped=False, has_row=number % 5 > 0)
+    began_s = time.monotonic()
+    found = find_interrupted(opened)
+    assert time.monotonic() - began_s < 2.0
+    assert sum(one.is_orphan for one in found) == 10
+    assert sum(one.recorded_s > 0 for one in found) == 50
+
+
+def test_a_long_torn_tail_is_read_past(opened: OpenedLibrary, record: Record) -> None:
+    path = opened.recordings / record("walk 1", 4000, is_stopped=False).journals[0].file
+    (whole,) = find_interrupted(opened)
+    with path.open("ab") as file:
+        file.write(b"\xa7GWr" * 50_000)
+    (found,) = find_interrupted(opened)
+    assert found.recorded_s == whole.recorded_s
+    assert recover(opened, found, silent).reports[0].damaged_bytes >= 200_000
+
+
+def test_progress_is_told_and_a_stop_leaves_the_recording_open(opened: OpenedLibrary, record: Record) -> None:
+    record("walk 1", 200_000, is_stopped=False)
+    (found,) = find_interrupted(opened)
+
+    def stop(_share: float, _what: str) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        recover(opened, found, stop)
+    assert find_interrupted(opened) == (found,)
+
+
+def test_only_one_program_records_into_a_library(tmp_path: Path) -> None:
+    with held_alone(tmp_path), pytest.raises(LibraryError, match="open with this library"), held_alone(tmp_path):
+        raise AssertionError
+    with held_alone(tmp_path):
+        pass
