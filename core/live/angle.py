@@ -42,6 +42,8 @@ START_RESTING_RAD = np.deg2rad(2.0)
 RESTING_FORCE_M_S2 = (9.4, 10.2)  # of a sensor that hardly moves
 MAX_START_RAD = np.deg2rad(6.0)  # no angle is told as long as its start is less sure
 
+MAX_STEEPNESS = 0.99  # sine; an axis that stands upright shows no heading at all
+
 
 @dataclass(frozen=True, slots=True)
 class AngleSamples:
@@ -147,7 +149,7 @@ class LiveAngle:
             self._look(float(start_sd[0]))
         self._beat, self._next = beat, int(rows.tick[-1]) + 1
         heading = self._heading.at(time_s)
-        twist, heading_sd = frames.twist(heading), self._heading.sd_rad * frames.steepness
+        twist, heading_sd = frames.twist(heading), self._heading_part(frames)
         if is_new_beat or is_new_stretch or self._is_switched:
             self._choose(float(time_s[0]), float(twist[0]), float(start_sd[0]))
         if self._integral is not None:
@@ -185,6 +187,15 @@ class LiveAngle:
         """What is left (n,) of the start's uncertainty, and what stays."""
         left: FloatArray = self._start_sd_rad * np.exp((self._started_s - time_s) / SETTLES_S)
         return np.hypot(left, SETTLED_RAD)
+
+    def _heading_part(self, frames: JointFrames) -> FloatArray:
+        """What the heading's uncertainty makes of the angle's (n,): the more, the steeper the axis stands.
+
+        An axis that is wrong shows a heading that is wrong, by the tangent of its steepness, and stays so.
+        """
+        steep = np.minimum(np.abs(frames.steepness), MAX_STEEPNESS)
+        by_axis = (self._geometry.calibration.axis_sd_rad or 0.0) * steep / np.sqrt(1 - steep**2)
+        return np.hypot(self._heading.sd_rad, by_axis) * steep
 
     def _choose(self, time_s: float, twist_rad: float, start_sd_rad: float) -> None:
         """Which of the two forms is shown from here on."""

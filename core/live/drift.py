@@ -16,16 +16,15 @@ UNKNOWN_RAD = np.pi
 
 @dataclass(frozen=True, slots=True)
 class Wandering:
-    """How an angle wanders: by `walk_rad` per square root of a second, beside a slope and back to zero.
+    """How an angle wanders: by `walk_rad` per square root of a second beside a slope.
 
     The slope starts within `slope_rad_s` (a standard deviation) and walks by `slope_walk_rad_s` per square root of a
-    second. Left alone, the angle returns to zero within the time constant `settles_s`.
+    second.
     """
 
     walk_rad: float
-    slope_rad_s: float = 0.0
-    slope_walk_rad_s: float = 0.0
-    settles_s: float = np.inf
+    slope_rad_s: float
+    slope_walk_rad_s: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,22 +69,20 @@ class SlowDrift:
 
     def at(self, time_s: FloatArray) -> FloatArray:
         """The angle (n,) to be expected."""
-        since_s = time_s - self._time_s
-        return self._angle * np.exp(-since_s / self._wandering.settles_s) + self._slope * since_s
+        return self._angle + self._slope * (time_s - self._time_s)
 
     @property
     def sd_rad(self) -> float:
-        """Standard deviation of the angle at the time it was advanced to."""
+        """Standard deviation of the angle when it was last seen."""
         return float(np.sqrt(self._covariance[0]))
 
-    def advance(self, time_s: float) -> None:
+    def _advance(self, time_s: float) -> None:
         """Let it wander until `time_s`."""
         w, since_s = self._wandering, time_s - self._time_s
-        left = float(np.exp(-since_s / w.settles_s))
         angle, both, slope = self._covariance
-        angle = left**2 * angle + since_s * (2 * left * both + since_s * slope + w.walk_rad**2)
-        self._covariance = angle, left * both + since_s * slope, slope + since_s * w.slope_walk_rad_s**2
-        self._time_s, self._angle = time_s, left * self._angle + since_s * self._slope
+        angle += since_s * (2 * both + since_s * slope + w.walk_rad**2)
+        self._covariance = angle, both + since_s * slope, slope + since_s * w.slope_walk_rad_s**2
+        self._time_s, self._angle = time_s, self._angle + since_s * self._slope
 
     def look(self, seen: complex, time_s: float, duration_s: float, unsure_rad: float = 0.0) -> None:
         """Take the mean of what was seen around `time_s` for `duration_s`.
@@ -95,7 +92,7 @@ class SlowDrift:
         unsure_rad
             Standard deviation of what turns this look and its neighbours alike.
         """
-        self.advance(time_s)
+        self._advance(time_s)
         if self._is_unknown:
             self._first.append(seen)
             if len(self._first) < self._looks.begins_with:
@@ -107,7 +104,9 @@ class SlowDrift:
         self._errors.append(length * error_rad)
         scale = self._looks.first_scale
         if len(self._errors) >= MIN_LOOKS:
-            scale = max(robust_sd(np.array(self._errors)), self._looks.min_scale)
+            errors = np.array(self._errors)
+            # about their median: an angle that has been lost must not make its looks worthless
+            scale = max(robust_sd(errors - np.median(errors)), self._looks.min_scale)
         variance = (scale / length) ** 2
         robust = (1 + error_rad**2 / (variance + angle + unsure_rad**2)) ** 0.5
         variance = (variance * robust + unsure_rad**2) * max(1.0, self._looks.correlation_s / duration_s)
