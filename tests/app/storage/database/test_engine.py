@@ -107,11 +107,10 @@ def test_a_key_does_not_open_what_is_not_encrypted(file: Path) -> None:
     stranger.close()
 
 
-def test_who_started_from_an_older_version_is_refused(database: Database, make_engine: Callable[[], Engine]) -> None:
-    bring_up_to_date(database)
+def test_who_started_from_an_older_version_is_refused(tables: Database, make_engine: Callable[[], Engine]) -> None:
     other = Database(make_engine(), busy_s=1.0)
-    put(database, "clinic", "first")
-    with database.reading() as session:
+    put(tables, "clinic", "first")
+    with tables.reading() as session:
         mine = session.get_one(SettingRow, "clinic")
     with other.reading() as session:
         theirs = session.get_one(SettingRow, "clinic")
@@ -119,24 +118,22 @@ def test_who_started_from_an_older_version_is_refused(database: Database, make_e
     with other.writing() as session:
         session.add(theirs)
     mine.value = "mine"
-    with pytest.raises(ChangedMeanwhileError), database.writing() as session:
+    with pytest.raises(ChangedMeanwhileError), tables.writing() as session:
         session.add(mine)
-    with database.reading() as session:
+    with tables.reading() as session:
         assert session.get_one(SettingRow, "clinic").value == "theirs"
 
 
-def test_what_fails_midway_leaves_nothing(database: Database) -> None:
-    bring_up_to_date(database)
-
+def test_what_fails_midway_leaves_nothing(tables: Database) -> None:
     def fail() -> None:
-        with database.writing() as session:
+        with tables.writing() as session:
             session.add(SettingRow(name="half", value=1))
             session.flush()
             _ = 1 / 0
 
     with pytest.raises(ZeroDivisionError):
         fail()
-    assert names(database) == set()
+    assert names(tables) == set()
 
 
 def test_whoever_holds_the_lock_for_too_long_is_told_of(encrypted: Database, file: Path) -> None:
@@ -152,13 +149,12 @@ def test_whoever_holds_the_lock_for_too_long_is_told_of(encrypted: Database, fil
     assert names(encrypted) == {"one"}
 
 
-def test_a_locked_server_is_waited_for_too(database: Database, make_engine: Callable[[], Engine]) -> None:
-    bring_up_to_date(database)
+def test_a_locked_server_is_waited_for_too(tables: Database, make_engine: Callable[[], Engine]) -> None:
     impatient = Database(make_engine(), busy_s=0.2)
-    with database.writing(), pytest.raises(LibraryBusyError):
+    with tables.writing(), pytest.raises(LibraryBusyError):
         put(impatient, "one", 1)
     put(impatient, "one", 1)
-    assert names(database) == {"one"}
+    assert names(tables) == {"one"}
 
 
 @pytest.mark.parametrize("held_s", [0.5, pytest.param(10.0, marks=pytest.mark.endurance)])
@@ -197,11 +193,9 @@ def test_a_full_disk_is_said_to_be_full_and_nothing_is_half_written(encrypted: D
     assert names(encrypted) == set()
 
 
-def test_errors_do_not_quote_what_was_to_be_written(database: Database, caplog: pytest.LogCaptureFixture) -> None:
-    bring_up_to_date(database)
-
+def test_errors_do_not_quote_what_was_to_be_written(tables: Database, caplog: pytest.LogCaptureFixture) -> None:
     def write() -> None:
-        with database.writing() as session:
+        with tables.writing() as session:
             session.add(SettingRow(name="Mustermann", value="Mustermann"))
 
     write()
@@ -209,7 +203,7 @@ def test_errors_do_not_quote_what_was_to_be_written(database: Database, caplog: 
         write()
     assert "Mustermann" not in "".join(traceback.format_exception(caught.value))
     assert "Mustermann" not in caplog.text
-    assert database.engine.hide_parameters
+    assert tables.engine.hide_parameters
 
 
 @pytest.mark.parametrize("flips", [200, pytest.param(10_000, marks=pytest.mark.endurance)])
