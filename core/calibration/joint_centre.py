@@ -15,8 +15,8 @@ from core.samples import FloatArray
 MIN_SCALE_M_S2 = 0.02
 NORM_STEPS = 10
 # A sensor's shift in step with the limb looks the same in every sample: its energy, counted in residuals, divides the
-# information, however long the motion lasts. Of 500 simulated calibrations stopped at random times (tests/benchmarks/
-# excitation.py) the centre then lies within twice the standard deviation in nine of ten, with the factor below.
+# information, however long the motion lasts. With the factor below nine of ten centres that are told lie within twice
+# the standard deviation (240 simulated joints, stopped at random times as in tests/benchmarks/excitation.py).
 IN_STEP_M = 0.0004
 SD_FACTOR_HUMAN = 2.5
 SD_FACTOR_HINGE = 8.0  # scale errors, and what noise in the angular accelerations pretends to know of a still segment
