@@ -1,0 +1,268 @@
+"""How does a session get into the library, and out of it, without losing a sample?
+
+Samples become one journal per recording, one source per site; what `session.toml` says becomes rows. Both ways keep
+every bit of a float64, and every key and column, those that mean nothing to us included.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from uuid import UUID
+
+from app.storage.audit import about
+from app.storage.database.ids import uuid7
+from app.storage.journal.decoding import DecodedJournal, Decoders, decode
+from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
+from app.storage.journal.header import RESTORE, JournalRefusedError
+from app.storage.journal.payloads import layout_of
+from app.storage.journal.writer import JournalSummary, JournalWriter, State
+from app.storage.opened import OpenedLibrary
+from app.storage.pseudonyms import Pseudonyms
+from app.storage.stored import (
+    Action,
+    LibraryError,
+    PlacedSensor,
+    RecordingState,
+    StoredJournal,
+    StoredPatient,
+    StoredRecording,
+    StoredSession,
+)
+from core.body import Site
+from core.samples import ImuBlock, Recording, SensorInfo, Session
+from devices.files.session_folder import write_session
+from devices.files.session_toml import default_sensor
+from devices.source import SourceInfo
+
+DRIVER, VERSION = "session-folder", "1"
+OWN_NAME = "sensor"  # the setting that holds what the folder calls the sensor
+PIECE_ROWS = 10_000  # so that a long recording is not held a second time
+
+Report = Callable[[float, str], None]
+"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """What came of an import. `differing`: what the library says of the patient otherwise, and goes on saying."""
+
+    session_id: UUID
+    patient: StoredPatient
+    differing: tuple[str, ...]
+
+
+def import_session(
+    opened: OpenedLibrary, session: Session, report: Report, code: str = "", room: Room = ROOM
+) -> Imported:
+    """Take a session, as `read_session` gives it, into the library: to the patient of this code, or to a new one.
+
+    What is raised on the way leaves the session deleted, not half imported.
+
+    Parameters
+    ----------
+    code
+        Of the patient, where it is another than the session's own or that has none.
+
+    Raises
+    ------
+    LibraryError
+        No code, a simulated session for a patient who is not, the database or the disk refuses.
+    FileRefusedError
+        A file of the session changed while it was read.
+    JournalRefusedError
+        There is too little room.
+    OSError
+        The folder of the recordings cannot be written.
+    """
+    library = opened.library
+    wanted = replace(session.patient, code=code or session.patient.code)
+    patient = library.patients.find(wanted.code) or library.patients.create(wanted)
+    differing = tuple(
+        name
+        for name in type(wanted).__slots__
+        if name != "code" and getattr(wanted, name) != getattr(patient.told, name)
+    )
+    visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}))
+    try:
+        _import_recordings(opened, visit.id, session, report, room)
+    except BaseException:
+        with suppress(LibraryError):
+            library.sessions.delete(library.sessions.get(visit.id))
+        raise
+    return Imported(visit.id, library.patients.get(patient.id), differing)
+
+
+def stored_session(opened: OpenedLibrary, visit: StoredSession, decoders: Decoders, report: Report) -> Session:
+    """A session of the library with its samples, as `read_session` would give it.
+
+    A recording whose keys were destroyed, or that is being made now, is not in it.
+
+    Raises
+    ------
+    JournalRefusedError
+        A recording's file is missing, damaged in its beginning, or another library's.
+    LibraryError
+        A recording needs a driver that is not among `decoders`.
+    OSError
+        A file cannot be read.
+    """
+    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
+    wanted = [recording for recording in visit.recordings if recording.state in usable]
+    recordings = []
+    for number, recording in enumerate(wanted):
+        report(number / len(wanted), recording.told.name)
+        recordings.append(stored_samples(opened, recording, decoders))
+    return replace(visit.told, recordings=tuple(recordings))
+
+
+def stored_samples(opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders) -> Recording:
+    """A recording with the samples that its journals hold; errors as in `stored_session`."""
+    paths = [opened.recordings / journal.file for journal in recording.journals]
+    for path in paths:
+        if not path.exists():
+            raise JournalRefusedError(path.name, "this recording's file is missing", RESTORE)
+    keys = [journal.wrapped_key for journal in recording.journals]
+    decoded = decode(paths, opened.data_key, decoders, keys)
+    if decoded.undecoded:
+        what = f"{recording.told.name} was recorded with {decoded.undecoded[0]}, which this version cannot read"
+        raise LibraryError(what, "Install the version that recorded it, or a later one")
+    placement = recording.placement.site_of if recording.placement else {}
+    read = decoded.recording(recording.told, placement)
+    names = _own_names(decoded)
+    return replace(
+        read,
+        imu={site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()},
+    )
+
+
+def export_session(
+    opened: OpenedLibrary,
+    session_id: UUID,
+    folder: Path,
+    decoders: Decoders,
+    report: Report,
+    *,
+    is_identified: bool = False,
+) -> None:
+    """Write a session as a session folder, pseudonymised or as it is; the audit says which before anything is written.
+
+    Raises
+    ------
+    LibraryError
+        There is something in `folder`, there is no such session, or the export cannot be noted.
+    JournalRefusedError, OSError
+        As in `stored_session`, or the folder cannot be written.
+    """
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
+    visit = opened.library.sessions.get(session_id)
+    subject = about("session", session_id)
+    opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified)
+    session = stored_session(opened, visit, decoders, report)
+    if not is_identified:
+        session = Pseudonyms(opened.data_key).session(visit.patient_id, session)
+    report(1.0, "writing")
+    write_session(session, folder)
+
+
+def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:
+    known = _unique({site: default_sensor(session, site) for site in session.sensors})
+    worn = _placed(session, known)
+    if worn:
+        opened.library.sessions.place(
+            session_id, worn
+        )  # a site that no recording has keeps what is known of its sensor
+    for number, recording in enumerate(session.recordings):
+        names = _unique({site: recording.imu[site].sensor for site in recording.imu})
+        elsewhere = {site: name for site, name in known.items() if name not in names.values()}
+        placed = _placed(session, elsewhere | names)
+        if placed != worn:
+            opened.library.sessions.place(session_id, placed)
+            worn = placed
+
+        def told(share: float, number: int = number, name: str = recording.name) -> None:
+            report((number + share) / len(session.recordings), name)
+
+        _import_recording(opened, session_id, session, recording, names, told, room)
+
+
+def _import_recording(
+    opened: OpenedLibrary,
+    session_id: UUID,
+    session: Session,
+    recording: Recording,
+    names: Mapping[Site, str],
+    told: Callable[[float], None],
+    room: Room,
+) -> None:
+    recordings, recording_id = opened.library.recordings, uuid7()
+    recordings.start(session_id, replace(recording, imu={}), session.is_simulated, recording_id)
+    with JournalWriter.create(opened.recordings, recording_id, opened.data_key, room=room) as writer:
+        header = writer.header
+        recordings.add_journal(
+            recording_id, StoredJournal(header.segment, writer.path.name, header.wrapped_key or None)
+        )
+        for done, (site, name) in enumerate(names.items()):
+            block = recording.imu[site]
+            info = SourceInfo(DRIVER, VERSION, "", (name,), {OWN_NAME: block.sensor}, session.is_simulated)
+            source = writer.source(info, layout_of(block, session.sensors.get(site, SensorInfo()).rate_hz))
+            for share, piece in _pieces(block):
+                writer.samples(source, 0, piece, waits=True)
+                told((done + share) / len(names))
+    summary = writer.stop()
+    _refuse_incomplete(summary)
+    recordings.close(recording_id, RecordingState.CLOSED, {header.segment: summary.sha256})
+
+
+def _pieces(block: ImuBlock) -> Iterator[tuple[float, ImuBlock]]:
+    """The block in parts, each with the share that is done with it; an empty block is one part."""
+    for start in range(0, max(len(block), 1), PIECE_ROWS):
+        part = slice(start, start + PIECE_ROWS)
+        yield (
+            min((start + PIECE_ROWS) / max(len(block), 1), 1.0),
+            replace(
+                block,
+                time_s=block.time_s[part],
+                gyr_rad_s=block.gyr_rad_s[part],
+                acc_m_s2=block.acc_m_s2[part],
+                q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[part],
+                mag=None if block.mag is None else block.mag[part],
+                unknown={name: column[part] for name, column in block.unknown.items()},
+            ),
+        )
+
+
+def _refuse_incomplete(summary: JournalSummary) -> None:
+    """See that everything was written.
+
+    Raises
+    ------
+    LibraryError
+        The disk did not take all of it.
+    """
+    if summary.state is State.CLOSED and not summary.dropped_records and summary.reason == "stopped":
+        return
+    what, remedy = TOLD[Trouble(summary.reason)] if summary.reason in list(Trouble) else TOLD[Trouble.DISK_GONE]
+    raise LibraryError(what, remedy)
+
+
+def _unique(names: Mapping[Site, str]) -> dict[Site, str]:
+    """In the library one name is one sensor; a file may call two by the same."""
+    unique: dict[Site, str] = {}
+    for site, name in names.items():
+        unique[site] = f"{name} ({site})" if name in unique.values() else name
+    return unique
+
+
+def _placed(session: Session, names: Mapping[Site, str]) -> dict[Site, PlacedSensor]:
+    return {site: PlacedSensor(name, session.sensors.get(site, SensorInfo())) for site, name in names.items()}
+
+
+def _own_names(decoded: DecodedJournal) -> dict[str, str]:
+    """What a session folder called the sensors that have other names in the library."""
+    return {
+        source.sensors[0]: str(source.settings[OWN_NAME])
+        for source in decoded.sources
+        if source.driver == DRIVER and OWN_NAME in source.settings
+    }
