@@ -11,7 +11,7 @@ from app.storage.audit import about, entry_of, note
 from app.storage.corrections import apply, corrections_of_patient, differences
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
-from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_result, stored_session
+from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_patients, stored_result, stored_session
 from app.storage.desk import Desk
 from app.storage.sessions import refuse_early
 from app.storage.stored import Action, LibraryError, PatientFile, Role, StoredPatient
@@ -64,12 +64,12 @@ class Patients:
     def search(self, text: str = "", is_deleted: bool = False) -> tuple[StoredPatient, ...]:
         """Those whose code holds `text`, the latest seen first; or those that are deleted and can be restored."""
         with self._desk.reading() as session:
-            wanted = select(PatientRow).where(
+            found = stored_patients(
+                session,
                 PatientRow.code_folded.contains(folded(text), autoescape=True),
                 PatientRow.merged_into_id.is_(None),
                 PatientRow.deleted_at.is_not(None) if is_deleted else PatientRow.deleted_at.is_(None),
             )
-            found = [stored_patient(session, row) for row in session.scalars(wanted)]
         return tuple(sorted(found, key=lambda patient: (patient.last_session, str(patient.id)), reverse=True))
 
     def change(self, patient: StoredPatient, told: Patient) -> StoredPatient:

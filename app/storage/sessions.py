@@ -1,6 +1,7 @@
 """The visits of a library's patients: created, found, corrected, deleted."""
 
 import datetime
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from uuid import UUID
@@ -35,6 +36,7 @@ from app.storage.stored import (
 )
 from core.body import Joint, Site
 from core.samples import Session
+from devices.files.session_toml import SIGN, ZERO
 
 KEPT_DELETED = datetime.timedelta(days=30)
 CORRECTABLE = ("started", "operator", "surface", "notes", "software")
@@ -53,10 +55,11 @@ class Sessions:
         Raises
         ------
         LibraryError
-            There is no such patient, or `told` is simulated and the patient is not.
+            There is no such patient, `told` is simulated and the patient is not, or a zero or sign is out of range.
         """
         if told.recordings or told.sensors:
             raise ValueError("a session is created without recordings and sensors: place and start them")
+        _refuse_wrong_joints(told)
         with self._desk.writing(Role.CLINICIAN) as session:
             patient = session.get(PatientRow, patient_id)
             if patient is None or patient.deleted_at or patient.merged_into_id:
@@ -134,7 +137,10 @@ class Sessions:
         ------
         ChangedMeanwhileError
             `visit` is not what the library holds any more.
+        LibraryError
+            A zero or sign is out of range.
         """
+        _refuse_wrong_joints(told)
         with self._desk.writing(Role.CLINICIAN) as session:
             row = _existing(session, visit.id)
             if row.version != visit.version:
@@ -252,6 +258,17 @@ def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -
     """
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
         raise LibraryError(f"Only what was deleted {KEPT_DELETED.days} days ago is destroyed", "Wait until then")
+
+
+def _refuse_wrong_joints(told: Session) -> None:
+    """What no session folder could hold; the limits are its own."""
+    try:
+        for joint, zero_rad in told.zero_rad.items():
+            ZERO[joint][1](math.degrees(zero_rad))
+        for joint, sign in told.turned_sign.items():
+            SIGN[joint][1](sign)
+    except ValueError as error:
+        raise LibraryError(f"The value of a joint has to be {error}", "Correct it") from None
 
 
 def _existing(session: OrmSession, session_id: UUID) -> SessionRow:

@@ -130,7 +130,9 @@ def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> E
 
 def postgres_engine(url: str, try_s: float = TRY_S) -> Engine:
     """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`."""
-    engine = create_engine(url, hide_parameters=True)
+    engine = create_engine(
+        url, hide_parameters=True, pool_pre_ping=True, connect_args={"connect_timeout": max(2, round(try_s))}
+    )
 
     def begin(connection: Connection) -> None:
         if connection.get_execution_options().get("takes_write_lock"):

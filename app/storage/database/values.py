@@ -2,7 +2,7 @@
 
 from dataclasses import fields
 
-from sqlalchemy import func, select
+from sqlalchemy import ColumnElement, func, select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import OperatorRow, PatientRow, PlacementRow, RecordingRow, ResultRow, SessionRow
@@ -30,12 +30,27 @@ def told_patient(row: PatientRow) -> Patient:
     return Patient(**{name: getattr(row, name) for name in PATIENT_FIELDS})
 
 
-def stored_patient(session: OrmSession, row: PatientRow) -> StoredPatient:
-    visits = select(func.count(), func.max(SessionRow.started)).where(
-        SessionRow.patient_id == row.id, SessionRow.deleted_at.is_(None)
+def stored_patients(session: OrmSession, *is_wanted: ColumnElement[bool]) -> list[StoredPatient]:
+    visits = (
+        select(SessionRow.patient_id, func.count().label("count"), func.max(SessionRow.started).label("last"))
+        .where(SessionRow.deleted_at.is_(None))
+        .group_by(SessionRow.patient_id)
+        .subquery()
     )
-    count, last = session.execute(visits).one()
-    return StoredPatient(row.id, row.version, told_patient(row), row.created_at, row.deleted_at, count, last or "")
+    wanted = (
+        select(PatientRow, func.coalesce(visits.c.count, 0), func.coalesce(visits.c.last, ""))
+        .outerjoin(visits, visits.c.patient_id == PatientRow.id)
+        .where(*is_wanted)
+    )
+    return [
+        StoredPatient(row.id, row.version, told_patient(row), row.created_at, row.deleted_at, count, last)
+        for row, count, last in session.execute(wanted)
+    ]
+
+
+def stored_patient(session: OrmSession, row: PatientRow) -> StoredPatient:
+    (patient,) = stored_patients(session, PatientRow.id == row.id)
+    return patient
 
 
 def placement_of(row: PlacementRow) -> Placement:

@@ -227,6 +227,21 @@ def test_a_session_needs_a_patient_who_is_there(library: Library, patient: Store
             library.sessions.create(patient_id, Session(()))
 
 
+@pytest.mark.parametrize(
+    "told",
+    [
+        Session((), zero_rad={Joint.LEFT_KNEE: math.nan}),
+        Session((), zero_rad={Joint.LEFT_KNEE: 5.3}),
+        Session((), turned_sign={Joint.LEFT_KNEE: 0}),
+    ],
+)
+def test_a_zero_or_sign_out_of_range_is_refused(library: Library, visit: StoredSession, told: Session) -> None:
+    with pytest.raises(LibraryError, match="value of a joint"):
+        library.sessions.create(visit.patient_id, told)
+    with pytest.raises(LibraryError, match="value of a joint"):
+        library.sessions.change(visit, told)
+
+
 def test_sessions_are_found_by_their_words(library: Library, patient: StoredPatient, walk: StoredRecording) -> None:
     other = library.patients.create(Patient(code="Q-2"))
     notes = "\N{LATIN CAPITAL LETTER U WITH DIAERESIS}bung 100%"

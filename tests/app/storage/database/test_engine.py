@@ -14,7 +14,7 @@ import pytest
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import Engine, select, text
 
-from app.storage.database.engine import Database, refuse_old_sqlite, sqlite_engine
+from app.storage.database.engine import Database, postgres_engine, refuse_old_sqlite, sqlite_engine
 from app.storage.database.models import SettingRow
 from app.storage.database.schema import bring_up_to_date
 from app.storage.library import FILE_NAME
@@ -204,6 +204,13 @@ def test_errors_do_not_quote_what_was_to_be_written(tables: Database, caplog: py
     assert "Mustermann" not in "".join(traceback.format_exception(caught.value))
     assert "Mustermann" not in caplog.text
     assert tables.engine.hide_parameters
+
+
+def test_a_server_that_does_not_answer_is_said_not_to(tmp_path: Path) -> None:
+    nowhere = Database(postgres_engine(f"postgresql+psycopg://gaitwright@/gaitwright?host={tmp_path}"))
+    with pytest.raises(LibraryError, match="server does not answer"):
+        names(nowhere)
+    nowhere.close()
 
 
 @pytest.mark.parametrize("flips", [200, pytest.param(10_000, marks=pytest.mark.endurance)])
