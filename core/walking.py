@@ -1,7 +1,8 @@
 """How does each side walk in one recording? Events, phases, strides and cycles, on the recording's clock."""
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import Any
 
 import numpy as np
 
@@ -21,6 +22,8 @@ from core.gait.strides import Strides, strides_of
 from core.results import JointAngle, SideGait
 from core.samples import BoolArray, FloatArray, Recording
 from core.sensors import SensorTracks
+
+SAME_S = 0.2  # two landings of one foot lie further apart
 
 
 def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Site | None:
@@ -69,25 +72,41 @@ def gait_in(
 
 
 def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: float) -> list[FootEvents]:
-    """Events of one side, stretch by stretch, long recordings block by block."""
-    found = []
+    """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed."""
+    found: list[FootEvents] = []
     for block in tracks.blocks(recording):
         for foot in tracks.oriented(recording, site, block):
+            if foot.track.end_s < block.core_from_s or foot.track.start_s >= block.core_to_s:
+                continue  # another block's, seen in the overlap
             events = gait_of(foot) if site.segment is Segment.FOOT else gait_of_shank(foot)
-            is_mine = (events.initial_contact_s >= block.core_from_s) & (events.initial_contact_s < block.core_to_s)
-            found.append(_only(events, is_mine, offset_s))
-    return [events for events in found if len(events)]
+            events = _rows(events, events.initial_contact_s < block.core_to_s)
+            if found and foot.track.start_s < block.core_from_s:
+                found[-1] = _continued(found[-1], events, block.core_from_s)
+            else:
+                found.append(events)
+    return [_later(events, offset_s) for events in found if len(events)]
 
 
-def _only(events: FootEvents, keep: BoolArray, offset_s: float) -> FootEvents:
-    kept = {
-        name: getattr(events, name)[keep] for name in ("length_m", "height_m", "turn_rad", "is_certain", "is_measured")
-    }
-    times = {
-        name: getattr(events, name)[keep] + offset_s
-        for name in ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
-    }
-    return replace(events, **kept, **times)
+def _continued(before: FootEvents, after: FootEvents, seam_s: float) -> FootEvents:
+    """One stretch of two blocks, which may tell the same landing on either side of their seam."""
+    last_s = before.initial_contact_s[-1] if len(before) else -np.inf
+    new = _rows(after, after.initial_contact_s > max(seam_s - SAME_S, last_s + SAME_S))
+    both: dict[str, Any] = {n: np.concatenate([getattr(before, n), getattr(new, n)]) for n in _rows_of(before)}
+    return replace(before, **both)
+
+
+def _rows(events: FootEvents, keep: BoolArray) -> FootEvents:
+    return replace(events, **{name: getattr(events, name)[keep] for name in _rows_of(events)})
+
+
+def _rows_of(events: FootEvents) -> list[str]:
+    """The names of what `events` hold one row per swing of."""
+    return [one.name for one in fields(events) if one.name != "is_from_shank"]
+
+
+def _later(events: FootEvents, by_s: float) -> FootEvents:
+    times = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")
+    return replace(events, **{name: getattr(events, name) + by_s for name in times})
 
 
 def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.samples import BoolArray, FloatArray
+from core.tracks import MAX_REPORTED_GAP_S, nominal_step_s
 
 POINTS = 101
 
@@ -55,7 +56,7 @@ def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s:
     Parameters
     ----------
     time_s, angle : (n,)
-        Ascending instants, and NaN where the angle is not known.
+        Ascending instants, and NaN where the angle is not known; missing instants are a gap as well.
     start_s, end_s : (k,)
     """
     share = np.linspace(0.0, 1.0, POINTS)
@@ -63,11 +64,15 @@ def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s:
     if len(time_s) < 2:
         return np.full(at_s.shape, np.nan)
     cycles = np.interp(at_s, time_s, angle)
+    step_s = np.diff(time_s, prepend=time_s[0])
+    is_after_gap = step_s > max(MAX_REPORTED_GAP_S, 1.5 * nominal_step_s(time_s))
     missing = np.concatenate([[0], np.cumsum(~np.isfinite(angle))])
+    gaps = np.cumsum(is_after_gap)  # up to and with each sample
     first = np.searchsorted(time_s, start_s, side="right") - 1
     last = np.searchsorted(time_s, end_s)
     is_whole = (first >= 0) & (last < len(time_s))
-    is_whole &= missing[np.minimum(last, len(time_s) - 1) + 1] == missing[np.maximum(first, 0)]
+    first, last = np.maximum(first, 0), np.minimum(last, len(time_s) - 1)
+    is_whole &= (missing[last + 1] == missing[first]) & (gaps[last] == gaps[first])
     cycles[~is_whole] = np.nan
     return cycles
 

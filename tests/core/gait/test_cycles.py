@@ -32,6 +32,17 @@ def test_a_gap_drops_its_stride_only() -> None:
     assert mean_cycle(cycles).n == 2
 
 
+@pytest.mark.parametrize(("lost_s", "is_known"), [(0.03, True), (0.2, False)])
+def test_stamps_that_are_missing_drop_their_stride_as_missing_angles_do(lost_s: float, is_known: bool) -> None:
+    is_there = (TIME_S < 2.0) | (TIME_S - 2.0 > lost_s)
+    cycles = cycles_of(TIME_S[is_there], angle()[is_there], START_S, END_S)
+    assert np.isfinite(cycles).all(axis=1).tolist() == [True, is_known, True]
+
+
+def test_a_low_rate_is_no_gap() -> None:
+    assert np.isfinite(cycles_of(TIME_S[::6], angle()[::6], START_S, END_S)).all()
+
+
 def test_a_stride_beyond_the_recording_is_not_known() -> None:
     cycles = cycles_of(TIME_S, angle(), np.array([-0.5, 4.5]), np.array([0.6, 5.6]))
     assert np.isnan(cycles).all()

@@ -1,0 +1,28 @@
+"""Is the gait of a long recording, worked through in blocks, that of a short one?"""
+
+import numpy as np
+import pytest
+
+from core import tracks
+from core.analysis import analyse
+from core.body import Side, Site
+from devices.walker import Standing, Walk, WalkerSettings, simulate
+
+
+def test_the_seams_between_blocks_cost_no_stride_and_no_phase(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Seams within a swing, and on landings, which the two blocks tell on either side of it or both on the far one."""
+    recordings = (Standing(), Walk(strides=30))
+    session = simulate(WalkerSettings(seed=4, recordings=recordings, sites=(Site.LEFT_FOOT, Site.RIGHT_SHANK))).session
+    whole = analyse(session).recordings[0].gait
+    monkeypatch.setattr(tracks, "OVERLAP_S", 6.0)
+    landings_s = np.concatenate([whole[side].strides.start_s for side in Side])
+    for block_s in landings_s[(landings_s > 10.0) & (landings_s < 15.5)].tolist() + [10.3, 10.7]:
+        monkeypatch.setattr(tracks, "BLOCK_S", block_s)
+        found = analyse(session).recordings[0].gait
+        for side in Side:
+            strides, expected = found[side].strides, whole[side].strides
+            assert len(strides) == len(expected)
+            np.testing.assert_allclose(strides.start_s, expected.start_s, atol=0.02)
+            np.testing.assert_allclose(strides.end_s[:-1], strides.start_s[1:])
+            assert len(found[side].events) == 1
+            assert np.mean(found[side].phase == whole[side].phase) > 0.98
