@@ -70,7 +70,7 @@ def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
         for time_s in getattr(events, f"{event}_s")
         if math.isfinite(time_s)
     ]
-    return sorted(found)
+    return sorted(found, key=lambda event: (event[0], event[1], EVENTS.index(event[2])))
 
 
 def parameter(gait: SideGait, name: str) -> FloatArray:

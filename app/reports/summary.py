@@ -10,10 +10,11 @@ import numpy as np
 
 from app.reports.gait_csv import PARAMETERS, mean_of_used, parameter
 from app.reports.reference_bands import reference_curves
+from app.reports.walk_figures import both_sides
 from app.wording import sentence
 from core.body import Joint, Side
 from core.findings import Finding
-from core.gait.spatiotemporal import MeanAndSd, both_feet, mean_and_sd
+from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 from core.norms import compare_new_attachment
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
@@ -98,15 +99,18 @@ def _walk(
     """Give each side's averages over the strides used, and what compares both sides."""
     has_zero = {joint for joint, found in calibrated.items() if found.zero is not ZeroKind.NONE}
     sides = {str(side): _side(side, recording.gait[side], has_zero) if side in recording.gait else {} for side in Side}
-    if len(recording.gait) < len(Side):
-        return {**sides, "both": dict.fromkeys(BOTH)}
-    left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
-    one, other = (right, left) if affected is Side.RIGHT else (left, right)
-    feet = both_feet(left.strides, right.strides)
-    both = {
+    feet = both_sides(recording)
+    both: dict[str, Any] = {
+        **dict.fromkeys(BOTH),
         "cadence_steps_min": _number(feet.cadence_steps_min),
         "double_support_percent": _number(feet.double_support_percent),
         "speed_m_s": _number(feet.speed_m_s),
+    }
+    if len(recording.gait) < len(Side):
+        return {**sides, "both": both}
+    left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
+    one, other = (right, left) if affected is Side.RIGHT else (left, right)
+    both |= {
         "symmetry_index_percent": {
             name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
         },

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.reports.gait_csv import parameter, used_cycles
+from app.wording import NAMES, tr
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
@@ -17,16 +18,6 @@ from core.gait.strides import Reason, strides_of
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues, nearest_class
 from core.results import JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray
-
-REASON_WORDS = {
-    Reason.GAP: "with missing samples",
-    Reason.DOUBT: "with a landing in doubt",
-    Reason.PAUSE: "with a pause",
-    Reason.TURN: "turning",
-    Reason.START: "starting",
-    Reason.STOP: "stopping",
-    Reason.OUTLIER: "unlike the others",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +76,7 @@ def is_spread_enough(n: int) -> bool:
 def strides_in_words(side: Side, gait: SideGait) -> str:
     """How many strides stand behind the averages, and why the others do not."""
     used = strides_used(gait)
-    left_out = Counter(REASON_WORDS[reason] for reason in gait.strides.reason if reason is not Reason.USED)
+    left_out = Counter(tr(NAMES["reason"][reason]) for reason in gait.strides.reason if reason is not Reason.USED)
     said = f"{side[0].upper()}: {used} {'stride' if used == 1 else 'strides'} used"
     if len(left_out) == 1:
         ((words, count),) = left_out.items()

@@ -57,12 +57,12 @@ def both_feet(left: Strides, right: Strides) -> BothFeet:
     """Over the strides used of both feet; of one foot where the other has none."""
     used = [(strides, strides.is_used) for strides in (left, right)]
     times = [float(np.mean(s.time_s[is_used])) for s, is_used in used if is_used.any()]
-    speeds = [float(np.mean(s.speed_m_s[is_used])) for s, is_used in used if is_used.any()]
+    speeds = np.array([mean_and_sd(s.speed_m_s[is_used]).mean for s, is_used in used])  # a shank tells none
     double = np.concatenate([_double_support_percent(a, b)[a.is_used] for a, b in ((left, right), (right, left))])
     return BothFeet(
         cadence_steps_min=120.0 / float(np.mean(times)) if times else float("nan"),
         double_support_percent=mean_and_sd(double).mean,
-        speed_m_s=float(np.mean(speeds)) if speeds else float("nan"),
+        speed_m_s=mean_and_sd(speeds).mean,
     )
 
 

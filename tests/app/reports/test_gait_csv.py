@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.reports.gait_csv import PARAMETERS, write_gait
+from app.reports.gait_csv import PARAMETERS, events_of, write_gait
 from app.reports.reference_bands import reference_curves
 from app.reports.summary import summarise
+from app.reports.walk_figures import both_sides
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.calibration import clinical_sign
@@ -118,6 +119,25 @@ def test_without_a_foot_sensor_steps_come_from_the_shank_and_say_so(tmp_path: Pa
     assert names == {"initial_contact", "toe_off"}
     assert {row["stride_length_m"] for row in rows(tmp_path / "strides.csv")} == {""}
     assert "events_from_shank" in {finding.key for finding in found.findings}
+
+
+def test_what_one_side_tells_of_both_is_in_the_summary_as_on_the_screen(found: Analysis) -> None:
+    walk = found.recordings[0]
+    alone = replace(walk, gait={Side.LEFT: walk.gait[Side.LEFT]})
+    both = summarise(replace(found, recordings=(alone,)))["walks"]["walk 1"]["both"]
+    shown = both_sides(alone)
+    assert both["cadence_steps_min"] == shown.cadence_steps_min
+    assert both["speed_m_s"] == shown.speed_m_s
+    assert both["double_support_percent"] is both["symmetry_index_percent"] is None
+
+
+def test_events_at_one_instant_stand_in_the_order_of_the_stride(found: Analysis) -> None:
+    walk = found.recordings[0]
+    (events,) = walk.gait[Side.LEFT].events
+    flat = replace(events, heel_rise_s=events.toe_off_s, full_contact_s=events.initial_contact_s)
+    told = events_of(replace(walk, gait={Side.LEFT: replace(walk.gait[Side.LEFT], events=(flat,))}))
+    stride = ["heel_rise", "toe_off", "initial_contact", "full_contact"]
+    assert [event for _, _, event in told] == stride * len(events)
 
 
 def test_feet_alone_give_events_and_no_angles(tmp_path: Path) -> None:

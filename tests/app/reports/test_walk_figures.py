@@ -136,6 +136,15 @@ def test_strides_left_out_are_counted_with_their_reasons(walked: Walked) -> None
     assert said == f"L: 0 strides used, {left_out + 1} left out ({left_out} turning, 1 with missing samples)."
 
 
+@pytest.mark.parametrize("reason", [reason for reason in Reason if reason is not Reason.USED])
+def test_every_reason_to_leave_a_stride_out_has_its_words(walked: Walked, reason: Reason) -> None:
+    gait = walked[0].gait[Side.LEFT]
+    strides = replace(gait.strides, reason=(reason,) * len(gait.strides))
+    said = strides_in_words(Side.LEFT, replace(gait, strides=strides))
+    assert said.startswith(f"L: 0 strides used, {len(gait.strides)} left out (")
+    assert "_" not in said
+
+
 def test_what_few_strides_cost_is_said_by_side(walked: Walked) -> None:
     walk, _ = walked
     assert few_strides_in_words(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11)) == ""

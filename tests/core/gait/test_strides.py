@@ -120,6 +120,12 @@ def test_times_of_both_feet() -> None:
     np.testing.assert_allclose(parameters_of(right, left)["step_time_s"], 0.5)
 
 
+def test_a_side_without_distances_costs_no_speed() -> None:
+    left, shank = strides_of([feet_events()]), strides_of([replace(feet_events(), length_m=np.full(12, np.nan))])
+    assert both_feet(left, shank).speed_m_s == pytest.approx(1.3 / STRIDE_S)
+    assert np.isnan(both_feet(shank, shank).speed_m_s)
+
+
 def test_a_step_needs_the_other_foot() -> None:
     assert np.isnan(parameters_of(strides_of([feet_events()]), None)["step_time_s"]).all()
 
