@@ -121,10 +121,9 @@ def analyse(
 
 def _affected_side(patient: Patient) -> Side | None:
     """The side that symmetry compares with the sound one; None where none or both are affected."""
-    for said in (patient.affected_side, patient.prosthetic_side):
-        if said in set(Side):
-            return Side(said)
-    return None
+    said = (patient.affected_side, patient.prosthetic_side)
+    one = [side for side in said if side in set(Side)]
+    return Side(one[0]) if one and "both" not in said else None
 
 
 class _Steps:

@@ -14,7 +14,7 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.results import Analysis, JointCalibration, Method, ZeroKind
 from core.rotations import angle_between, joint_frame
-from core.samples import FloatArray, ImuBlock, RecordingKind, Session
+from core.samples import FloatArray, ImuBlock, Patient, RecordingKind, Session
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -119,6 +119,23 @@ def test_a_confirmed_sign_changes_nothing_but_its_certainty(person: "Person") ->
     assert (of(plain).is_sign_certain, of(confirmed).is_sign_certain) == (False, True)
     assert ("clinical_sign_uncertain", "left_knee") in told(plain) - told(confirmed)
     assert ("sign_confirmed", "left_knee") in told(confirmed)
+
+
+@pytest.mark.parametrize(
+    ("affected", "prosthetic", "side"),
+    [
+        ("left", "none", Side.LEFT),
+        ("", "right", Side.RIGHT),
+        ("none", "right", Side.RIGHT),
+        ("left", "left", Side.LEFT),
+        ("both", "left", None),  # there is no sound side
+        ("right", "both", None),
+        ("none", "", None),
+    ],
+)
+def test_symmetry_needs_one_affected_side_and_a_sound_one(affected: str, prosthetic: str, side: Side | None) -> None:
+    patient = Patient(affected_side=affected, prosthetic_side=prosthetic)
+    assert analyse(Session(recordings=(), patient=patient)).affected_side is side
 
 
 def test_turning_the_knee_does_not_turn_the_ankle_s_word(leg_visit: Session) -> None:
