@@ -146,7 +146,8 @@ SENTENCES = {
         "there is no foot sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
     ),
     "doubtful_strides": (
-        "strides with a foot that hardly rolled: {count}. When it landed is in doubt, so averages leave them out."
+        "strides whose landing is in doubt: {count}. The foot hardly rolled or went another way than its toes point, "
+        "so averages leave them out."
     ),
     "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
     "side_without_strides": (
