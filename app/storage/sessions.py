@@ -6,9 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from uuid import UUID
 
-from sqlalchemy import delete, func, or_, select
+from sqlalchemy import ColumnElement, delete, func, or_, select
 from sqlalchemy.orm import Session as OrmSession
-from sqlalchemy.orm import selectinload
 
 from app.storage.audit import about, note
 from app.storage.corrections import apply, differences
@@ -109,24 +108,20 @@ class Sessions:
 
         Those of deleted patients are not listed; `is_deleted` lists the visits that were deleted by themselves.
         """
-        wanted = (
-            select(SessionRow)
-            .join(PatientRow)
-            .where(PatientRow.deleted_at.is_(None))
-            .where(SessionRow.deleted_at.is_not(None) if is_deleted else SessionRow.deleted_at.is_(None))
-            .options(selectinload(SessionRow.recordings), selectinload(SessionRow.patient))
-            .order_by(SessionRow.started.desc(), SessionRow.id.desc())
-        )
+        is_wanted: list[ColumnElement[bool]] = [
+            PatientRow.deleted_at.is_(None),
+            SessionRow.deleted_at.is_not(None) if is_deleted else SessionRow.deleted_at.is_(None),
+        ]
         if patient_id is not None:
-            wanted = wanted.where(SessionRow.patient_id == patient_id)
+            is_wanted.append(SessionRow.patient_id == patient_id)
         if text := text.strip().lower():
             in_condition = select(RecordingRow.session_id).where(
                 func.lower(RecordingRow.condition).contains(text, autoescape=True)
             )
             in_words = [func.lower(column).contains(text, autoescape=True) for column in SEARCHED]
-            wanted = wanted.where(or_(*in_words, SessionRow.id.in_(in_condition)))
+            is_wanted.append(or_(*in_words, SessionRow.id.in_(in_condition)))
         with self._desk.reading() as session:
-            return tuple(_line(row) for row in session.scalars(wanted))
+            return _lines(session, is_wanted)
 
     def change(self, visit: StoredSession, told: Session, comment: str | None = None) -> StoredSession:
         """Correct what was told of a visit: words, goniometer, turned signs, and the clinician's `comment`.
@@ -278,16 +273,37 @@ def _existing(session: OrmSession, session_id: UUID) -> SessionRow:
     return row
 
 
-def _line(row: SessionRow) -> SessionLine:
-    conditions = dict.fromkeys(recording.condition for recording in row.recordings if recording.condition)
-    return SessionLine(
-        row.id,
-        row.patient_id,
-        row.patient.code,
-        row.started,
-        row.operator,
-        tuple(conditions),
-        len(row.recordings),
-        row.is_simulated,
-        row.deleted_at,
+def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tuple[SessionLine, ...]:
+    # columns, not rows: a library may hold thousands of sessions
+    visits = (
+        select(
+            SessionRow.id,
+            SessionRow.patient_id,
+            PatientRow.code,
+            SessionRow.started,
+            SessionRow.operator,
+            SessionRow.is_simulated,
+            SessionRow.deleted_at,
+        )
+        .join(PatientRow)
+        .where(*is_wanted)
+        .order_by(SessionRow.started.desc(), SessionRow.id.desc())
     )
+    recordings = (
+        select(RecordingRow.session_id, RecordingRow.condition)
+        .join(SessionRow)
+        .join(PatientRow)
+        .where(*is_wanted)
+        .order_by(RecordingRow.number)
+    )
+    conditions: dict[UUID, list[str]] = {}
+    for session_id, condition in session.execute(recordings):
+        conditions.setdefault(session_id, []).append(condition)
+    lines = []
+    for session_id, patient_id, code, started, operator, is_simulated, deleted_at in session.execute(visits):
+        own = conditions.get(session_id, [])
+        named = tuple(dict.fromkeys(condition for condition in own if condition))
+        lines.append(
+            SessionLine(session_id, patient_id, code, started, operator, named, len(own), is_simulated, deleted_at)
+        )
+    return tuple(lines)

@@ -1,8 +1,10 @@
 """A library opens for whom it knows, keeps what it was given, and says in words what it cannot do."""
 
 import datetime
+import random
 import subprocess
 import sys
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -25,6 +27,18 @@ from core.samples import Patient, Recording, RecordingKind, Session
 
 DATA_KEY = bytes(range(32))
 FIRST = Operator("HK", "H. Keller", Role.VIEWER)
+WRITE = """
+import itertools
+import sys
+from pathlib import Path
+from app.storage.library import Library
+from app.storage.stored import Action
+with Library.open(Path(sys.argv[1]), bytes(range(32))) as library:
+    library.log_in("hk")
+    for k in itertools.count():
+        library.audit.note(Action.PRINT, f"kill:{sys.argv[2]}", k=k)
+        print(k, flush=True)
+"""
 INPUTS = AnalysisInputs(
     recordings=(AnalysedRecording("walk 1", ("ab" * 32,), {"S1": Site.LEFT_SHANK}, True, False),),
     zero_rad={Joint.LEFT_KNEE: 0.1},
@@ -93,6 +107,26 @@ def test_what_is_no_library_is_refused(tmp_path: Path, content: bytes) -> None:
     else:
         with Library.open(tmp_path, DATA_KEY) as library, pytest.raises(NotAllowedError, match="does not work here"):
             library.log_in("hk")
+
+
+@pytest.mark.parametrize("kills", [1, pytest.param(50, marks=pytest.mark.endurance)])
+def test_what_was_said_to_be_kept_is_there_after_a_kill(tmp_path: Path, kills: int) -> None:
+    Library.create(tmp_path, DATA_KEY, FIRST).close()
+    rng = random.Random(1)
+    for kill in range(kills):
+        with subprocess.Popen([sys.executable, "-c", WRITE, tmp_path, str(kill)], stdout=subprocess.PIPE) as writer:
+            assert writer.stdout is not None
+            said = [writer.stdout.readline()]
+            time.sleep(rng.uniform(0.1, 0.4))
+            writer.kill()
+            said += writer.stdout.read().splitlines()
+        with Library.open(tmp_path, DATA_KEY) as library:
+            library.log_in("hk")
+            kept = [entry.details for entry in library.audit.entries(f"kill:{kill}", last=100_000)]
+            assert len(said) <= len(kept) <= len(said) + 1  # one may be kept and not said yet
+            assert kept == [f'{{"k":{k}}}' for k in range(len(kept))]
+            assert library.faults() == ()
+            assert library.audit.verify().faults == ()
 
 
 def test_nothing_works_before_somebody_logs_in(library: Library) -> None:
