@@ -16,6 +16,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
+from app.library_commands import LibrarySession, add_key_arguments, default_folder
 from app.logs import log_folder, start_logging
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = ("xsens-mtmanager",)
+OF_LIBRARY = "the folder of the library (your own)"
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -109,12 +111,17 @@ def _parser() -> argparse.ArgumentParser:
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
     _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
+    _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     return parser
 
 
 def _add_analyse(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Compute knee and ankle angles of a session folder and write them as a folder of results."
-    parser.add_argument("session", metavar="SESSION", type=Path, help="the session folder")
+    parser.description = "Compute knee and ankle angles of a session and write them as a folder of results."
+    parser.add_argument(
+        "session", metavar="SESSION", type=_session, help="the session folder, or library:ID for one of the library"
+    )
+    parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
+    add_key_arguments(parser)
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of results to write")
     parser.add_argument(
         "--method",
@@ -166,17 +173,52 @@ def _add_import(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_import)
 
 
+def _add_recover(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Find recordings that ended without being stopped, close them, and say what is in them."
+    parser.add_argument("library", metavar="LIBRARY", type=Path, nargs="?", default=default_folder(), help=OF_LIBRARY)
+    add_key_arguments(parser)
+    parser.add_argument(
+        "--into",
+        type=LibrarySession.parsed,
+        metavar="SESSION",
+        help="the session (library:ID) for recordings that belong to none",
+    )
+    parser.set_defaults(run=_recover, out="What was not yet recovered")
+
+
 def _analyse(wanted: argparse.Namespace) -> None:
     from app.reports.result_folder import OWN_SESSION, check_place, written_beside
-    from devices.files.session_folder import read_session
 
-    check_place(wanted.out, wanted.session)
-    session_is_inside = wanted.session.resolve() == wanted.out.resolve() / OWN_SESSION
+    place = wanted.library if isinstance(wanted.session, LibrarySession) else wanted.session
+    check_place(wanted.out, place)
+    session_is_inside = place.resolve() == wanted.out.resolve() / OWN_SESSION
     with _Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
         progress(0.0, str(wanted.session))
-        session = read_session(wanted.session)
+        session = _read(wanted, progress)
         analysis = _write_analysis(session, folder, wanted.method, wanted.tau, not wanted.no_rrd, progress)
     _tell(analysis, wanted.out)
+
+
+def _read(wanted: argparse.Namespace, progress: "_Progress") -> "Session":
+    if isinstance(wanted.session, LibrarySession):
+        from app.library_commands import read_library_session
+
+        return read_library_session(wanted, wanted.session, progress)
+    from devices.files.session_folder import read_session
+
+    return read_session(wanted.session)
+
+
+def _recover(wanted: argparse.Namespace) -> None:
+    from app.library_commands import recover
+
+    lines: list[str] = []
+    try:
+        with _Progress(sys.stderr) as progress:
+            for line in recover(wanted, progress):
+                lines += [line]
+    finally:  # also before a refusal
+        print(*lines, sep="\n", end="\n" if lines else "")
 
 
 def _demo(wanted: argparse.Namespace) -> None:
@@ -312,6 +354,10 @@ def _open_window(arguments: list[str]) -> int:
     from app.main_window import open_window
 
     return open_window(arguments)
+
+
+def _session(text: str) -> Path | LibrarySession:
+    return LibrarySession.parsed(text) if text.startswith("library:") else Path(text)
 
 
 def _one_of(words: Sequence[str]) -> Callable[[str], str]:

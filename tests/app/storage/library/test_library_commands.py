@@ -1,0 +1,133 @@
+"""The command line opens a library with a passphrase that nobody sees, recovers, and analyses its sessions."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from uuid import UUID, uuid4
+
+import pytest
+
+from app import cli
+from app.storage.exchange import export_session, import_session
+from app.storage.journal.disk import Room
+from app.storage.opened import OpenedLibrary, held_alone
+from app.storage.recovery import find_interrupted
+from app.storage.stored import Action, StoredRecording
+from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+
+PASSPHRASE = "four short words here"
+FILES = ("summary.json", "walk_1/angles.csv", "walk_1/strides.csv", "free_motion/angles.csv")
+
+Record = Callable[..., StoredRecording]
+
+
+@pytest.fixture
+def key(tmp_path: Path) -> list[str]:
+    file = tmp_path / "passphrase"
+    file.write_text(f"{PASSPHRASE}\nanything\n", encoding="utf-8")
+    return ["--passphrase-file", str(file)]
+
+
+def silent(_share: float, _what: str) -> None:
+    """Report to nobody."""
+
+
+def test_recover_closes_what_was_interrupted_and_says_so(
+    opened: OpenedLibrary, record: Record, session_id: UUID, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    record("walk 1")
+    record("walk 2", is_stopped=False)
+    (opened.recordings / record("walk 3", is_stopped=False).journals[0].file).unlink()
+    record("left over", is_stopped=False, has_row=False)
+    assert cli.main(["recover", str(opened.folder), *key]) == 0
+    second, third, orphan = sorted(capsys.readouterr().out.splitlines(), key=lambda line: line.startswith("- "))
+    assert second.startswith("walk 2: 00:00 was recovered. ")
+    assert str(session_id) in second
+    assert third == "- walk 3: part 1 of this recording is missing. Restore this recording from a backup."
+    assert "belongs to no session" in orphan
+    assert cli.main(["recover", str(opened.folder), *key, "--into", f"library:{session_id}"]) == 0
+    assert f"was recovered into library:{session_id}" in capsys.readouterr().out
+    assert [one.stored.told.name for one in find_interrupted(opened) if one.stored] == ["walk 3"]
+
+
+def test_recover_says_when_there_is_nothing_to_do(
+    opened: OpenedLibrary, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["recover", str(opened.folder), *key, "--operator", "hk"]) == 0
+    assert capsys.readouterr().out == "Every recording was stopped. Nothing had to be recovered.\n"
+
+
+def test_what_does_not_open_is_one_line_without_the_passphrase(
+    opened: OpenedLibrary, tmp_path: Path, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    wrong = tmp_path / "wrong"
+    wrong.write_text("nobody's passphrase")
+    binary = tmp_path / "binary"
+    binary.write_bytes(b"\xff\xfe\xfd")
+    here = str(opened.folder)
+    for arguments in (
+        [here, "--passphrase-file", str(wrong)],
+        [here, "--passphrase-file", str(binary)],
+        [here, "--passphrase-file", str(tmp_path / "none")],
+        [here, *key, "--operator", "somebody"],
+        [str(tmp_path), *key],
+        [here],
+        [here, *key, "--into", str(uuid4())],
+    ):
+        code = cli.main(["recover", *arguments])
+        said = capsys.readouterr()
+        if "--into" in arguments:
+            assert code == 0  # there was nothing to put there
+            continue
+        assert code == 2, arguments
+        assert said.err.count("\n") == 1
+        assert "passphrase's" not in said.err
+        assert PASSPHRASE not in said.err
+
+
+def test_a_library_that_is_in_use_is_not_recovered(
+    opened: OpenedLibrary, record: Record, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    record("walk 1", is_stopped=False)
+    with held_alone(opened.folder):
+        assert cli.main(["recover", str(opened.folder), *key]) == 2
+    assert "open with this library already" in capsys.readouterr().err
+    assert len(find_interrupted(opened)) == 1
+
+
+def test_on_a_terminal_the_passphrase_is_asked_for_and_not_shown(
+    opened: OpenedLibrary, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(sys.stdin, "isatty", lambda: True)
+    monkeypatch.setattr("getpass.getpass", lambda prompt: PASSPHRASE)
+    assert cli.main(["recover", str(opened.folder)]) == 0
+    said = capsys.readouterr()
+    assert PASSPHRASE not in said.out + said.err
+
+
+def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
+    opened: OpenedLibrary, tmp_path: Path, key: list[str]
+) -> None:
+    recordings = (Standing(), FreeMotion(), Walk(strides=6))
+    session = simulate(WalkerSettings(seed=3, recordings=recordings)).session
+    imported = import_session(opened, session, silent, room=Room(start_bytes=0, kept_bytes=0))
+    export_session(opened, imported.session_id, tmp_path / "folder", {}, silent, is_identified=True)
+    by_folder, by_library = tmp_path / "one", tmp_path / "two"
+    assert cli.main(["analyse", str(tmp_path / "folder"), "--out", str(by_folder), "--no-rrd"]) == 0
+    place = ["--library", str(opened.folder), *key]
+    wanted = f"library:{imported.session_id}"
+    assert cli.main(["analyse", wanted, "--out", str(by_library), "--no-rrd", *place]) == 0
+    for name in FILES:
+        assert (by_folder / name).read_bytes() == (by_library / name).read_bytes(), name
+    assert opened.library.audit.entries()[-1].action == Action.VIEW
+    assert cli.main(["analyse", f"library:{uuid4()}", "--out", str(tmp_path / "three"), *place]) == 2
+    assert cli.main(["analyse", wanted, "--out", str(opened.folder / "out"), *place]) == 2
+    assert not (tmp_path / "three").exists()
+
+
+@pytest.mark.parametrize("session", ["library:", "library:12", "library:../../etc"])
+def test_what_is_no_id_is_refused_as_usage(session: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["analyse", session, "--out", "out"])
+    assert ended.value.code == 2
+    assert "with the id of a session" in capsys.readouterr().err
