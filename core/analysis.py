@@ -3,7 +3,7 @@
 Read `analyse` as a table of contents; each step is a module of its own.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -55,6 +55,10 @@ CLOCK_ORDER = (
 
 Bases = dict[tuple[str, Joint], Basis]
 """What calibrates each joint in each recording, by the recording's name."""
+
+
+FoundKnee = tuple[ClinicalSign, FloatArray]
+"""A knee's sign as the motion tells it, since the user's word on a knee is none on its ankle; its distal axis (3,)."""
 
 
 def analyse(
@@ -227,12 +231,16 @@ def _calibrate(
 ) -> dict[Basis, JointCalibration]:
     """Give every identified joint its zero and its clinical sign; knees first, since ankles follow them."""
     calibrated: dict[Basis, JointCalibration] = {}
+    knees: dict[Basis, FoundKnee] = {}
     for basis in sorted(identified, key=lambda b: not b.joint.is_knee):
         names = [name for (name, joint), other in bases.items() if other == basis and joint is basis.joint]
         twists, is_walking = _telling(tracks, names, basis.joint, measured)
         knee_basis = bases.get((names[0], knee_of(basis.joint.side)))
-        knee = calibrated.get(knee_basis) if knee_basis else None
-        calibrated[basis] = _calibration(tracks, identified[basis], twists, is_walking, knee, method)
+        knee = knees.get(knee_basis) if knee_basis else None
+        found = identified[basis]
+        calibrated[basis], sign = _calibration(tracks, found, twists, is_walking, knee, method)
+        if basis.joint.is_knee:
+            knees[basis] = sign, found.geometry.axis_2
     return {basis: calibrated[basis] for basis in identified}
 
 
@@ -250,16 +258,17 @@ def _calibration(
     found: Identified,
     twists: list[Twist],
     is_walking: bool,
-    knee: JointCalibration | None,
+    knee: FoundKnee | None,
     method: Method,
-) -> JointCalibration:
+) -> tuple[JointCalibration, ClinicalSign]:
+    """One joint's calibration, and its sign as the motion tells it, whatever the user says."""
     session, basis = tracks.session, found.basis
     joint = basis.joint
     standing = _standing_twist(tracks, found)
     moving = within_half_a_turn(np.concatenate([t.moving_twist for t in twists])) if twists else np.empty(0)
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
     bend_rad, has_standing = wrap(moving - zero_rad), standing is not None
-    sign = _clinical_sign(found, twists, is_walking, bend_rad, has_standing, knee, session.turned_sign)
+    sign = _clinical_sign(found, twists, is_walking, bend_rad, has_standing, knee)
     turn = session.turned_sign.get(joint, 1)
     zero = (
         ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
@@ -267,7 +276,7 @@ def _calibration(
     in_force = [recording for recording in tracks.span if recording.name in found.recordings]
     biases = [tracks.gyro_bias(in_force[0], site) for site in (joint.proximal, joint.distal)]
     robust = found.robust
-    return JointCalibration(
+    calibration = JointCalibration(
         joint=joint,
         method=method,
         axis_proximal=found.geometry.axis_1,
@@ -296,6 +305,7 @@ def _calibration(
         acc_bias_proximal_m_s2=found.geometry.unknowns[6:9] if robust else None,
         acc_bias_distal_m_s2=found.geometry.unknowns[9:12] if robust else None,
     )
+    return calibration, sign
 
 
 def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
@@ -319,8 +329,7 @@ def _clinical_sign(
     is_walking: bool,
     bend_rad: FloatArray,
     has_standing: bool,
-    knee: JointCalibration | None,
-    turned_sign: Mapping[Joint, int],
+    knee: FoundKnee | None,
 ) -> ClinicalSign:
     if not bend_rad.size:
         return ClinicalSign(1, 0.0, False)
@@ -330,10 +339,8 @@ def _clinical_sign(
     shank_rate = -np.concatenate([t.moving_rate_1 for t in twists])
     if knee is None:
         return ankle_sign(None, 0.0, shank_rate, is_walking)
-    # the user's word on a knee is no word on its ankle
-    found_sign = knee.clinical_sign * turned_sign.get(knee.joint, 1)
-    found_knee = ClinicalSign(found_sign, knee.clinical_sign_margin or 0.0, knee.is_sign_certain)
-    return ankle_sign(found_knee, float(knee.axis_distal @ found.geometry.axis_1), shank_rate, is_walking)
+    knee_found, knee_axis = knee
+    return ankle_sign(knee_found, float(knee_axis @ found.geometry.axis_1), shank_rate, is_walking)
 
 
 def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:

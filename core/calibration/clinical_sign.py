@@ -18,11 +18,15 @@ MIN_AXES_ALIGNMENT = 0.5
 
 @dataclass(frozen=True, slots=True)
 class ClinicalSign:
-    """`sign` turns the twist into flexion or dorsiflexion; where not certain it is the likelier one."""
+    """`sign` turns the twist into flexion or dorsiflexion; where not certain it is the likelier one.
+
+    `is_contradicted`: the way of bending and the way of swinging speak against each other, as in walking backward.
+    """
 
     sign: int
     margin: float
     is_certain: bool
+    is_contradicted: bool = False
 
 
 def skewness(values: FloatArray, share: float) -> float:
@@ -65,7 +69,7 @@ def knee_sign(
     total = bend + 2 * swing
     disagree = bend * swing < 0 and min(abs(bend), 2 * abs(swing)) > 0.5 * max(abs(bend), 2 * abs(swing))
     is_certain = abs(total) > MIN_MARGIN and bend != 0.0 and not disagree and (is_walking or has_standing)
-    return ClinicalSign(1 if total >= 0 else -1, abs(total), is_certain)
+    return ClinicalSign(1 if total >= 0 else -1, abs(total), is_certain, disagree)
 
 
 def ankle_sign(
@@ -73,7 +77,8 @@ def ankle_sign(
 ) -> ClinicalSign:
     """Sign of ankle dorsiflexion: opposite to the knee's, else by the shank's own swing.
 
-    A knee that does not know its own sign (stiff or locked) is no witness; the shank swings all the same.
+    A knee that does not know its own sign (stiff or locked) is no witness; the shank swings all the same. Where a
+    knee's bending contradicts that swing, the swing is none either.
 
     Parameters
     ----------
@@ -84,7 +89,8 @@ def ankle_sign(
     """
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
     if knee is None or not knee.is_certain:
-        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), abs(swing) > MIN_MARGIN)
+        is_certain = abs(swing) > MIN_MARGIN and not (knee is not None and knee.is_contradicted)
+        return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), is_certain)
     if abs(alignment) < MIN_AXES_ALIGNMENT:
         return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), is_certain=False)
     from_knee = knee.sign * (1 if alignment > 0 else -1)

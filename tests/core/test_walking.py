@@ -1,11 +1,15 @@
-"""Is the gait of a long recording, worked through in blocks, that of a short one?"""
+"""Is the gait of a long recording, worked through in blocks, that of a short one? And what of walking backward?"""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core import tracks
 from core.analysis import analyse
-from core.body import Side, Site
+from core.body import Joint, Side, Site
+from core.gait.strides import Reason
+from core.samples import ImuBlock
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 
@@ -26,3 +30,20 @@ def test_the_seams_between_blocks_cost_no_stride_and_no_phase(monkeypatch: pytes
             np.testing.assert_allclose(strides.end_s[:-1], strides.start_s[1:])
             assert len(found[side].events) == 1
             assert np.mean(found[side].phase == whole[side].phase) > 0.98
+
+
+def reversed_in_time(block: ImuBlock) -> ImuBlock:
+    return replace(block, gyr_rad_s=-block.gyr_rad_s[::-1], acc_m_s2=block.acc_m_s2[::-1])
+
+
+@pytest.mark.parametrize("turned_sign", [{}, {Joint.LEFT_KNEE: 1, Joint.RIGHT_KNEE: 1}])
+def test_walking_backward_leaves_every_sign_and_stride_in_doubt(turned_sign: dict[Joint, int]) -> None:
+    """The shank swings the other way: knees bend against it, and an ankle that followed it would be mirrored."""
+    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=12)))).session
+    standing, walk = session.recordings
+    backward = replace(walk, imu={site: reversed_in_time(block) for site, block in walk.imu.items()})
+    found = analyse(replace(session, recordings=(standing, backward), turned_sign=turned_sign))
+    certain = {joint for joint, one in found.calibrations[0].joints.items() if one.is_sign_certain}
+    assert certain == set(turned_sign)
+    for gait in found.recordings[0].gait.values():
+        assert set(gait.strides.reason) <= {Reason.DOUBT, Reason.START, Reason.STOP}
