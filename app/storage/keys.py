@@ -22,6 +22,8 @@ from app.storage.files import replace_file
 
 FORMAT = "gaitwright-keys/1"
 KEY_BYTES = 32
+SIZES = [16, 12, KEY_BYTES + 16]  # of salt, nonce and wrapped key
+MOST_PASSES, MOST_MEMORY_KIB = 100, 4 * 1024 * 1024
 MIN_PASSPHRASE = 10
 RECOVERY_BYTES = 20
 GROUP = 4  # letters of the recovery key that stand together
@@ -81,7 +83,7 @@ class Slot:
 
     @classmethod
     def wrapping(cls, data_key: bytes, code: str, secret: bytes, cost: Cost) -> "Slot":
-        salt, nonce = _text(secrets.token_bytes(16)), _text(secrets.token_bytes(12))
+        salt, nonce = _text(secrets.token_bytes(SIZES[0])), _text(secrets.token_bytes(SIZES[1]))
         empty = cls(code, salt, nonce, "", cost.passes, cost.memory_kib)
         wrapped = AESGCM(empty._wrapping_key(secret)).encrypt(_bytes(empty.nonce), data_key, empty._bound())
         return replace(empty, wrapped=_text(wrapped))
@@ -180,10 +182,10 @@ class KeySlots:
         Raises
         ------
         KeyRefusedError
-            It is the last one.
+            It is the last one, or the recovery key's.
         """
         slots = self._read()
-        slots.pop(_normal(code), None)
+        slots.pop(_checked_code(code), None)
         if set(slots) <= {RECOVERY}:
             raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
         self._write(slots)
@@ -199,7 +201,7 @@ class KeySlots:
             content = json.loads(self._path.read_bytes())
             if content["format"] != FORMAT:
                 raise ValueError(content["format"])
-            slots = [Slot(**slot) for slot in content["slots"]]
+            slots = [_whole(Slot(**slot)) for slot in content["slots"]]
         except FileNotFoundError:
             raise KeyRefusedError(f"{self._path.name} is not there", "Restore the library from a backup") from None
         except (ValueError, KeyError, TypeError):
@@ -264,6 +266,20 @@ def _recovery_bytes(text: str) -> bytes:
     if LETTERS[number % 31] != letters[-1]:
         raise KeyRefusedError("A letter of the recovery key is mistyped", "Compare with the sheet")
     return number.to_bytes(RECOVERY_BYTES, "big")
+
+
+def _whole(slot: Slot) -> Slot:
+    """The slot, once it can be opened without being believed: its file may come from anywhere.
+
+    Raises
+    ------
+    ValueError, TypeError
+        It is damaged, or a guess would cost more than a machine has.
+    """
+    sizes = [len(base64.b64decode(text, validate=True)) for text in (slot.salt, slot.nonce, slot.wrapped)]
+    if sizes != SIZES or not 1 <= slot.passes <= MOST_PASSES or not 8 <= slot.memory_kib <= MOST_MEMORY_KIB:
+        raise ValueError(slot.code)
+    return slot
 
 
 def _normal(code: str) -> str:

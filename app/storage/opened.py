@@ -12,7 +12,7 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -33,7 +33,7 @@ class OpenedLibrary:
 
     library: Library
     folder: Path
-    data_key: bytes | None
+    data_key: bytes | None = field(repr=False)  # whatever prints this must not print the key
 
     @property
     def recordings(self) -> Path:

@@ -210,3 +210,33 @@ def test_a_kill_during_a_change_leaves_the_old_or_the_new_passphrase(tmp_path: P
 def test_a_hundred_kills_during_changes(tmp_path: Path) -> None:
     """T11 of the reliability targets, at its full size."""
     check_kills(tmp_path, 100)
+
+
+def test_the_recovery_keys_slot_is_not_removed(slots: KeySlots) -> None:
+    data_key, text = slots.create("hk", OLD)
+    for code in ("recovery", " Recovery "):
+        with pytest.raises(KeyRefusedError, match="cannot be a code"):
+            slots.remove(code)
+    assert slots.open_with_recovery_key(text) == data_key
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [
+        ("salt", "!"),
+        ("salt", 5),
+        ("nonce", ""),
+        ("wrapped", "AAAA"),
+        ("passes", 0),
+        ("passes", 10**9),
+        ("memory_kib", 2**40),
+        ("memory_kib", "64"),
+    ],
+)
+def test_a_damaged_slot_is_said_to_be_damaged(slots: KeySlots, tmp_path: Path, field: str, value: object) -> None:
+    slots.create("hk", OLD)
+    content = json.loads((tmp_path / "keys.json").read_text())
+    content["slots"][0][field] = value
+    (tmp_path / "keys.json").write_text(json.dumps(content))
+    with pytest.raises(KeyRefusedError, match="is damaged"):
+        slots.open("hk", OLD)

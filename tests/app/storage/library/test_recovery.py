@@ -151,3 +151,9 @@ def test_only_one_program_records_into_a_library(tmp_path: Path) -> None:
         raise AssertionError
     with held_alone(tmp_path):
         pass
+
+
+def test_the_key_is_not_printed(opened: OpenedLibrary) -> None:
+    assert opened.data_key is not None
+    assert repr(opened.data_key) not in repr(opened)
+    assert opened.data_key.hex() not in repr(opened)
