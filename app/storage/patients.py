@@ -56,10 +56,12 @@ class Patients:
             return stored_patient(session, _existing(session, patient_id))
 
     def find(self, code: str) -> StoredPatient | None:
-        """The patient with this code, however it is typed."""
+        """The patient with this code, however it is typed, or the one whom that patient was merged into."""
         with self._desk.reading() as session:
             row = session.scalars(select(PatientRow).where(PatientRow.code_folded == folded(code))).first()
-            return None if row is None or row.merged_into_id or row.deleted_at else stored_patient(session, row)
+            if row is not None and row.merged_into_id is not None:
+                row = session.get_one(PatientRow, row.merged_into_id)
+            return None if row is None or row.deleted_at else stored_patient(session, row)
 
     def search(self, text: str = "", is_deleted: bool = False) -> tuple[StoredPatient, ...]:
         """Those whose code holds `text`, the latest seen first; or those that are deleted and can be restored."""
@@ -117,7 +119,8 @@ class Patients:
             moved = session.scalars(select(SessionRow).where(SessionRow.patient_id == other.id))
             changes = differences(row, filled)
             changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
-            changes += differences(other, {"merged_into_id": row.id})
+            doubles = [*session.scalars(select(PatientRow).where(PatientRow.merged_into_id == other.id)), other]
+            changes += [change for one in doubles for change in differences(one, {"merged_into_id": row.id})]
             apply(self._desk, session, changes, row.id)
             session.flush()
             return stored_patient(session, row)

@@ -353,7 +353,7 @@ def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPa
     assert merged.sessions == 1
     assert [line.patient_code for line in library.sessions.list()] == ["P-1"]
     assert [found.id for found in library.patients.search()] == [kept.id]
-    assert library.patients.find("P-001") is None
+    assert library.patients.find("P-001") == merged
     with pytest.raises(LibraryError, match="merged into"):
         library.patients.create(FULL)
     (correction,) = library.corrections.of_patient(kept.id)
@@ -361,6 +361,21 @@ def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPa
     assert library.patients.get(kept.id).told == kept.told
     assert [line.patient_code for line in library.sessions.list()] == ["P-001"]
     assert library.patients.get(patient.id).told == FULL
+
+
+def test_a_double_of_a_double_is_merged_too(library: Library, patient: StoredPatient, clock: Clock) -> None:
+    first = library.patients.create(Patient(code="P-1"))
+    second = library.patients.create(Patient(code="P-2"))
+    first = library.patients.merge(first, patient)
+    second = library.patients.merge(second, first)
+    assert library.patients.find("P-001") == second
+    library.corrections.undo(library.corrections.of_patient(second.id)[0].id)
+    assert library.patients.find("P-001") == library.patients.find("P-1")
+    second = library.patients.merge(library.patients.get(second.id), library.patients.get(first.id))
+    library.patients.delete(second)
+    clock.now += datetime.timedelta(days=30)
+    library.patients.destroy(second.id)
+    assert [library.patients.find(code) for code in ("P-001", "P-1", "P-2")] == [None, None, None]
 
 
 def test_a_patient_is_not_merged_with_itself_or_a_deleted_one(library: Library, patient: StoredPatient) -> None:
