@@ -176,8 +176,8 @@ SENTENCES = {
     # what the session is made of
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
     "strap_slipped": (
-        "the strap slipped at {from_s} s, by about {turn_deg}°. Strides of this leg after it are left out; tighten it "
-        "and repeat the free motion."
+        "the strap slipped near {from_s} s, by about {turn_deg}°. Strides of this leg from 5 s before on are left out; "
+        "tighten it and repeat the free motion."
     ),
     "restrapped": "the sensors were strapped on anew before this recording. Nothing recorded earlier calibrates it.",
     "calibration_after_walk": (

@@ -400,9 +400,9 @@ def _slipped(
     for calibration in calibrations:
         walks = [recording for recording in tracks.span if recording.name in calibration.walks]
         for walk, slip in slips_in_walks(tracks, walks, calibration.joints, lags):
-            numbers = {"from_s": round(slip.from_s, 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
+            numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
             findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
-            slipped[walk.name, slip.site.side] = slip.from_s
+            slipped[walk.name, slip.site.side] = slip.sure_until_s
             for later in walks[walks.index(walk) + 1 :]:
                 slipped[later.name, slip.site.side] = -np.inf
     return slipped, findings

@@ -53,6 +53,11 @@ class Slip:
     from_s: float
     turn_rad: float
 
+    @property
+    def sure_until_s(self) -> float:
+        """A slip late in a window hardly moves that window's turn, so the one before `from_s` may hold it already."""
+        return self.from_s - WINDOW_S
+
 
 def turns_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> Turns:
     """Turns over the walking in one stretch.

@@ -29,18 +29,18 @@ def patient(tissue: Tissue, turn_rad: float) -> SimulatedSession:
     return simulate(WalkerSettings(seed=5, recordings=recordings, tissue=tissue))
 
 
-def slipped(session: Session, site: Site, angle_rad: float) -> Session:
-    """The same session, with the sensor turned about its limb from SLIP_S of the walk on."""
+def slipped(session: Session, site: Site, angle_rad: float, at_s: float = SLIP_S) -> Session:
+    """The same session, with the sensor turned about its limb from `at_s` of the walk on."""
     standing, free_motion, walk = session.recordings
     up = standing.imu[site].acc_m_s2.mean(axis=0)
     turn = Rotation.from_rotvec(angle_rad * up / np.linalg.norm(up)).as_matrix()
-    imu = {**walk.imu, site: turned(walk.imu[site], turn)}
+    imu = {**walk.imu, site: turned(walk.imu[site], turn, at_s)}
     return replace(session, recordings=(standing, free_motion, replace(walk, imu=imu)))
 
 
-def turned(block: ImuBlock, turn: np.ndarray) -> ImuBlock:
+def turned(block: ImuBlock, turn: np.ndarray, at_s: float) -> ImuBlock:
     gyr, acc = block.gyr_rad_s.copy(), block.acc_m_s2.copy()
-    late = block.time_s >= SLIP_S
+    late = block.time_s >= at_s
     gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
     return replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
 
@@ -97,6 +97,16 @@ def test_an_analysis_names_the_slip_and_leaves_out_the_strides_after_it(soft: Si
     assert right.end_s[right.is_used].max() <= finding.numbers["from_s"]
     assert Reason.SLIPPED in right.reason
     assert Reason.SLIPPED not in left.reason
+
+
+@pytest.mark.parametrize("at_s", [22.0, 23.0, 24.7])
+def test_no_stride_after_a_slip_is_used_wherever_in_its_window_it_lies(soft: SimulatedSession, at_s: float) -> None:
+    session = slipped(soft.session, Site.LEFT_THIGH, np.deg2rad(-15.0), at_s)
+    analysis = analyse(session)
+    assert "strap_slipped" in {one.key for one in analysis.findings}
+    strides = analysis.recordings[-1].gait[Side.LEFT].strides
+    assert strides.end_s[strides.is_used].max() <= at_s
+    assert strides.end_s[strides.is_used].max() > at_s - 10.0
 
 
 def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
