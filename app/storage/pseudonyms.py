@@ -3,13 +3,15 @@
 A patient's pseudonym and the shift of the dates come from the library's key and the patient's row, so every export of
 one patient has the same ones: visits can still be put together and in order, and nobody without the key gets back.
 What may say a name is left out: notes, operator, keys and columns that mean nothing to us. Recordings get the names
-that we give. What is needed to read the angles stays as it was typed: year of birth, sex, height, mass, sides,
-device, aids, surface and conditions. This is pseudonymous, not anonymous: gait itself can be recognised.
+that we give, sensors are numbered. What is needed to read the angles stays as it was typed: year of birth, sex,
+height, mass, sides, device, aids, surface and conditions. This is pseudonymous, not anonymous: gait itself can be
+recognised.
 """
 
 import base64
 import datetime
 import hmac
+from collections.abc import Mapping
 from dataclasses import replace
 from uuid import UUID
 
@@ -17,7 +19,7 @@ from cryptography.hazmat.primitives.hashes import SHA256
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
 from app.storage.desk import DEMO
-from core.samples import ImuBlock, Recording, Session
+from core.samples import Recording, Session
 from devices.files.imports import folder_for, free_name
 
 LETTERS = 8  # of a pseudonym: 40 bits, so that two of ten thousand patients hardly ever share one
@@ -48,11 +50,15 @@ class Pseudonyms:
 
     def session(self, patient_id: UUID, session: Session) -> Session:
         """`session` without what may say whose it is."""
+        sensors = _numbered(session)
         nameless = replace(
             session,
             recordings=(),
             patient=replace(session.patient, code=self.code(patient_id, session.is_simulated), unknown={}),
-            sensors={site: replace(info, unknown={}) for site, info in session.sensors.items()},
+            sensors={
+                site: replace(info, serial=sensors.get(info.serial, ""), unknown={})
+                for site, info in session.sensors.items()
+            },
             started=self.shifted(patient_id, session.started),
             operator="",
             notes="",
@@ -60,16 +66,18 @@ class Pseudonyms:
             unknown={},
         )
         for recording in session.recordings:
-            own = self._recording(patient_id, recording, free_name(nameless, recording.kind))
+            own = self._recording(patient_id, recording, free_name(nameless, recording.kind), sensors)
             nameless = replace(nameless, recordings=(*nameless.recordings, own))
         return nameless
 
-    def _recording(self, patient_id: UUID, recording: Recording, name: str) -> Recording:
+    def _recording(self, patient_id: UUID, recording: Recording, name: str, sensors: Mapping[str, str]) -> Recording:
         return replace(
             recording,
             name=name,
             folder=folder_for(name),
-            imu={site: _without_unknown(block) for site, block in recording.imu.items()},
+            imu={
+                site: replace(block, sensor=sensors[block.sensor], unknown={}) for site, block in recording.imu.items()
+            },
             started=self.shifted(patient_id, recording.started),
             note="",
             unknown={},
@@ -79,5 +87,8 @@ class Pseudonyms:
         return hmac.digest(self._key, what.encode() + patient_id.bytes, "sha256")
 
 
-def _without_unknown(block: ImuBlock) -> ImuBlock:
-    return replace(block, unknown={})
+def _numbered(session: Session) -> dict[str, str]:
+    """A name of ours for each sensor: another program may have called it after whom it was worn by."""
+    names = [info.serial for info in session.sensors.values() if info.serial]
+    names += [block.sensor for recording in session.recordings for block in recording.imu.values()]
+    return {name: f"sensor {number}" for number, name in enumerate(dict.fromkeys(names), 1)}

@@ -206,7 +206,11 @@ def named(session: Session, name: str) -> Session:
     recordings = []
     for number, recording in enumerate(session.recordings):
         imu = {
-            site: replace(block, unknown={name: np.array([name] * len(block), dtype=np.dtypes.StringDType())})
+            site: replace(
+                block,
+                sensor=f"{name} {site}",
+                unknown={name: np.array([name] * len(block), dtype=np.dtypes.StringDType())},
+            )
             for site, block in recording.imu.items()
         }
         said = replace(recording, name=f"{name} {number}", folder=f"{name}_{number}", note=name, started="2026-11-20")
@@ -215,7 +219,7 @@ def named(session: Session, name: str) -> Session:
         session,
         recordings=tuple(recordings),
         patient=Patient(code=f"DEMO {name}", unknown=odd),
-        sensors={site: replace(info, unknown=odd) for site, info in session.sensors.items()},
+        sensors={site: replace(info, serial=f"{name} {site}", unknown=odd) for site, info in session.sensors.items()},
         operator=name,
         notes=name,
         started="2026-11-20T09:00:00",
@@ -290,6 +294,9 @@ def test_samples_and_clinical_facts_pass_the_pseudonyms(walked: Session) -> None
     for before, after in zip(walked.recordings, told.recordings, strict=True):
         assert (before.kind, before.condition, before.is_kept) == (after.kind, after.condition, after.is_kept)
         assert all(same_bits(before.imu[site].gyr_rad_s, after.imu[site].gyr_rad_s) for site in before.imu)
+    worn = [{site: block.sensor for site, block in recording.imu.items()} for recording in told.recordings]
+    assert len(set(worn[0].values())) == 6
+    assert worn[0] == worn[1] == worn[2]  # the same sensor is still known as the same
 
 
 def test_an_import_that_is_stopped_is_out_of_sight(opened: OpenedLibrary, walked: Session) -> None:

@@ -1,0 +1,178 @@
+"""T10 for a whole library: which of 200 planted names, and which secrets, stand in what a kill leaves on the disk?
+
+    python -m tests.safety.planted_names --count 100
+
+A child imports sessions with names wherever somebody may type one, exports them without names, backs the library up
+and logs errors about them, until it is killed. Then everything that it wrote is searched: library, journals, backups,
+exports, logs, temporary files and what it said.
+"""
+
+import argparse
+import logging
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import numpy as np
+
+from app.logs import start_logging
+from app.storage.backup import back_up
+from app.storage.exchange import export_session, import_session, stored_session
+from app.storage.journal.disk import Room
+from app.storage.opened import create_library, open_library
+from app.storage.recovery import find_interrupted, recover
+from app.storage.stored import Operator, Role
+from core.body import Site
+from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+
+ROOT = Path(__file__).parents[2]
+STEM = "Kowalczyk"  # of all names, so that one search finds any of them
+NAMES = [f"{STEM}{number:03d}" for number in range(200)]
+ENCODINGS = ("utf-8", "utf-16-le", "utf-16-be")
+PASSPHRASE = "a passphrase planted too"
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
+FORGOTTEN_S = 60  # after which a child whose parent is gone ends by itself
+
+
+@dataclass(slots=True)
+class Search:
+    """`found` where a name or secret stood; `faults` of libraries that were not whole after the kill."""
+
+    kills: int = 0
+    names: int = 0
+    files: int = 0
+    recovered: int = 0
+    found: list[str] = field(default_factory=list)
+    faults: list[str] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.kills} kills, {self.names} names planted, {self.files} files searched: "
+            f"{len(self.found)} found, {len(self.faults)} libraries at fault, {self.recovered} recordings recovered"
+        )
+
+
+def named_session(name: str) -> Session:
+    """A short walk with `name` wherever a person or a program may write one."""
+    count, odd = 200, {name: name, "key": {"deep": name}}
+    column = np.array([name] * count, dtype=np.dtypes.StringDType())
+    block = ImuBlock(
+        name, np.arange(count) / 100, np.ones((count, 3)), np.ones((count, 3)), unknown={f"of {name}": column}
+    )
+    walk = Recording(name, RecordingKind.WALKING, name, {Site.LEFT_FOOT: block}, started=name, note=name, unknown=odd)
+    return Session(
+        (walk,),
+        patient=Patient(code=name, unknown=odd),
+        sensors={Site.LEFT_FOOT: SensorInfo(model="walker", unknown=odd)},
+        started=name,
+        operator=name,
+        notes=name,
+        unknown={"session": odd, name: odd},
+    )
+
+
+def work(folder: Path) -> None:
+    """Do all that writes, name after name, until the kill."""
+    start_logging(folder / "logs")
+    log = logging.getLogger("app.logs")
+    opened, recovery_key = create_library(folder / "library", Operator("hk", NAMES[0], Role.ADMINISTRATOR), PASSPHRASE)
+    assert opened.data_key is not None
+    print(opened.data_key.hex(), recovery_key, flush=True)
+    sys.stdout.close()
+    until_s = time.monotonic() + FORGOTTEN_S
+    number = 0
+    while time.monotonic() < until_s:
+        name = NAMES[number % len(NAMES)]
+        session = replace(named_session(name), patient=Patient(code=f"{name}-{number}"))
+        imported = import_session(opened, session, silent, room=ANY_ROOM)
+        export_session(opened, imported.session_id, folder / "exports" / str(number), {}, silent)
+        try:
+            (folder / name).read_bytes()
+        except OSError:
+            log.exception("%s of %s is missing", folder / name, name)
+        if number % 20 == 10:
+            back_up(opened, folder / f"backups{number}")
+        number += 1
+        (folder / "count").write_text(str(number))
+
+
+def silent(_share: float, _what: str) -> None:
+    """Report to nobody."""
+
+
+def kill_and_search(folder: Path, count: int, seed: int) -> Search:
+    rng, search = random.Random(seed), Search()
+    for kill in range(count):
+        place = folder / str(kill)
+        (place / "tmp").mkdir(parents=True)
+        environment = {**os.environ, "TMPDIR": str(place / "tmp"), "SQLITE_TMPDIR": str(place / "tmp")}
+        command = [sys.executable, "-m", "tests.safety.planted_names", "--work", str(place)]
+        with (
+            (place / "said").open("wb") as said,
+            subprocess.Popen(
+                command, cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=said, text=True
+            ) as child,
+        ):
+            assert child.stdout is not None
+            secrets = child.stdout.readline().split()
+            time.sleep(rng.uniform(0.0, 2.0))
+            if child.poll() is not None:
+                search.faults.append(f"{kill}: the child ended by itself")
+            child.send_signal(signal.SIGKILL)
+        search.kills += 1
+        search.names += int((place / "count").read_text()) if (place / "count").exists() else 0
+        search_files(place, secrets, search)
+        _reopen(place, search)
+    return search
+
+
+def search_files(place: Path, secrets: list[str], search: Search) -> None:
+    wanted = [STEM.lower().encode(encoding) for encoding in ENCODINGS] + [PASSPHRASE.lower().encode()]
+    for secret in secrets:
+        wanted += [secret.lower().encode(), secret.replace("-", "").lower().encode()]
+    key = bytes.fromhex(secrets[0])
+    for path in place.rglob("*"):
+        content = path.read_bytes() if path.is_file() else b""
+        lower = content.lower() + str(path.relative_to(place)).lower().encode()
+        search.files += path.is_file()
+        if key in content or any(one in lower for one in wanted):
+            search.found.append(str(path))
+
+
+def _reopen(place: Path, search: Search) -> None:
+    with open_library(place / "library", PASSPHRASE) as opened:
+        for one in find_interrupted(opened):
+            recover(opened, one, silent)
+            search.recovered += 1
+        faults = [*opened.library.faults(), *opened.library.audit.verify().faults]
+        for line in opened.library.sessions.list():
+            visit = opened.library.sessions.get(line.id)
+            read = stored_session(opened, visit, {}, silent)
+            if read.recordings and STEM not in read.recordings[0].name:
+                faults.append(f"session {line.id} lost its names")
+        search.faults += [f"{place.name}: {fault}" for fault in faults]
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--count", type=int, default=100)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--work", type=Path, help=argparse.SUPPRESS)
+    wanted = parser.parse_args()
+    if wanted.work:
+        work(wanted.work)
+        return 0
+    with tempfile.TemporaryDirectory(prefix="gaitwright-names-") as folder:
+        search = kill_and_search(Path(folder), wanted.count, wanted.seed)
+    print(search, *search.found, *search.faults, sep="\n")
+    return 1 if search.found or search.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
