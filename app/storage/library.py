@@ -30,7 +30,8 @@ def now_utc() -> datetime.datetime:
 class Library:
     """An open library. Nothing but `log_in` works until somebody is logged in.
 
-    No `data_key`: it is a demonstration, which is not encrypted and takes simulated recordings only.
+    No `data_key`: it is a demonstration, which is not encrypted and takes simulated recordings only. `is_end_lost`: it
+    was not closed well and what was saved last is damaged, so the latest session should be looked through.
     """
 
     def __init__(
@@ -38,6 +39,7 @@ class Library:
         database: "Database",
         data_key: bytes | None,
         now: Callable[[], datetime.datetime] = now_utc,
+        is_end_lost: bool = False,
     ) -> None:
         from app.storage.audit import Audit, audit_key
         from app.storage.corrections import Corrections
@@ -49,6 +51,7 @@ class Library:
         from app.storage.results import Results
         from app.storage.sessions import Sessions
 
+        self.is_end_lost = is_end_lost
         bring_up_to_date(database)
         self._database = database
         self._desk = Desk(database, audit_key(data_key), now, is_demonstration=data_key is None)
@@ -99,11 +102,17 @@ class Library:
         LibraryError
             There is none, it does not open with this key, it is damaged, or a later version has written it.
         """
+        from app.storage.database.write_ahead_log import is_end_lost
+
         if not (folder / FILE_NAME).exists():
             raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
+        try:
+            is_lost = is_end_lost(folder / f"{FILE_NAME}-wal")
+        except OSError as error:
+            raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
         database = _database(folder, data_key)
         try:
-            return cls(database, data_key, now)
+            return cls(database, data_key, now, is_lost)
         except BaseException:
             database.close()
             raise
@@ -164,7 +173,9 @@ class Library:
             if row is None or not row.is_active:
                 raise NotAllowedError("This operator does not work here", "Ask an administrator of this library")
             operator = operator_of(row)
-            details = {"failed_before": failed_before}
+            details: dict[str, object] = {"failed_before": failed_before}
+            if self.is_end_lost:
+                details["is_end_lost"] = True
             subject = about("operator", row.code)
             append(session, self._desk.audit_key, self._desk.now(), row.code, Action.LOGIN, subject, details)
         self._desk.operator = operator
