@@ -17,7 +17,7 @@ from core.live.drift import Looks, SlowDrift, Wandering
 from core.live.integral import BIAS_RAD_S, BIAS_WALK_RAD_S, Integral
 from core.live.joint_frames import JointFrames, JointGeometry
 from core.live.orientation import OrientedSamples
-from core.live.pairing import PairedSamples, Pairing
+from core.live.pairing import NO_PAIRS, PairedSamples, Pairing
 from core.pair import MOVING_RAD_S, MOVING_WINDOW_S
 from core.results import AxisSource, JointCalibration
 from core.robust import robust_sd
@@ -74,6 +74,11 @@ class LiveAngle:
         Of the two streams' grids.
     clock_offset_s
         What brings the proximal sensor's clock to the clock of the angles: at an ankle the lag of the knee.
+
+    Attributes
+    ----------
+    paired
+        What both sensors measured at the instants of the last update.
     """
 
     def __init__(
@@ -87,6 +92,7 @@ class LiveAngle:
         self._per_beat = max(1, round(BEAT_S / proximal_step_s))
         self._clock_offset_s = clock_offset_s
         self._pairing = Pairing(proximal_step_s, distal_step_s, calibration.lag_s)
+        self.paired = NO_PAIRS
         self._geometry = JointGeometry(calibration)
         self._certainty = _Certainty(calibration, proximal_step_s)
         self._heading = SlowDrift(HEADING, HEADING_LOOKS)
@@ -118,7 +124,7 @@ class LiveAngle:
 
     def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> AngleSamples:
         """Take what is new of both sensors, in order; returns the angle as far as both of them have reached."""
-        rows = self._pairing.update(proximal, distal)
+        self.paired = rows = self._pairing.update(proximal, distal)
         beat = rows.tick // self._per_beat
         if (
             len(rows)

@@ -103,9 +103,11 @@ class _JointMotion:
         self._next_look_s: float | None = None
 
     def update(self, proximal: OrientedSamples, distal: OrientedSamples) -> None:
+        if not len(proximal) and not len(distal):
+            return
+        if self._next_look_s is None and len(proximal):
+            self._next_look_s = LOOK_S * (np.floor(proximal.time_s[0] / LOOK_S) + 1)
         self._one, self._two = joined([self._one, proximal]), joined([self._two, distal])
-        if self._next_look_s is None and len(self._one):
-            self._next_look_s = LOOK_S * (np.floor(self._one.time_s[0] / LOOK_S) + 1)
         while self._next_look_s is not None:
             one, self._one = _cut(self._one, self._next_look_s)
             two, self._two = _cut(self._two, self._next_look_s)
@@ -121,6 +123,8 @@ class _JointMotion:
 
 
 def _cut(samples: OrientedSamples, at_s: float) -> tuple[OrientedSamples, OrientedSamples]:
+    if not len(samples) or samples.time_s[-1] < at_s:
+        return samples, NOTHING
     first = int(np.searchsorted(samples.time_s, at_s))
     return samples.part(slice(0, first)), samples.part(slice(first, None))
 

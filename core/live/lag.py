@@ -8,7 +8,7 @@ import numpy as np
 
 from core.calibration.lag import find_lag
 from core.datasets import gather, moving_indices
-from core.live.orientation import OrientedSamples
+from core.live.orientation import OrientedSamples, joined
 from core.live.pairing import PairedSamples, Pairing, joined_rows
 from core.pair import FAST_RAD_S, pair_of
 
@@ -46,13 +46,12 @@ class LiveLag:
         self._pairing = Pairing(proximal_step_s, distal_step_s, 0.0)
         self._step_s = proximal_step_s
         self._kept: deque[PairedSamples] = deque(maxlen=KEPT_LOOKS)
-        self._new: list[PairedSamples] = []
+        self._new: tuple[list[OrientedSamples], list[OrientedSamples]] = ([], [])
 
     def feed(self, proximal: OrientedSamples, distal: OrientedSamples) -> None:
-        """Take what is new of both sensors."""
-        rows = self._pairing.update(proximal, distal)
-        if len(rows):
-            self._new.append(rows)
+        """Take what is new of both sensors; they are paired at the next look."""
+        self._new[0].append(proximal)
+        self._new[1].append(distal)
 
     def look(self, heading_rad: float) -> LagState | None:
         """What the samples tell; None where there was too little movement.
@@ -62,9 +61,10 @@ class LiveLag:
         heading_rad
             Of the distal earth in the proximal one.
         """
-        if self._new:
-            self._kept.append(joined_rows(self._new))
-            self._new = []
+        new = self._pairing.update(joined(self._new[0]), joined(self._new[1]))
+        self._new = [], []
+        if len(new):
+            self._kept.append(new)
         rows = self._of_one_stretch()
         if rows is None:
             return None

@@ -121,14 +121,20 @@ class SetCollector:
         """Take samples; yields once per tenth of a second they complete: did the joint move, is there a new set?"""
         for end, samples in zip(self._ends, (proximal, distal), strict=True):
             end.add(samples)
-        first_s, last_s = (max(end.first_s for end in self._ends), min(end.last_s for end in self._ends))
-        if last_s < first_s:  # one is silent
+        last_s = self._ends[0].last_s, self._ends[1].last_s
+        is_complete = self._next is None or min(last_s) >= self._next * SPACING_S + NODES[-1]
+        if not is_complete and max(last_s) - min(last_s) < KEPT_S:
+            return  # as most blocks: quicker
+        for end in self._ends:
+            end.settle()
+        first_s, shared_s = max(end.first_s for end in self._ends), min(last_s)
+        if shared_s < first_s:  # one is silent
             for end in self._ends:
                 end.forget_before(end.last_s - KEPT_S)
             return
         earliest = int(np.ceil((first_s - NODES[0]) / SPACING_S))
         self._next = earliest if self._next is None else max(self._next, earliest)
-        while self._next * SPACING_S + NODES[-1] <= last_s:
+        while self._next * SPACING_S + NODES[-1] <= shared_s:
             yield self._take(self._next * SPACING_S)
             self._next += 1
         for end in self._ends:
@@ -203,6 +209,8 @@ class _Recent:
 
     def __init__(self) -> None:
         self._samples = NOTHING
+        self._new: list[OrientedSamples] = []
+        self.last_s = -np.inf
         self._starts: deque[float] = deque()  # of stretches that have not been read yet
         self.stretch = 0
 
@@ -210,13 +218,16 @@ class _Recent:
     def first_s(self) -> float:
         return float(self._samples.time_s[0]) if len(self._samples) else np.inf
 
-    @property
-    def last_s(self) -> float:
-        return float(self._samples.time_s[-1]) if len(self._samples) else -np.inf
-
     def add(self, samples: OrientedSamples) -> None:
+        if len(samples):
+            self._new.append(samples)
+            self.last_s = float(samples.time_s[-1])
+
+    def settle(self) -> None:
+        """Put what was added to what is there."""
         known = max(len(self._samples) - 1, 0)
-        self._samples = joined([self._samples, samples])
+        self._samples = joined([self._samples, *self._new])
+        self._new = []
         new_s = self._samples.time_s[known:]
         self._starts.extend(new_s[1:][np.diff(new_s) > MAX_GAP_S].tolist())
 

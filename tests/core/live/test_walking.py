@@ -1,0 +1,187 @@
+"""A whole walk, live: the angles, phases and slips of both legs, whatever the blocks."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.calibration.rest import rest_of
+from core.gait.live import FootEvent, LiveEvent
+from core.live.sensors import LiveSensor
+from core.live.walking import Walking, WalkingState
+from core.results import Analysis, JointCalibration
+from core.samples import ImuBlock, Recording
+from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
+
+WALK = "walk 1"
+
+
+@pytest.fixture(scope="module")
+def made() -> SimulatedSession:
+    """Both legs with soft tissue, a walk of half a minute, the right foot's sensor at half the rate, one late clock."""
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=24, standing_before_s=2.0))
+    settings = WalkerSettings(
+        seed=8,
+        recordings=recordings,
+        tissue=Tissue.SOFT,
+        site_rates_hz={Site.RIGHT_FOOT: 50.0},
+        clock_late_s={Site.LEFT_SHANK: 0.02},
+    )
+    return simulate(settings)
+
+
+@pytest.fixture(scope="module")
+def analysis(made: SimulatedSession) -> Analysis:
+    return analyse(made.session)
+
+
+@pytest.fixture(scope="module")
+def calibration(analysis: Analysis) -> Mapping[Joint, JointCalibration]:
+    return analysis.calibrations[-1].joints
+
+
+@pytest.fixture(scope="module")
+def sensors(made: SimulatedSession) -> dict[Site, LiveSensor]:
+    found = {}
+    for site, block in made.session.recordings[0].imu.items():
+        rest = rest_of(block)
+        assert rest is not None
+        found[site] = LiveSensor(made.session.sensors[site].rate_hz or 100.0, rest.gyr_rad_s)
+    return found
+
+
+def walk_of(made: SimulatedSession) -> Recording:
+    return made.session.recordings[2]
+
+
+def in_blocks(imu: Mapping[Site, ImuBlock], block_s: float) -> Iterator[dict[Site, ImuBlock]]:
+    end_s = max(float(block.time_s[-1]) for block in imu.values())
+    for a, b in pairwise(np.arange(0.0, end_s + 2 * block_s, block_s)):
+        yield {site: part_of(block, a, b) for site, block in imu.items()}
+
+
+def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
+    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]))
+    return replace(block, time_s=block.time_s[part], gyr_rad_s=block.gyr_rad_s[part], acc_m_s2=block.acc_m_s2[part])
+
+
+def joined(states: Sequence[WalkingState], joint: Joint) -> tuple[np.ndarray, np.ndarray]:
+    parts = [state.joints[joint].samples for state in states]
+    return np.concatenate([p.time_s for p in parts]), np.concatenate([p.angle_rad for p in parts])
+
+
+def events_of(states: Sequence[WalkingState], side: Side) -> list[LiveEvent]:
+    return [event for state in states for event in state.feet[side].events]
+
+
+@pytest.fixture(scope="module")
+def states(
+    made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
+) -> list[WalkingState]:
+    walking = Walking(sensors, calibration)
+    return [walking.update(blocks) for blocks in in_blocks(walk_of(made).imu, 0.033)]
+
+
+def test_live_angles_follow_the_offline_ones(states: list[WalkingState], analysis: Analysis) -> None:
+    walk = next(recording for recording in analysis.recordings if recording.name == WALK)
+    for joint in Joint:
+        time_s, angle = joined(states, joint)
+        difference = angle - np.interp(time_s, walk.time_s, walk.joints[joint].angle_rad)
+        known = np.isfinite(difference) & (time_s > 3.0)  # the filters settle
+        rmse_deg = np.rad2deg(np.sqrt(np.mean(difference[known] ** 2)))
+        assert known.mean() > 0.85, joint
+        assert rmse_deg < 1.0, joint
+
+
+def test_events_and_cadence_are_those_of_the_walk(states: list[WalkingState], analysis: Analysis) -> None:
+    walk = next(recording for recording in analysis.recordings if recording.name == WALK)
+    for side in Side:
+        live = [one.time_s for one in events_of(states, side) if one.event is FootEvent.INITIAL_CONTACT]
+        offline = np.concatenate([events.initial_contact_s for events in walk.gait[side].events])
+        assert len(live) >= len(offline) - 2, side
+        assert all(np.min(np.abs(offline - one)) < 0.03 for one in live), side
+    halfway = states[len(states) // 2].feet[Side.LEFT]
+    stride_s = float(np.median(walk.gait[Side.LEFT].strides.time_s))
+    assert halfway.cadence_steps_min == pytest.approx(120.0 / stride_s, rel=0.03)
+    assert states[-1].feet[Side.LEFT].strides >= 20
+
+
+LEFT = tuple(site for site in Site if site.side is Side.LEFT)
+
+
+@pytest.mark.parametrize("block_s", [0.02, 0.35, 100.0])
+def test_the_size_of_the_blocks_changes_nothing(
+    made: SimulatedSession,
+    sensors: dict[Site, LiveSensor],
+    calibration: Mapping[Joint, JointCalibration],
+    states: list[WalkingState],
+    block_s: float,
+) -> None:
+    walking = Walking({site: sensors[site] for site in LEFT}, calibration)
+    imu = {site: walk_of(made).imu[site] for site in LEFT}
+    other = [walking.update(blocks) for blocks in in_blocks(imu, block_s)]
+    for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
+        for one, two in zip(joined(states, joint), joined(other, joint), strict=True):
+            np.testing.assert_allclose(two, one, rtol=0, atol=1e-9, equal_nan=True)
+    assert events_of(other, Side.LEFT) == events_of(states, Side.LEFT)
+
+
+def test_one_late_sensor_delays_its_joints_and_changes_nothing(
+    made: SimulatedSession,
+    sensors: dict[Site, LiveSensor],
+    calibration: Mapping[Joint, JointCalibration],
+    states: list[WalkingState],
+) -> None:
+    walking = Walking({site: sensors[site] for site in LEFT}, calibration)
+    imu = {site: walk_of(made).imu[site] for site in LEFT}
+    held: list[ImuBlock] = []
+    other = []
+    for k, blocks in enumerate(in_blocks(imu, 0.033)):
+        held.append(blocks.pop(Site.LEFT_SHANK))
+        if k % 30 == 29:  # a second late
+            other += [walking.update({Site.LEFT_SHANK: block}) for block in held]
+            held = []
+        other.append(walking.update(dict(reversed(blocks.items()))))
+    other += [walking.update({Site.LEFT_SHANK: block}) for block in held]
+    for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
+        for one, two in zip(joined(states, joint), joined(other, joint), strict=True):
+            np.testing.assert_allclose(two, one, rtol=0, atol=1e-9, equal_nan=True)
+
+
+def test_a_strap_that_slips_is_told_during_the_walk(
+    made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
+) -> None:
+    site, slip_s = Site.LEFT_SHANK, 11.0
+    up = made.session.recordings[0].imu[site].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(np.deg2rad(20.0) * up / np.linalg.norm(up)).as_matrix()
+    block = walk_of(made).imu[site]
+    gyr, acc, late = block.gyr_rad_s.copy(), block.acc_m_s2.copy(), block.time_s > slip_s
+    gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
+    imu = {one: walk_of(made).imu[one] for one in LEFT}
+    imu[site] = replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
+    walking = Walking({one: sensors[one] for one in LEFT}, calibration)
+    told = [(k * 0.033, walking.update(blocks).slips) for k, blocks in enumerate(in_blocks(imu, 0.033))]
+    first_s, (slip,) = next((now_s, slips) for now_s, slips in told if slips)
+    assert slip.site is site
+    assert slip.from_s == pytest.approx(slip_s, abs=5.0)
+    assert first_s < slip_s + 16.0
+    assert told[-1][1] == (slip,)
+
+
+def test_without_feet_or_calibration_it_tells_what_it_can(
+    made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
+) -> None:
+    imu = walk_of(made).imu
+    knees = {site: sensor for site, sensor in sensors.items() if not site.endswith("foot")}
+    state = Walking(knees, calibration).update({site: imu[site] for site in knees})
+    assert set(state.joints) == {Joint.LEFT_KNEE, Joint.RIGHT_KNEE}
+    assert not state.feet
+    foot = {Site.LEFT_FOOT: sensors[Site.LEFT_FOOT]}
+    state = Walking(foot, {}).update({Site.LEFT_FOOT: imu[Site.LEFT_FOOT]})
+    assert not state.joints
+    assert len(state.feet[Side.LEFT].events) > 80
