@@ -17,8 +17,6 @@ from core.samples import BoolArray, FloatArray, IntArray, RateKind
 TAU_ACC_S = 2.0  # walking needs more than a step; with the customary 3 s the ankle is off by a third more
 # Of the bias that standing gave, for warming up; with more, a walk from its first second on pulls the bias away.
 BIAS_SD_DEG_S = 0.5
-    0.5  # of the bias that standing gave, for warming up; with more, walking from the first second pulls it away
-)
 
 
 @dataclass(frozen=True, slots=True)
