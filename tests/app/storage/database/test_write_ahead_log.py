@@ -44,9 +44,11 @@ def test_every_flipped_bit_in_the_log_is_noticed(tmp_path: Path, flips: int) -> 
     whole = log.read_bytes()
     assert not is_end_lost(log)
     rng = random.Random(1)
+    frame = 24 + 4096
+    headers = [*range(32 + 24), *range(len(whole) - frame, len(whole) - 4096)]  # of the log, its first and last frame
     unnoticed = []
-    for _ in range(flips):
-        at, bit = rng.randrange(len(whole)), rng.randrange(8)
+    for at in [*headers, *(rng.randrange(len(whole)) for _ in range(flips))]:
+        bit = rng.randrange(8)
         log.write_bytes(whole[:at] + bytes([whole[at] ^ 1 << bit]) + whole[at + 1 :])
         if not is_end_lost(log):
             unnoticed.append((at, bit))
