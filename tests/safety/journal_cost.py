@@ -14,7 +14,7 @@ from pathlib import Path
 from app.storage.journal.decoding import decode
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
-from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, NO_ROOM_ASKED, RATE_HZ, WALKER, block
+from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, RATE_HZ, WALKER, block
 
 
 def main() -> None:
@@ -39,7 +39,7 @@ def main() -> None:
 def measure(name: str, put: Callable[[JournalWriter], None], rate_hz: float, seconds: float) -> None:
     idle_s = cpu_s(lambda: None, rate_hz, seconds)
     with tempfile.TemporaryDirectory() as folder:
-        with JournalWriter.create(Path(folder), ID, KEY, room=NO_ROOM_ASKED) as journal:
+        with JournalWriter.create(Path(folder), ID, KEY) as journal:
             journal.source(WALKER, LAYOUT)
             journal.source(LINES)
             busy_s = cpu_s(lambda: put(journal), rate_hz, seconds)

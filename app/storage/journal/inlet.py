@@ -25,7 +25,7 @@ class Inlet:
         self._limit_bytes, self._now_ns, self._last_ns = limit_bytes, now_ns, opened_ns
         self._change = threading.Condition()
         self._waiting: deque[Waiting] = deque()
-        self._waiting_bytes = 0
+        self.waiting_bytes = 0
         self._stuck_since_s: float | None = None
         self.is_open = True
         self.sources: dict[int, SourceEntry] = {}
@@ -46,10 +46,10 @@ class Inlet:
         """Put in a source's record; whether it was taken. `waits` for room instead of dropping it."""
         size = len(payload) + OVERHEAD_BYTES
         with self._change:
-            while waits and self.is_open and self._waiting and self._waiting_bytes + size > self._limit_bytes:
+            while waits and self.is_open and self._waiting and self.waiting_bytes + size > self._limit_bytes:
                 self._change.wait()
             entry = self.sources[source]
-            if not self.is_open or self._waiting_bytes + size > self._limit_bytes:
+            if not self.is_open or self.waiting_bytes + size > self._limit_bytes:
                 self._drop(len(payload))
                 self.sources[source] = replace(
                     entry,
@@ -82,7 +82,7 @@ class Inlet:
         with self._change:
             for _ in range(count):
                 _, _, payload = self._waiting.popleft()
-                self._waiting_bytes -= len(payload) + OVERHEAD_BYTES
+                self.waiting_bytes -= len(payload) + OVERHEAD_BYTES
             self._stuck_since_s = time.monotonic() if self._waiting else None
             self._change.notify_all()
 
@@ -99,7 +99,7 @@ class Inlet:
             for _, _, payload in self._waiting:
                 self._drop(len(payload))
             self._waiting.clear()
-            self._waiting_bytes, self._stuck_since_s = 0, None
+            self.waiting_bytes, self._stuck_since_s = 0, None
 
     def last_ns(self) -> int:
         """Now, and never before the latest record."""
@@ -125,7 +125,7 @@ class Inlet:
             return False
         self._last_ns = max(self._now_ns(), self._last_ns)  # under the lock: records are in order of their times
         self._waiting.append((kind, self._last_ns, payload))
-        self._waiting_bytes += len(payload) + OVERHEAD_BYTES
+        self.waiting_bytes += len(payload) + OVERHEAD_BYTES
         if self._stuck_since_s is None:
             self._stuck_since_s = time.monotonic()
         return True

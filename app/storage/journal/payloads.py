@@ -3,8 +3,8 @@
 import json
 import struct
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, replace
-from typing import Any
+from dataclasses import asdict, dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,8 +75,7 @@ class Footer:
         return cls(**json.loads(payload))
 
 
-@dataclass(frozen=True, slots=True)
-class Rows:
+class Rows(NamedTuple):
     """A piece of one sensor's samples: `numbers` (n, columns) of `FLOAT`, `texts` one list of n per column of texts."""
 
     source: int
@@ -91,7 +90,7 @@ class Rows:
     def halves(self) -> "tuple[Rows, Rows]":
         k = len(self.numbers) // 2
         head, tail = [column[:k] for column in self.texts], [column[k:] for column in self.texts]
-        return replace(self, numbers=self.numbers[:k], texts=head), replace(self, numbers=self.numbers[k:], texts=tail)
+        return self._replace(numbers=self.numbers[:k], texts=head), self._replace(numbers=self.numbers[k:], texts=tail)
 
     @classmethod
     def parsed(cls, payload: bytes, layout: SampleLayout) -> "Rows":
@@ -124,10 +123,16 @@ def rows_of(block: ImuBlock, layout: SampleLayout) -> tuple[FloatArray, list[lis
     columns, texts = _columns_of(block)
     if (columns, texts) != (layout.columns, layout.texts):
         raise ValueError("the block has other columns than its source's layout")  # which may be somebody's words
-    parts = [block.time_s[:, None], block.gyr_rad_s, block.acc_m_s2]
-    parts += [part for part in (block.q_earth_from_sensor, block.mag) if part is not None]
-    parts += [column.astype(float)[:, None] for name, column in block.unknown.items() if name in columns]
-    return np.concatenate(parts, axis=1, dtype=FLOAT), [[str(value) for value in block.unknown[name]] for name in texts]
+    numbers = np.empty((len(block), len(columns)), FLOAT)
+    numbers[:, 0], numbers[:, 1:4], numbers[:, 4:7] = block.time_s, block.gyr_rad_s, block.acc_m_s2
+    k = 7
+    for part in (block.q_earth_from_sensor, block.mag):
+        if part is not None:
+            numbers[:, k : k + part.shape[1]] = part
+            k += part.shape[1]
+    for column, name in enumerate(columns[k:], k):
+        numbers[:, column] = block.unknown[name]
+    return numbers, [[str(value) for value in block.unknown[name]] for name in texts]
 
 
 def _columns_of(block: ImuBlock) -> tuple[tuple[str, ...], tuple[str, ...]]:
