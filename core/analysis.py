@@ -400,12 +400,24 @@ def _slipped(
     for calibration in calibrations:
         walks = [recording for recording in tracks.span if recording.name in calibration.walks]
         for walk, slip in slips_in_walks(tracks, walks, calibration.joints, lags):
+            if (walk.name, slip.site.side) in slipped:
+                continue  # an earlier slip, told already
             numbers = {"from_s": round(float(slip.from_s), 1), "turn_deg": round(float(np.rad2deg(abs(slip.turn_rad))))}
             findings.append(Finding("strap_slipped", Severity.WARNING, f"{walk.name}, {slip.site}", numbers))
             slipped[walk.name, slip.site.side] = slip.sure_until_s
-            for later in walks[walks.index(walk) + 1 :]:
+            for later in _until_free_motion(tracks.span, walk, slip.site):
                 slipped[later.name, slip.site.side] = -np.inf
     return slipped, findings
+
+
+def _until_free_motion(span: tuple[Recording, ...], walk: Recording, site: Site) -> list[Recording]:
+    """Walks after one in which the sensor at `site` slipped, before its axes were identified anew."""
+    later = []
+    for recording in span[span.index(walk) + 1 :]:
+        if recording.kind is RecordingKind.FREE_MOTION and recording.holds(site):
+            break
+        later.append(recording)
+    return [recording for recording in later if recording.kind is RecordingKind.WALKING]
 
 
 def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> dict[Side, SideGait]:

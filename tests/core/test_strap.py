@@ -109,6 +109,25 @@ def test_no_stride_after_a_slip_is_used_wherever_in_its_window_it_lies(soft: Sim
     assert strides.end_s[strides.is_used].max() > at_s - 10.0
 
 
+@pytest.mark.parametrize(("between", "is_used"), [(Standing("in between"), False), (FreeMotion("in between"), True)])
+def test_a_slip_holds_until_the_next_free_motion_not_the_next_standing(
+    between: Standing | FreeMotion, is_used: bool
+) -> None:
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=32), between, Walk("walk 2"))
+    session = simulate(WalkerSettings(seed=5, recordings=recordings, tissue=Tissue.SOFT)).session
+    early, late = session.recordings[:3], session.recordings[3:]
+    site = Site.LEFT_SHANK
+    up = early[0].imu[site].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(np.deg2rad(15.0) * up / np.linalg.norm(up)).as_matrix()
+    early = slipped(replace(session, recordings=early), site, np.deg2rad(15.0)).recordings
+    late = tuple(replace(one, imu={**one.imu, site: turned(one.imu[site], turn, 0.0)}) for one in late)
+    analysis = analyse(replace(session, recordings=early + late))
+    assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == [f"{WALK}, left_shank"]
+    strides = {side: gait.strides for side, gait in analysis.recordings[-1].gait.items()}
+    assert strides[Side.LEFT].is_used.any() == is_used
+    assert strides[Side.RIGHT].is_used.any()
+
+
 def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
     session = slipped(soft.session, Site.LEFT_FOOT, np.deg2rad(25.0))
     standing, free_motion, walk = session.recordings
