@@ -175,6 +175,11 @@ SENTENCES = {
     ),
     # what the session is made of
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
+    "recording_recovered": "the program was closed while this was recorded. All is kept up to the last 0.1 s.",
+    "recording_changed": (
+        "its file is not what it was when the recording was stopped. What is proved in it was used; restore it from "
+        "a backup."
+    ),
     "strap_slipped": (
         "the strap slipped near {from_s} s, by about {turn_deg}°. Strides of this leg from 5 s before on are left out; "
         "tighten it and repeat the free motion."

@@ -30,6 +30,7 @@ from app.storage.stored import (
     StoredSession,
 )
 from core.body import Site
+from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, SensorInfo, Session
 from devices.files.session_folder import write_session
 from devices.files.session_toml import default_sensor
@@ -109,15 +110,19 @@ def stored_session(opened: OpenedLibrary, visit: StoredSession, decoders: Decode
     """
     usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     wanted = [recording for recording in visit.recordings if recording.state in usable]
-    recordings = []
+    recordings, findings = [], list(visit.told.findings)
     for number, recording in enumerate(wanted):
         report(number / len(wanted), recording.told.name)
-        recordings.append(stored_samples(opened, recording, decoders))
-    return replace(visit.told, recordings=tuple(recordings))
+        read, noticed = stored_samples(opened, recording, decoders)
+        recordings.append(read)
+        findings += noticed
+    return replace(visit.told, recordings=tuple(recordings), findings=tuple(findings))
 
 
-def stored_samples(opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders) -> Recording:
-    """A recording with the samples that its journals hold; errors as in `stored_session`."""
+def stored_samples(
+    opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders
+) -> tuple[Recording, tuple[Finding, ...]]:
+    """A recording with the samples of its journals, and what is odd about those; errors as in `stored_session`."""
     paths = [opened.recordings / journal.file for journal in recording.journals]
     for path in paths:
         if not path.exists():
@@ -130,10 +135,8 @@ def stored_samples(opened: OpenedLibrary, recording: StoredRecording, decoders: 
     placement = recording.placement.site_of if recording.placement else {}
     read = decoded.recording(recording.told, placement)
     names = _own_names(decoded)
-    return replace(
-        read,
-        imu={site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()},
-    )
+    imu = {site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()}
+    return replace(read, imu=imu), tuple(_file_findings(recording, decoded))
 
 
 def export_session(
@@ -257,6 +260,15 @@ def _unique(names: Mapping[Site, str]) -> dict[Site, str]:
 
 def _placed(session: Session, names: Mapping[Site, str]) -> dict[Site, PlacedSensor]:
     return {site: PlacedSensor(name, session.sensors.get(site, SensorInfo())) for site, name in names.items()}
+
+
+def _file_findings(recording: StoredRecording, decoded: DecodedJournal) -> Iterator[Finding]:
+    name = recording.told.name
+    if recording.state is RecordingState.RECOVERED:
+        yield Finding("recording_recovered", Severity.INFO, name)
+    found = [report.sha256 for report in decoded.reports]
+    if found != [journal.sha256 for journal in recording.journals]:
+        yield Finding("recording_changed", Severity.WARNING, name)
 
 
 def _own_names(decoded: DecodedJournal) -> dict[str, str]:

@@ -22,6 +22,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import Action, LibraryError, RecordingState
 from core.body import Joint, Site
+from core.findings import Finding, Severity
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import read_session, write_session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
@@ -352,3 +353,18 @@ def test_an_export_takes_nobodys_place(opened: OpenedLibrary, walked: Session, t
     (tmp_path / "theirs.txt").write_text("theirs")
     with pytest.raises(LibraryError, match="something in this folder"):
         export_session(opened, imported.session_id, tmp_path, {}, silent)
+
+
+def test_what_happened_to_a_recordings_file_is_told(opened: OpenedLibrary, walked: Session) -> None:
+    imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
+    visit = opened.library.sessions.get(imported.session_id)
+    assert stored_session(opened, visit, {}, silent).findings == ()
+    with (opened.recordings / visit.recordings[0].journals[0].file).open("ab") as file:
+        file.write(b"more")
+    changed = Finding("recording_changed", Severity.WARNING, "standing")
+    assert stored_session(opened, visit, {}, silent).findings == (changed,)
+    journal = visit.recordings[1].journals[0]
+    opened.library.recordings.close(visit.recordings[1].id, RecordingState.RECOVERED, {1: journal.sha256})
+    visit = opened.library.sessions.get(imported.session_id)
+    recovered = Finding("recording_recovered", Severity.INFO, "free motion")
+    assert stored_session(opened, visit, {}, silent).findings == (changed, recovered)
