@@ -143,7 +143,7 @@ SENTENCES = {
         "the published method could not pair the directions of the two axes with certainty. Its curve may be mirrored."
     ),
     "events_from_shank": (
-        "there is no foot sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
+        "the foot has no usable sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
     ),
     "doubtful_strides": (
         "strides whose landing is in doubt: {count}. The foot hardly rolled or went another way than its toes point, "
@@ -155,8 +155,8 @@ SENTENCES = {
         "then walk once more."
     ),
     "strides_all_left_out": (
-        "all strides found ({count}) were left out, most of them {reason}. Record a walk with more straight, steady "
-        "strides."
+        "all strides found ({count}) were left out, most of them {reason}, so there are no averages. Put that right "
+        "and record the walk again."
     ),
     "no_mean": (
         "usable strides on the {side}: {count}; {wanted} make a mean. Walk once more, or read single strides only."

@@ -145,7 +145,7 @@ class CycleFrame(Card):
         for side, cycle in self.chart.cycles.items():
             part = f"{side.capitalize()} {self._name.lower()}"
             if not cycle.mean.n:
-                said.append(f"{part} has no whole stride.")
+                said.append(f"{part} has no usable stride.")
                 continue
             lowest, highest = np.min(cycle.mean.mean), np.max(cycle.mean.mean)
             said.append(
@@ -165,7 +165,7 @@ class CycleFrame(Card):
             notes.append(f"No {self._name.lower()} angles.")
         empty = [LETTERS[side] for side, cycle in cycles.items() if not cycle.mean.n]
         if empty:
-            notes.append(f"{' and '.join(empty)}: no whole stride.")
+            notes.append(f"{' and '.join(empty)}: no usable stride.")
         if self.chart.is_widened:
             lowest, highest = self.chart.range_deg
             notes.append(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}.")

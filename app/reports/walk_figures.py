@@ -90,7 +90,7 @@ def strides_in_words(side: Side, gait: SideGait) -> str:
 def few_strides_in_words(recording: RecordingAnalysis) -> str:
     """What is missing for want of strides; empty where there are enough."""
     counts = {side[0].upper(): strides_used(gait) for side, gait in recording.gait.items()}
-    without_mean = [side for side, n in counts.items() if not is_mean_enough(n)]
+    without_mean = [side for side, n in counts.items() if n and not is_mean_enough(n)]
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     said = []
     if without_mean:

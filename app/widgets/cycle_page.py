@@ -29,7 +29,7 @@ from core.results import JointCalibration, RecordingAnalysis
 
 SLOWER = "Slower than the band: slower walking lowers knee peaks."
 FASTER = "Faster than the band: faster walking raises knee peaks."
-NO_SPEED = "This walk: speed not known, for it needs a foot sensor."
+NO_SPEED = "This walk: speed not known, for it needs a foot sensor and usable strides."
 
 
 class CyclePage(QWidget):

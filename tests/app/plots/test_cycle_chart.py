@@ -153,8 +153,8 @@ def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> Non
     chart = show(charts, left=cycle(0, toe_off_percent=np.nan), right=cycle(4))
     charts.set_strides_shown(True)
     chart.grab()
-    assert charts.knee.note == "L: no whole stride."
-    assert "Left knee has no whole stride." in charts.knee.in_words()
+    assert charts.knee.note == "L: no usable stride."
+    assert "Left knee has no usable stride." in charts.knee.in_words()
     assert charts.ankle.note == "No ankle angles."
 
 

@@ -150,6 +150,7 @@ def test_what_few_strides_cost_is_said_by_side(walked: Walked) -> None:
     assert few_strides_in_words(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11)) == ""
     said = few_strides_in_words(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9))
     assert said == "L: under 3 strides, so the mean is shown in grey. R: under 10 strides, so without spread."
+    assert few_strides_in_words(with_used(with_used(walk, Side.LEFT, 0), Side.RIGHT, 11)) == ""  # there is no mean
 
 
 def test_a_stride_with_a_gap_is_in_no_mean_cycle(walked: Walked) -> None:
