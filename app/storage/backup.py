@@ -34,6 +34,7 @@ FORMAT = "gaitwright-backup/1"
 LIST = "backup.json"
 NAME = "gaitwright-backup-"
 KEPT = datetime.timedelta(days=90)
+UNFINISHED_S = 86_400.0  # no copying takes so long
 OUR_FILES = re.compile(rf"{re.escape(KEYS)}|{RECORDINGS}/[0-9a-f-]{{36}}\.\d+{re.escape(SUFFIX)}")
 PIECE_BYTES = 1 << 20
 SPARE_BYTES = 100_000_000  # left free on the disk of the backups
@@ -113,6 +114,8 @@ def find_backups(into: Path) -> tuple[Backup, ...]:
 def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_utc) -> tuple[Backup, ...]:
     """Remove those that are older than ninety days, but never the latest; what was destroyed is gone with them.
 
+    What a kill left of a backup that was being made goes a day later.
+
     Raises
     ------
     OSError
@@ -122,6 +125,9 @@ def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_ut
     for backup in old:
         (backup.folder / LIST).unlink()  # first: half a backup is none
         shutil.rmtree(backup.folder)
+    for unfinished in into.glob(f".{NAME}*"):
+        if now().timestamp() - unfinished.stat().st_mtime > UNFINISHED_S:
+            shutil.rmtree(unfinished)
     return old
 
 

@@ -195,6 +195,26 @@ def test_old_backups_go_and_the_latest_never(opened: OpenedLibrary, tmp_path: Pa
     assert (into / "gaitwright-backup-of-somebody-else").exists()
 
 
+def test_what_a_kill_left_of_a_backup_goes_a_day_later(
+    opened: OpenedLibrary, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    into = tmp_path / "backups"
+
+    def killed(_share: float, _what: str) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr("shutil.rmtree", lambda *_, **__: None)
+        with pytest.raises(KeyboardInterrupt):
+            back_up(opened, into, killed)
+    assert find_backups(into) == ()
+    remove_old_backups(into)
+    (left,) = into.iterdir()
+    assert left.name.startswith(".")
+    remove_old_backups(into, lambda: datetime.datetime.now(datetime.UTC) + datetime.timedelta(2))
+    assert list(into.iterdir()) == []
+
+
 def test_a_backup_is_in_the_audit_before_it_is_made(opened: OpenedLibrary, tmp_path: Path) -> None:
     back_up(opened, tmp_path / "backups")
     noted = [entry for entry in opened.library.audit.entries() if entry.action == Action.BACKUP]
