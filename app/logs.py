@@ -134,7 +134,7 @@ def _text(record: logging.LogRecord) -> str:
 
 
 def _harmless(argument: object) -> object:
-    """The argument where it is a number, an id or one of our own fixed words; else only what kind of thing it is."""
+    """The argument where it is a number, an id, a class or a fixed word of ours; else only what kind of thing it is."""
     if isinstance(argument, Enum):
         return argument.name if _is_own(_module(type(argument).__module__)) else "(word)"
     if isinstance(argument, int):
@@ -143,6 +143,8 @@ def _harmless(argument: object) -> object:
         return float(argument)
     if isinstance(argument, UUID):
         return UUID(int=argument.int)  # plain ones: a kind derived from them may say anything
+    if isinstance(argument, type):
+        return argument.__name__ if _has_known_name(argument) else "(type)"
     return f"({type(argument).__name__})" if _has_known_name(type(argument)) else "(thing)"
 
 

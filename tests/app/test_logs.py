@@ -80,7 +80,7 @@ def plant(name: str, folder: Path) -> None:
     own.warning("%(patient)s has %(count)d walks", {"patient": name, "count": 3})
     own.warning("%d walks", name)  # a call that is wrong
     own.warning("notes: %r", [name, {name: name}])
-    own.info("state %s", Odd.NAME)
+    own.info("state %s of %s", Odd.NAME, type(name, (Exception,), {"__module__": "app.logs"}))
     other.error(f"INSERT INTO patients VALUES ({name!r})")
     logging.getLogger(name).error("something")
     logging.getLogger(f"app.{name}").error("something")
@@ -112,8 +112,10 @@ def test_of_200_planted_names_none_is_in_the_logs_and_none_in_a_report(
 
 
 def test_a_line_keeps_our_own_words_numbers_and_ids(folder: Path) -> None:
-    logging.getLogger("app.logs").warning("%s of %s: %d of %.1f, %s", Trouble.DISK_FULL, ID, 3, 2.5, "Anna")
-    assert written(folder).endswith(f"WARNING app.logs line {_line_of('Anna')}: DISK_FULL of {ID}: 3 of 2.5, (str)\n")
+    logging.getLogger("app.logs").warning("%s of %s: %d, %.1f, %s, %s", Trouble.DISK_FULL, ID, 3, 2.5, KeyError, "Anna")
+    assert written(folder).endswith(
+        f"WARNING app.logs line {_line_of('Anna')}: DISK_FULL of {ID}: 3, 2.5, KeyError, (str)\n"
+    )
 
 
 def _line_of(text: str) -> int:

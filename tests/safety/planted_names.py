@@ -99,7 +99,6 @@ def work(folder: Path) -> None:
         if number % 20 == 10:
             back_up(opened, folder / f"backups{number}")
         number += 1
-        (folder / "count").write_text(str(number))
 
 
 def silent(_share: float, _what: str) -> None:
@@ -126,7 +125,7 @@ def kill_and_search(folder: Path, count: int, seed: int) -> Search:
                 search.faults.append(f"{kill}: the child ended by itself")
             child.send_signal(signal.SIGKILL)
         search.kills += 1
-        search.names += int((place / "count").read_text()) if (place / "count").exists() else 0
+        search.names += 1 + len(list(place.glob("exports/*")))  # the operator's, and one for each session
         search_files(place, secrets, search)
         _reopen(place, search)
     return search
