@@ -22,8 +22,8 @@ SENTENCES = {
     "file_left_out": (
         "“{name}” was left out, because nothing says which site it belongs to. Name it in the map to take it in."
     ),
-    "doubled_stamps": "{count} rows repeat the time before them. The first of each was kept.",
-    "infinite_values": "{count} values are infinite. They are no measurement and count as missing.",
+    "doubled_stamps": "rows that repeat the time before them: {count}. The first of each was kept.",
+    "infinite_values": "infinite values: {count}. They are no measurement and count as missing.",
     "last_line_open": "the last line has no end, so its last value may be cut. Copy the file again if it matters.",
     "no_sites": "no sensor data. Nothing can be computed from this recording.",
     "rate_from_orientation": (
@@ -35,7 +35,7 @@ SENTENCES = {
         "free motion again."
     ),
     # what the data look like
-    "too_few_samples": "only {samples} samples. Nothing can be computed from them; record at least three seconds.",
+    "too_few_samples": "too few samples ({samples}). Nothing can be computed from them; record at least three seconds.",
     "all_zero": "every sample is zero. Check this sensor; its joints are left out.",
     "bridged": "{missing_percent:.1f} % of the samples are missing, one by one. The angles go on across them.",
     "gaps": (
@@ -43,7 +43,7 @@ SENTENCES = {
         "The angles have gaps there."
     ),
     "many_gaps": (
-        "samples are missing in {count} places, {missing_percent:.1f} % in all, the longest {longest_s:.2f} s. "
+        "samples are missing ({missing_percent:.1f} % in all; gaps: {count}, the longest {longest_s:.2f} s). "
         "Too few are left to rely on; record again, nearer to the receiver."
     ),
     "acc_in_g": (
@@ -66,7 +66,7 @@ SENTENCES = {
         "sensors, then record again."
     ),
     "impossible_values": (
-        "{count} samples are larger than any sensor measures and count as missing. Check the sensor and its file."
+        "samples larger than any sensor measures: {count}. They count as missing; check the sensor and its file."
     ),
     "stuck": (
         "the sensor repeated the same values for {percent:.1f} % of the time; they count as missing. Restart it before "
