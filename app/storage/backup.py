@@ -27,7 +27,7 @@ from app.storage.database.models import AuditRow, JournalRow
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
 from app.storage.library import FILE_NAME, Library, now_utc
-from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, made_beside
+from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, Report, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
 
 FORMAT = "gaitwright-backup/1"
@@ -39,9 +39,6 @@ OUR_FILES = re.compile(rf"{re.escape(KEYS)}|{RECORDINGS}/[0-9a-f-]{{36}}\.\d+{re
 PIECE_BYTES = 1 << 20
 SPARE_BYTES = 100_000_000  # left free on the disk of the backups
 PAGES = 256  # of the database, copied between two reports
-
-Report = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done. What it raises ends the work, and nothing is left."""
 
 
 def silent(_share: float, _what: str) -> None:

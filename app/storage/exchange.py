@@ -17,7 +17,7 @@ from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
 from app.storage.journal.header import RESTORE, JournalRefusedError
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
-from app.storage.opened import OpenedLibrary
+from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms
 from app.storage.stored import (
     Action,
@@ -39,9 +39,6 @@ from devices.source import SourceInfo
 DRIVER, VERSION = "session-folder", "1"
 OWN_NAME = "sensor"  # the setting that holds what the folder calls the sensor
 PIECE_ROWS = 10_000  # so that a long recording is not held a second time
-
-Report = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ import os
 import shutil
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -25,6 +25,9 @@ from app.storage.stored import LibraryError, Operator
 KEYS = "keys.json"
 RECORDINGS = "recordings"
 IN_USE = "in-use"
+
+Report = Callable[[float, str], None]
+"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
 
 
 @dataclass(frozen=True, slots=True)

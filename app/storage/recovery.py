@@ -7,7 +7,7 @@ another program is recording is open, too.
 """
 
 import datetime
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from uuid import UUID
@@ -16,15 +16,12 @@ from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedErro
 from app.storage.journal.payloads import SourceEntry
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
-from app.storage.opened import OpenedLibrary
+from app.storage.opened import OpenedLibrary, Report
 from app.storage.stored import RecordingState, StoredJournal, StoredRecording
 from core.samples import Recording
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
 EVERY_BYTES = 1 << 22  # between two reports
-
-Report = Callable[[float, str], None]
-"""Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
 
 
 @dataclass(frozen=True, slots=True)
