@@ -110,7 +110,7 @@ def read_time_distance(text: str) -> tuple[ReferenceValues, ...]:
     return tuple(
         ReferenceValues(
             source=SOURCE.format(derivation="github antsal06/openacl"),
-            group="24 young and 18 older adults, barefoot, overground",
+            group="42 adults, 24 young and 18 older, barefoot, overground",
             speed_class=speed_class,
             n=n,
             values={

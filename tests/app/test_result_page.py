@@ -200,7 +200,7 @@ def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage) ->
     told = page.cycles.peaks_note.text
     for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 0.9"):
         assert part in told
-    assert "34 of 24 young and 18 older adults" in page.cycles.time_distance.note.text()
+    assert "34 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
 
 
 def test_a_speed_unlike_the_bands_is_pointed_out(page: ResultPage, analysis: Analysis) -> None:
