@@ -161,6 +161,10 @@ SENTENCES = {
     "no_mean": (
         "usable strides on the {side}: {count}; {wanted} make a mean. Walk once more, or read single strides only."
     ),
+    "angle_without_mean": (
+        "strides used: {used}, of them without gaps in this angle: {count}; {wanted} make a mean. Record again, nearer "
+        "to the receiver."
+    ),
     "no_spread": (
         "only {left} left and {right} right strides, {wanted} make a spread. Walk once more, or go on without a spread."
     ),

@@ -26,6 +26,7 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
     findings: list[Finding] = []
     for side, gait in walk.gait.items():
         findings += _about_events(f"{walk.name}, {sites[side]}", gait)
+        findings += _about_gaps(walk.name, gait)
         findings += _about_peaks(walk.name, gait)
     return [*findings, *_about_counts(walk)]
 
@@ -61,6 +62,16 @@ def _about_counts(walk: RecordingAnalysis) -> Iterator[Finding]:
 
 def _count(key: str, severity: Severity, walk: RecordingAnalysis, side: Side, count: int, wanted: int) -> Finding:
     return Finding(key, severity, walk.name, {"side": str(side), "count": count, "wanted": wanted})
+
+
+def _about_gaps(walk: str, gait: SideGait) -> Iterator[Finding]:
+    """Angles with gaps in so many of the strides used that the others make no mean."""
+    used = int(np.count_nonzero(gait.strides.is_used))
+    for joint, cycles in gait.cycles.items():
+        whole = int(np.count_nonzero(gait.strides.is_used & np.isfinite(cycles).all(axis=1)))
+        if whole < min(used, MIN_STRIDES_FOR_MEAN):
+            numbers = {"count": whole, "used": used, "wanted": MIN_STRIDES_FOR_MEAN}
+            yield Finding("angle_without_mean", Severity.WARNING, f"{walk}, {joint}", numbers)
 
 
 def _about_peaks(walk: str, gait: SideGait) -> Iterator[Finding]:

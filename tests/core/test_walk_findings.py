@@ -82,6 +82,17 @@ def test_a_peak_that_no_stride_has_is_named_unless_the_sign_is_in_doubt(walk: Re
     assert told(walk, replace(passing, sign_in_doubt=frozenset({Joint.LEFT_ANKLE})), right) == []
 
 
+@pytest.mark.parametrize(("whole", "is_told"), [(0, True), (2, True), (3, False)])
+def test_an_angle_with_gaps_in_nearly_every_stride_is_named(walk: RecordingAnalysis, whole: int, is_told: bool) -> None:
+    left, right = (with_used(walk.gait[side], 10) for side in Side)
+    cycles = left.cycles[Joint.LEFT_KNEE].copy()
+    cycles[whole:] = np.nan
+    findings = told(walk, replace(left, cycles={**left.cycles, Joint.LEFT_KNEE: cycles}), right)
+    numbers = {"count": whole, "used": 10, "wanted": 3}
+    expected = [Finding("angle_without_mean", Severity.WARNING, "walk 1, left_knee", numbers)] if is_told else []
+    assert findings == expected
+
+
 def test_standing_through_a_walk_is_no_walk() -> None:
     stood = simulate(WalkerSettings(seed=4, recordings=(Standing(), Standing("walk 1", duration_s=6.0)))).session
     walked = replace(stood, recordings=(stood.recordings[0], replace(stood.recordings[1], kind=RecordingKind.WALKING)))
