@@ -1,5 +1,6 @@
 """A library on the disk with somebody logged in, and recordings in it."""
 
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from uuid import UUID
@@ -26,14 +27,24 @@ ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 Record = Callable[..., StoredRecording]
 
 
-@pytest.fixture
-def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
-    """A new library whose one operator is `hk`."""
-    folder = tmp_path / "library"
-    folder.mkdir(mode=0o700)
+@pytest.fixture(scope="session")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
+    """A new library whose one operator is `hk`, closed: made once, because that takes longer than most tests."""
+    folder = tmp_path_factory.mktemp("untouched")
     data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
     library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
-    with OpenedLibrary(library, folder, data_key) as opened:
+    library.close()
+    return OpenedLibrary(library, folder, data_key)
+
+
+@pytest.fixture
+def opened(untouched: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
+    """A new library, with `hk` logged in."""
+    folder = tmp_path / "library"
+    shutil.copytree(untouched.folder, folder)
+    library = Library.open(folder, untouched.data_key)
+    library.log_in("hk")
+    with OpenedLibrary(library, folder, untouched.data_key) as opened:
         yield opened
 
 
