@@ -105,11 +105,11 @@ def read_library_session(wanted: argparse.Namespace, session: LibrarySession, re
     FileRefusedError
         The library does not open, there is no such session, or a recording cannot be read.
     """
-    from app.storage.exchange import stored_session
+    from app.storage.exchange import session_with_samples
 
     with opened_library(wanted) as opened:
         visit = opened.library.sessions.view(session.id)
-        read = stored_session(opened, visit, DECODERS, report)
+        read = session_with_samples(opened, visit, DECODERS, report)
     if not read.recordings:
         raise FileRefusedError(str(session), "this session has no recording", "Choose another session")
     return read

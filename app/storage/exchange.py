@@ -91,7 +91,7 @@ def import_session(
     return Imported(visit.id, library.patients.get(patient.id), differing)
 
 
-def stored_session(opened: OpenedLibrary, visit: StoredSession, decoders: Decoders, report: Report) -> Session:
+def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: Decoders, report: Report) -> Session:
     """A session of the library with its samples, as `read_session` would give it.
 
     A recording whose keys were destroyed, or that is being made now, is not in it.
@@ -110,16 +110,16 @@ def stored_session(opened: OpenedLibrary, visit: StoredSession, decoders: Decode
     recordings, findings = [], list(visit.told.findings)
     for number, recording in enumerate(wanted):
         report(number / len(wanted), recording.told.name)
-        read, noticed = stored_samples(opened, recording, decoders)
+        read, noticed = recording_with_samples(opened, recording, decoders)
         recordings.append(read)
         findings += noticed
     return replace(visit.told, recordings=tuple(recordings), findings=tuple(findings))
 
 
-def stored_samples(
+def recording_with_samples(
     opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders
 ) -> tuple[Recording, tuple[Finding, ...]]:
-    """A recording with the samples of its journals, and what is odd about those; errors as in `stored_session`."""
+    """A recording with the samples of its journals, and what is odd about those; errors as in `session_with_samples`."""
     paths = [opened.recordings / journal.file for journal in recording.journals]
     for path in paths:
         if not path.exists():
@@ -152,14 +152,14 @@ def export_session(
     LibraryError
         There is something in `folder`, there is no such session, or the export cannot be noted.
     JournalRefusedError, OSError
-        As in `stored_session`, or the folder cannot be written.
+        As in `session_with_samples`, or the folder cannot be written.
     """
     if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
         raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
     visit = opened.library.sessions.get(session_id)
     subject = about("session", session_id)
     opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified)
-    session = stored_session(opened, visit, decoders, report)
+    session = session_with_samples(opened, visit, decoders, report)
     if not is_identified:
         session = Pseudonyms(opened.data_key).session(visit.patient_id, session)
     report(1.0, "writing")

@@ -23,7 +23,7 @@ import numpy as np
 
 from app.logs import start_logging
 from app.storage.backup import back_up
-from app.storage.exchange import export_session, import_session, stored_session
+from app.storage.exchange import export_session, import_session, session_with_samples
 from app.storage.journal.disk import Room
 from app.storage.opened import create_library, open_library
 from app.storage.recovery import find_interrupted, recover
@@ -152,7 +152,7 @@ def _reopen(place: Path, search: Search) -> None:
         faults = [*opened.library.faults(), *opened.library.audit.verify().faults]
         for line in opened.library.sessions.list():
             visit = opened.library.sessions.get(line.id)
-            read = stored_session(opened, visit, {}, silent)
+            read = session_with_samples(opened, visit, {}, silent)
             if read.recordings and STEM not in read.recordings[0].name:
                 faults.append(f"session {line.id} lost its names")
         search.faults += [f"{place.name}: {fault}" for fault in faults]

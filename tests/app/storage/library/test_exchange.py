@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from app.storage.audit import about
-from app.storage.exchange import export_session, import_session, stored_session
+from app.storage.exchange import export_session, import_session, session_with_samples
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
@@ -63,7 +63,7 @@ def assert_same(one: Session, other: Session) -> None:
 
 def in_and_out(opened: OpenedLibrary, session: Session) -> Session:
     imported = import_session(opened, session, silent, room=ANY_ROOM)
-    return stored_session(opened, opened.library.sessions.get(imported.session_id), {}, silent)
+    return session_with_samples(opened, opened.library.sessions.get(imported.session_id), {}, silent)
 
 
 @pytest.fixture(scope="module")
@@ -365,13 +365,13 @@ def test_an_export_takes_nobodys_place(opened: OpenedLibrary, walked: Session, t
 def test_what_happened_to_a_recordings_file_is_told(opened: OpenedLibrary, walked: Session) -> None:
     imported = import_session(opened, small(walked), silent, room=ANY_ROOM)
     visit = opened.library.sessions.get(imported.session_id)
-    assert stored_session(opened, visit, {}, silent).findings == ()
+    assert session_with_samples(opened, visit, {}, silent).findings == ()
     with (opened.recordings / visit.recordings[0].journals[0].file).open("ab") as file:
         file.write(b"more")
     changed = Finding("recording_changed", Severity.WARNING, "standing")
-    assert stored_session(opened, visit, {}, silent).findings == (changed,)
+    assert session_with_samples(opened, visit, {}, silent).findings == (changed,)
     journal = visit.recordings[1].journals[0]
     opened.library.recordings.close(visit.recordings[1].id, RecordingState.RECOVERED, {1: journal.sha256})
     visit = opened.library.sessions.get(imported.session_id)
     recovered = Finding("recording_recovered", Severity.INFO, "free motion")
-    assert stored_session(opened, visit, {}, silent).findings == (changed, recovered)
+    assert session_with_samples(opened, visit, {}, silent).findings == (changed, recovered)
