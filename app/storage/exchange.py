@@ -119,7 +119,7 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
 def recording_with_samples(
     opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders
 ) -> tuple[Recording, tuple[Finding, ...]]:
-    """A recording with the samples of its journals, and what is odd about those; errors as in `session_with_samples`."""
+    """A recording with its samples, and what is odd about their files; errors as in `session_with_samples`."""
     paths = [opened.recordings / journal.file for journal in recording.journals]
     for path in paths:
         if not path.exists():
