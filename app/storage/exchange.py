@@ -55,7 +55,7 @@ def import_session(
 ) -> Imported:
     """Take a session, as `read_session` gives it, into the library: to the patient of this code, or to a new one.
 
-    What is raised on the way leaves the session deleted, not half imported.
+    What is raised on the way leaves the session deleted, not half imported; a new patient stays.
 
     Parameters
     ----------
@@ -169,10 +169,8 @@ def export_session(
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:
     known = _unique({site: default_sensor(session, site) for site in session.sensors})
     worn = _placed(session, known)
-    if worn:
-        opened.library.sessions.place(
-            session_id, worn
-        )  # a site that no recording has keeps what is known of its sensor
+    if worn:  # a site that no recording has keeps what is known of its sensor
+        opened.library.sessions.place(session_id, worn)
     for number, recording in enumerate(session.recordings):
         names = _unique({site: recording.imu[site].sensor for site in recording.imu})
         elsewhere = {site: name for site, name in known.items() if name not in names.values()}
