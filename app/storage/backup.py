@@ -4,6 +4,8 @@ A backup is a folder with the database, the journals and the keys' file as the l
 there, and a list of their hashes. It is made while the library is in use. Only when everything was read back and
 checked does the folder get its name; whatever happens before leaves nothing.
 
+A clinic's own server is backed up with its own tools; this is for the library in a folder.
+
 What is destroyed in the library stays in the backups that were made before, until they are ninety days old.
 """
 
