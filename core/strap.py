@@ -15,7 +15,7 @@ from core.calibration.joint_axis import loss_and_weights, residuals
 from core.datasets import Datasets, gather
 from core.measure import pairs_of
 from core.pair import Pair
-from core.results import JointCalibration
+from core.results import JointCalibration, Method
 from core.robust import robust_sd
 from core.rotations import joint_frame
 from core.samples import FloatArray, IntArray, Recording
@@ -119,16 +119,22 @@ def _about_vertical(
     return turn
 
 
-def slips(turns: Mapping[Joint, Turns]) -> list[Slip]:
+def slips(turns: Mapping[Joint, Turns], since_calibration_rad: float = MIN_SLIP_SINCE_CALIBRATION_RAD) -> list[Slip]:
     """Which straps slipped in the walking that `turns` tell of, and when; the first slip of each side.
 
     A shank's sensor that turns shows in its knee and, the other way round, in its ankle; a thigh's in the knee alone, a
     foot's in the ankle alone.
+
+    Parameters
+    ----------
+    since_calibration_rad
+        A greater turn at the very beginning is a slip before it; infinite where the axes are not to be trusted so far.
     """
     found = []
     for side in Side:
         mine = [turns.get(joint) for joint in (knee_of(side), ankle_of(side))]
-        starts = [start for one in mine if one is not None and (start := _start_of_jump(one)) is not None]
+        jumps = [_start_of_jump(one, since_calibration_rad) for one in mine if one is not None]
+        starts = [start for start in jumps if start is not None]
         if starts:
             found.append(_named(side, min(starts), mine))
     return found
@@ -165,18 +171,20 @@ def slips_in_walks(
         if parts:
             turns[joint] = Turns(*(np.concatenate([getattr(p, name) for p in parts]) for name in Turns.__slots__))
     located = []
-    for slip in slips(turns):
+    # axes as published lie tens of degrees off in some walks, which is no slip
+    is_published = any(found.method is Method.PUBLISHED for found in calibration.values())
+    for slip in slips(turns, np.inf if is_published else MIN_SLIP_SINCE_CALIBRATION_RAD):
         k = int(np.searchsorted(starts_s[1:-1], slip.from_s, side="right"))
         from_s = slip.from_s - starts_s[k] + tracks.span_of(walks[k])[0]
         located.append((walks[k], replace(slip, from_s=from_s)))
     return located
 
 
-def _start_of_jump(turns: Turns) -> float | None:
+def _start_of_jump(turns: Turns, since_calibration_rad: float) -> float | None:
     """When a joint's turn leaves what was usual before; None where it does not."""
     turn = turns.turn_rad
     for k in range(len(turn) - WINDOWS_OF_SLIP + 1):
-        limit, before = MIN_SLIP_SINCE_CALIBRATION_RAD, turn[:k]
+        limit, before = since_calibration_rad, turn[:k]
         if k >= MIN_USUAL_WINDOWS:
             scatter = robust_sd(before - np.median(before))
             limit = SIGMAS * max(scatter, SCATTER_RAD if k >= WELL_KNOWN_WINDOWS else FEW_SCATTER_RAD)

@@ -10,6 +10,7 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.gait.strides import Reason
 from core.measure import pairs_of
+from core.results import Method
 from core.samples import ImuBlock, RateKind, Session
 from core.sensors import SensorTracks
 from core.strap import Slip, Turns, slips, turns_over
@@ -84,6 +85,20 @@ def test_two_windows_far_from_the_calibration_are_a_slip_before_the_walk() -> No
     (slip,) = slips({Joint.RIGHT_KNEE: turns})
     assert slip.from_s == 0.0
     assert slip.site is Site.RIGHT_THIGH
+
+
+def test_axes_that_were_never_right_are_no_slip() -> None:
+    """Seed 11's left ankle is 15 deg off with the axes as published; the robust ones say that nothing slipped."""
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14))
+    session = simulate(WalkerSettings(seed=11, recordings=recordings, tissue=Tissue.REAL)).session
+    found = analyse(session, method=Method.PUBLISHED)
+    assert "strap_slipped" not in {one.key for one in found.findings}
+    assert all(gait.strides.is_used.any() for gait in found.recordings[-1].gait.values())
+
+
+def test_a_slip_is_named_with_the_axes_as_published_too(soft: SimulatedSession) -> None:
+    found = analyse(slipped(soft.session, Site.RIGHT_SHANK, np.deg2rad(20.0)), method=Method.PUBLISHED)
+    assert [one.where for one in found.findings if one.key == "strap_slipped"] == [f"{WALK}, right_shank"]
 
 
 def test_an_analysis_names_the_slip_and_leaves_out_the_strides_after_it(soft: SimulatedSession) -> None:
