@@ -1,1 +1,1 @@
-"""What the program brings along: fonts and pictures, each with its licence. No code."""
+"""What the program brings along: fonts, pictures and reference bands, each with its licence or source. No code."""
