@@ -380,9 +380,15 @@ def _angles(
     time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
         offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
-        in_doubt = frozenset(j for j in joints if not calibrated[bases[recording.name, j]].is_sign_certain)
+        known = {joint: calibrated[bases[recording.name, joint]] for joint in joints}
+        in_doubt = frozenset(joint for joint, found in known.items() if not found.is_sign_certain)
+        without_zero = frozenset(joint for joint, found in known.items() if found.zero is ZeroKind.NONE)
         gait = {
-            side: replace(found, sign_in_doubt=in_doubt & set(found.cycles))
+            side: replace(
+                found,
+                sign_in_doubt=in_doubt & set(found.cycles),
+                without_zero=without_zero & set(found.cycles),
+            )
             for side, found in gait_in(tracks, recording, time_s, joints, offsets).items()
         }
     return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)

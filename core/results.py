@@ -109,6 +109,8 @@ class SideGait:
     sign_in_doubt
         Joints whose clinical sign is only the likelier one: their curves may be mirrored, so ranges and spreads hold
         and no angle does.
+    without_zero
+        Joints whose zero is not known: their curves hold in range and shape, and no angle does.
     """
 
     events: tuple[FootEvents, ...]
@@ -117,6 +119,7 @@ class SideGait:
     cycles: Mapping[Joint, FloatArray]
     phase: IntArray
     sign_in_doubt: frozenset[Joint] = frozenset()
+    without_zero: frozenset[Joint] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)

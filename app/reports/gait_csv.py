@@ -1,7 +1,7 @@
 """Which strides stand behind the averages? Events, strides and mean cycles of one recording, as three tables.
 
-A joint whose clinical sign is in doubt may be mirrored: of it they hold the range and the spread, which are the same
-either way, and leave the angles empty.
+A joint whose clinical sign is in doubt may be mirrored, one without a zero stands at no height: of them the strides
+hold the ranges, which are the same either way, and no angle. The mean cycle of a joint without zero shows its shape.
 """
 
 import math
@@ -74,10 +74,9 @@ def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
 
 
 def parameter(gait: SideGait, name: str) -> FloatArray:
-    """One column of strides.csv (k,), angles in degrees; NaN where there is no angle, or one that may be mirrored."""
+    """One column of strides.csv (k,), angles in degrees; NaN where there is no angle, or one that does not hold."""
     values = gait.parameters.get(name.removesuffix("_deg") + "_rad" if name.endswith("_deg") else name)
-    is_mirrored = not name.endswith("_range_deg") and any(name.startswith(_kind(j)) for j in gait.sign_in_doubt)
-    if values is None or is_mirrored:
+    if values is None or not _holds(gait, name):
         return np.full(len(gait.strides), np.nan)
     return np.rad2deg(values) if name.endswith("_deg") else values
 
@@ -91,6 +90,14 @@ def mean_of_used(gait: SideGait, joint: Joint) -> MeanCycle:
     """The joint's mean over the strides used, radians, NaN where it may be mirrored; and its spread."""
     found = mean_cycle(used_cycles(gait, joint)) if joint in gait.cycles else mean_cycle(np.empty((0, POINTS)))
     return replace(found, mean=np.full(POINTS, np.nan)) if joint in gait.sign_in_doubt else found
+
+
+def _holds(gait: SideGait, name: str) -> bool:
+    """Whether a column says something true: when a joint peaks needs no zero, how far it bends no sign either."""
+    if name.endswith("_range_deg"):
+        return True
+    doubted = gait.sign_in_doubt | gait.without_zero if name.endswith("_deg") else gait.sign_in_doubt
+    return not any(name.startswith(_kind(joint)) for joint in doubted)
 
 
 def _kind(joint: Joint) -> str:

@@ -37,7 +37,6 @@ SYMMETRIC = (
     "stance_percent",
     "swing_percent",
     "stride_length_m",
-    "clearance_m",
     "knee_range_deg",
     "ankle_range_deg",
 )

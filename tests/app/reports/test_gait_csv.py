@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.reports.gait_csv import PARAMETERS, events_of, write_gait
+from app.reports.gait_csv import PARAMETERS, events_of, mean_of_used, parameter, write_gait
 from app.reports.reference_bands import reference_curves
 from app.reports.summary import summarise
 from app.reports.walk_figures import both_sides
@@ -15,7 +15,7 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.calibration import clinical_sign
 from core.results import Analysis
-from devices.walker import SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 
 
 @pytest.fixture(scope="module")
@@ -212,3 +212,16 @@ def test_a_difference_between_the_sides_is_weighed_against_the_measurement_error
     # without a zero a range is all that can be compared
     assert both["side_difference"]["knee_swing_peak_deg"] is both["curve_difference_deg"]["knee"] is None
     assert both["side_difference"]["knee_range_deg"]["verdict"] == "exceeds_error"
+
+
+def test_without_standing_a_joint_has_ranges_and_no_angles() -> None:
+    recordings = (FreeMotion(), Walk(strides=8))
+    walk = analyse(simulate(WalkerSettings(seed=2, recordings=recordings)).session).recordings[-1]
+    for gait in walk.gait.values():
+        used = gait.strides.is_used
+        for name in ("knee_range_deg", "ankle_range_deg", "knee_swing_peak_percent", "stride_length_m"):
+            assert np.isfinite(parameter(gait, name)[used]).all(), name
+        for name in ("knee_swing_peak_deg", "knee_at_initial_contact_deg", "ankle_stance_dorsiflexion_deg"):
+            assert np.isnan(parameter(gait, name)).all(), name
+        for joint in gait.cycles:
+            assert np.isfinite(mean_of_used(gait, joint).mean).all(), joint
