@@ -149,6 +149,9 @@ SENTENCES = {
         "strides whose landing is in doubt: {count}. The foot hardly rolled or went another way than its toes point, "
         "so averages leave them out."
     ),
+    "prosthetic_toe_off": (
+        "toe-off of a prosthetic foot is found about 30 ms late. Its stance reads 2 to 3 % of a stride too long."
+    ),
     "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
     "side_without_strides": (
         "no whole stride was found, though the other side has some. Check that the sensor sits where it is said to, "

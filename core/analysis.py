@@ -37,7 +37,7 @@ from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.strap import slips_in_walks
 from core.validity import Basis, basis_of, spans_of_validity
-from core.walk_findings import about_walk
+from core.walk_findings import about_prosthesis, about_walk
 from core.walking import gait_in, site_of_events
 
 Progress = Callable[[float, str], None]
@@ -112,6 +112,7 @@ def analyse(
             findings += about_angles(found)
             findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
     findings += about_missing_joints(session, quality.unusable, recordings)
+    findings += about_prosthesis(recordings, session.patient)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
     return Analysis(
         method=method,

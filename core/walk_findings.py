@@ -1,16 +1,17 @@
 """What is worth telling about the strides of a walk? Those that are missing, too few or in doubt, and missing peaks."""
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
-from core.body import Side, Site
+from core.body import Segment, Side, Site
 from core.findings import Finding, Severity
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import RecordingAnalysis, SideGait
+from core.samples import Patient
 
 
 def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> list[Finding]:
@@ -29,6 +30,14 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
         findings += _about_gaps(walk.name, gait)
         findings += _about_peaks(walk.name, gait)
     return [*findings, *_about_counts(walk)]
+
+
+def about_prosthesis(recordings: Iterable[RecordingAnalysis], patient: Patient) -> list[Finding]:
+    """A prosthetic foot rolls on where a heel would rise, so its toe-off is found late, alike in every stride."""
+    sides = {Side.LEFT, Side.RIGHT} if patient.prosthetic_side == "both" else {patient.prosthetic_side}
+    walked = {side for recording in recordings for side, gait in recording.gait.items() if len(gait.strides)}
+    worn = [side for side in Side if side in sides & walked]
+    return [Finding("prosthetic_toe_off", Severity.INFO, f"{side}_{Segment.FOOT}") for side in worn]
 
 
 def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:

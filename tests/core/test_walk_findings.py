@@ -11,8 +11,8 @@ from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason, Strides, strides_of
 from core.results import RecordingAnalysis, SideGait
-from core.samples import RecordingKind
-from core.walk_findings import about_walk
+from core.samples import Patient, RecordingKind
+from core.walk_findings import about_prosthesis, about_walk
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 FEET: Mapping[Side, Site | None] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
@@ -97,3 +97,15 @@ def test_standing_through_a_walk_is_no_walk() -> None:
     stood = simulate(WalkerSettings(seed=4, recordings=(Standing(), Standing("walk 1", duration_s=6.0)))).session
     walked = replace(stood, recordings=(stood.recordings[0], replace(stood.recordings[1], kind=RecordingKind.WALKING)))
     assert "no_strides" in {finding.key for finding in analyse(walked).findings}
+
+
+@pytest.mark.parametrize(
+    ("side", "where"),
+    [("right", ["right_foot"]), ("both", ["left_foot", "right_foot"]), ("none", []), ("", [])],
+)
+def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(
+    walk: RecordingAnalysis, side: str, where: list[str]
+) -> None:
+    found = about_prosthesis([walk], Patient(prosthetic_side=side))
+    assert [(one.key, one.where) for one in found] == [("prosthetic_toe_off", place) for place in where]
+    assert about_prosthesis([replace(walk, gait={})], Patient(prosthetic_side=side)) == []
