@@ -154,9 +154,9 @@ def restore(backup: Path, folder: Path, data_key: bytes | None, code: str, repor
         _copy(backup / FILE_NAME, beside / FILE_NAME, work)
         _copy_files(backup, beside, hashes, work)
         faults = _check(beside, data_key, told.checkpoint, hashes, work)
-    with Library.open(folder, data_key) as library:
-        library.log_in(code)
-        library.audit.note(Action.BACKUP, "library", is_restored=True)
+        with Library.open(beside, data_key) as library:  # who may not work there restores nothing
+            library.log_in(code)
+            library.audit.note(Action.BACKUP, "library", is_restored=True)
     return faults
 
 

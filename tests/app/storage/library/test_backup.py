@@ -148,7 +148,7 @@ def test_a_backup_that_was_damaged_since_is_not_restored(
     assert not (tmp_path / "restored").exists()
 
 
-def test_nothing_is_restored_over_a_library_nor_with_another_key(
+def test_nothing_is_restored_over_a_library_nor_with_another_key_nor_by_a_stranger(
     opened: OpenedLibrary, record: Record, tmp_path: Path
 ) -> None:
     record("walk 1")
@@ -159,6 +159,8 @@ def test_nothing_is_restored_over_a_library_nor_with_another_key(
     assert {path: path.stat().st_mtime_ns for path in opened.recordings.iterdir()} == before
     with pytest.raises(LibraryError, match="does not open with this key"):
         restore(folder, tmp_path / "restored", bytes(32), "hk")
+    with pytest.raises(LibraryError, match="does not work here"):
+        restore(folder, tmp_path / "restored", opened.data_key, "somebody")
     assert not (tmp_path / "restored").exists()
 
 
