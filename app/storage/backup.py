@@ -319,7 +319,7 @@ def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
     """
     try:
         told = json.loads((folder / LIST).read_bytes())
-        if told["format"] != FORMAT:
+        if told["format"] != FORMAT or KEYS not in told["files"]:
             raise ValueError(told["format"])
         hashes = {name: str(sha256) for name, sha256 in told["files"].items() if OUR_FILES.fullmatch(name)}
         made_at, checkpoint = datetime.datetime.fromisoformat(told["made_at"]), Checkpoint.parsed(told["checkpoint"])

@@ -172,6 +172,10 @@ def test_a_list_cannot_lead_out_of_its_backup(opened: OpenedLibrary, tmp_path: P
     (folder / LIST).write_text(json.dumps(told))
     assert restore(folder, tmp_path / "restored", opened.data_key, "hk") == ()
     assert not (tmp_path / "restored" / "elsewhere").exists()
+    del told["files"][KEYS]
+    (folder / LIST).write_text(json.dumps(told))
+    with pytest.raises(LibraryError, match="not a backup"):
+        restore(folder, tmp_path / "again", opened.data_key, "hk")
 
 
 def test_a_backup_stands_outside_of_its_library_and_needs_room(
