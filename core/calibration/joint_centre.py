@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.calibration.certainty import sandwich_covariance, time_blocks
 from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, fit_coincidence, relative_rotation
 from core.datasets import Datasets
 from core.pair import lever_matrix
@@ -19,6 +20,9 @@ NORM_STEPS = 10
 # the standard deviation (240 simulated joints, stopped at random times as in tests/benchmarks/excitation.py).
 IN_STEP_M = 0.0004
 SD_FACTOR_HUMAN = 2.5
+# What the residuals themselves show, hanging together over a second, counts beside it: walking, which adds much motion
+# and little about the centre, is not believed more than its residuals allow.
+SEEN_SHARE = (6.0 / 2.5) ** 2
 SD_FACTOR_HINGE = 8.0  # scale errors, and what noise in the angular accelerations pretends to know of a still segment
 MIN_SD_HINGE_M = 0.002
 MIN_SD_HUMAN_M = 0.010
@@ -90,7 +94,9 @@ def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
             break
     effort = float(weight @ (np.sum(data.dg1**2, axis=1) + np.sum(data.dg2**2, axis=1)))
     shared = 1 + IN_STEP_M**2 * effort
-    return JointCentre(x, np.linalg.inv((information - prior) / shared + prior))
+    unseen = np.linalg.inv((information - prior) / shared + prior)
+    seen = sandwich_covariance(slope[:, None, :], error[:, None], weight[:, None], time_blocks(data))
+    return JointCentre(x, unseen + SEEN_SHARE * seen)
 
 
 def centre_sd_m(
