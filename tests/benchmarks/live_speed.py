@@ -116,20 +116,18 @@ def memory_kib() -> int:
         return int(file.read().split()[1]) * resource.getpagesize() // 1024
 
 
-def long_stream(hours: float) -> list[tuple[float, int]]:
+def long_stream(hours: float) -> Iterator[tuple[float, int]]:
     """Hours of walking as fast as it goes: stream time (h) and memory held (KiB), about twenty times on the way."""
     session = make_session()
     walking = Walking(sensors_of(session), analyse(session).calibrations[-1].joints)
     blocks = in_blocks(session.recordings[2].imu)
     length_s = len(blocks) * BLOCK_S
     rounds = max(2, round(hours * 3600 / length_s))
-    held = []
     for k in range(rounds):
         for block in later(blocks, k * length_s):
             walking.update(block)
         if k == 0 or k % max(1, rounds // 20) == 0 or k == rounds - 1:
-            held.append(((k + 1) * length_s / 3600, memory_kib()))
-    return held
+            yield (k + 1) * length_s / 3600, memory_kib()
 
 
 def main() -> None:
