@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import Connection, Engine, QueuePool, create_engine, event, text
+from sqlalchemy import Connection, Engine, QueuePool, create_engine, event, make_url, text
 from sqlalchemy.exc import DBAPIError, IntegrityError
 from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.exc import StaleDataError
@@ -129,10 +129,15 @@ def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> E
 
 
 def postgres_engine(url: str, try_s: float = TRY_S) -> Engine:
-    """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`."""
-    engine = create_engine(
-        url, hide_parameters=True, pool_pre_ping=True, connect_args={"connect_timeout": max(2, round(try_s))}
-    )
+    """An engine on a clinic's own server; `url` as SQLAlchemy writes it, `postgresql+psycopg://...`.
+
+    A server reached over the network has to prove who it is, unless the URL says otherwise.
+    """
+    arguments: dict[str, object] = {"connect_timeout": max(2, round(try_s))}
+    asked = make_url(url)
+    if asked.host and "sslmode" not in asked.query:
+        arguments["sslmode"] = "verify-full"
+    engine = create_engine(asked, hide_parameters=True, pool_pre_ping=True, connect_args=arguments)
 
     def begin(connection: Connection) -> None:
         if connection.get_execution_options().get("takes_write_lock"):
@@ -196,8 +201,7 @@ def _told() -> Iterator[None]:
         raise changed_meanwhile() from None
     except (DBAPIError, sqlite.Error) as error:
         cause = error.orig if isinstance(error, DBAPIError) else error
-        reason = getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None)
-        _log.warning("the database refused: %s %s", type(cause).__name__, reason)
+        _log.warning("the database refused: %s (%s)", type(cause), getattr(cause, "sqlite_errorcode", None))
         raise _sentence(error) from None
 
 

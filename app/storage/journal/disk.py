@@ -5,6 +5,7 @@ import os
 import shutil
 from dataclasses import dataclass
 from enum import StrEnum
+from errno import EEXIST
 from pathlib import Path
 
 from app.storage.files import replace_file
@@ -94,9 +95,17 @@ ROOM = Room()
 
 
 class JournalFile:
-    """A journal's file: made whole with its header, then only appended to; `sha256` of all that was."""
+    """A journal's file: made whole with its header, then only appended to; `sha256` of all that was.
+
+    Raises
+    ------
+    FileExistsError
+        Another program has begun the same segment.
+    """
 
     def __init__(self, path: Path, header: bytes) -> None:
+        if path.exists():
+            raise FileExistsError(EEXIST, "another program writes this segment", str(path))
         replace_file(path, header)  # so a journal that exists has its header, and a name that lasts
         self._folder = path.parent
         self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0))

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 import sqlcipher3.dbapi2 as sqlite
-from sqlalchemy import Engine, select, text
+from sqlalchemy import Engine, event, select, text
 
 from app.storage.database.engine import Database, postgres_engine, refuse_old_sqlite, sqlite_engine
 from app.storage.database.models import SettingRow
@@ -252,3 +252,25 @@ def test_a_damaged_page_is_not_read_as_if_it_were_whole(encrypted: Database, fil
     file.write_bytes(content)
     with pytest.raises(LibraryError, match="damaged"):
         names(encrypted)
+
+
+@pytest.mark.parametrize(
+    ("url", "mode"),
+    [
+        ("postgresql+psycopg://gaitwright@clinic.example/gaitwright", "verify-full"),
+        ("postgresql+psycopg://gaitwright@clinic.example/gaitwright?sslmode=require", "require"),
+        ("postgresql+psycopg://gaitwright@/gaitwright?host=/tmp", None),
+    ],
+)
+def test_a_server_on_the_network_has_to_prove_who_it_is(url: str, mode: str | None) -> None:
+    asked: dict[str, object] = {}
+    engine = postgres_engine(url)
+
+    def stop(_dialect: object, _record: object, _positional: object, arguments: dict[str, object]) -> None:
+        asked.update(arguments)
+        raise ConnectionAbortedError  # what would be sent is all there is to see
+
+    event.listen(engine, "do_connect", stop)
+    with pytest.raises(ConnectionAbortedError):
+        engine.connect()
+    assert asked.get("sslmode") == mode

@@ -359,3 +359,13 @@ def test_samples_that_a_source_never_promised_are_refused_at_once(tmp_path: Path
 
 def test_every_trouble_has_its_words() -> None:
     assert set(TOLD) == set(Trouble)
+
+
+def test_a_segment_that_another_program_writes_is_left_alone(tmp_path: Path) -> None:
+    path = tmp_path / "a.1.journal"
+    first = JournalFile(path, b"header")
+    first.append(b"samples")
+    with pytest.raises(FileExistsError, match="another program"):
+        JournalFile(path, b"header")
+    first.close()
+    assert path.read_bytes() == b"headersamples"
