@@ -112,6 +112,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
     _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
+    _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
     return parser
 
 
@@ -186,6 +187,17 @@ def _add_recover(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_recover, out="What was not yet recovered")
 
 
+def _add_audit(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Follow the audit of a library from its beginning, and print how far it goes. That line, kept elsewhere, shows "
+        "later whether the end is missing."
+    )
+    parser.add_argument("library", metavar="LIBRARY", type=Path, nargs="?", default=default_folder(), help=OF_LIBRARY)
+    add_key_arguments(parser)
+    parser.add_argument("--since", metavar="LINE", default="", help="what this command printed an earlier time")
+    parser.set_defaults(run=_verify_audit, out="The audit")
+
+
 def _analyse(wanted: argparse.Namespace) -> None:
     from app.reports.result_folder import OWN_SESSION, check_place, written_beside
 
@@ -219,6 +231,13 @@ def _recover(wanted: argparse.Namespace) -> None:
                 lines += [line]
     finally:  # also before a refusal
         print(*lines, sep="\n", end="\n" if lines else "")
+
+
+def _verify_audit(wanted: argparse.Namespace) -> None:
+    from app.library_commands import verify_audit
+
+    for line in verify_audit(wanted):
+        print(line)
 
 
 def _demo(wanted: argparse.Namespace) -> None:

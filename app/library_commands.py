@@ -138,6 +138,32 @@ def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
             yield _recover_one(opened, one, wanted.into, told)
 
 
+def verify_audit(wanted: argparse.Namespace) -> Iterator[str]:
+    """Follow the audit from its beginning; gives what is wrong, then how far it goes, to be kept elsewhere.
+
+    Raises
+    ------
+    FileRefusedError
+        The library does not open, `wanted.since` is no checkpoint, or an entry is not as it was written.
+    """
+    from app.storage.audit import BEGINNING
+    from app.storage.stored import Checkpoint, LibraryError
+
+    try:
+        since = Checkpoint.parsed(wanted.since) if wanted.since else BEGINNING
+    except LibraryError:
+        what = f"{one_line(wanted.since)} is no line of an earlier audit"
+        raise FileRefusedError("--since", what, "Give the last line that this command printed") from None
+    with opened_library(wanted) as opened:
+        report = opened.library.audit.verify(since)
+    for fault in report.faults:
+        yield f"- entry {fault.number} {fault.what}."
+    yield str(report.end)
+    if report.faults:
+        what = f"{len(report.faults)} faults in the audit" if len(report.faults) > 1 else "a fault in the audit"
+        raise FileRefusedError(str(wanted.library), what, "Compare the library with a backup")
+
+
 def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
     from app.storage.recovery import recover
 

@@ -131,3 +131,34 @@ def test_what_is_no_id_is_refused_as_usage(session: str, capsys: pytest.CaptureF
         cli.main(["analyse", session, "--out", "out"])
     assert ended.value.code == 2
     assert "with the id of a session" in capsys.readouterr().err
+
+
+def test_an_audit_that_nobody_changed_is_followed_to_its_end(
+    opened: OpenedLibrary, session_id: UUID, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["audit", str(opened.folder), *key]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    opened.library.sessions.view(session_id)
+    assert cli.main(["audit", str(opened.folder), *key, "--since", line]) == 0
+    (later,) = capsys.readouterr().out.splitlines()
+    assert int(later.split()[1]) > int(line.split()[1])
+
+
+def test_an_audit_whose_entry_was_changed_or_whose_end_is_missing_is_refused(
+    opened: OpenedLibrary, session_id: UUID, key: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    opened.library.sessions.view(session_id)
+    assert cli.main(["audit", str(opened.folder), *key]) == 0
+    (line,) = capsys.readouterr().out.splitlines()
+    longer = line.replace(f" {line.split()[1]} ", " 1000 ")
+    assert cli.main(["audit", str(opened.folder), *key, "--since", longer]) == 2
+    assert "entry 1000 is not what the checkpoint tells of, or is missing" in capsys.readouterr().out
+    with opened.library._database.rebuilding() as connection:
+        connection.exec_driver_sql("DROP TRIGGER audit_no_update")
+        connection.exec_driver_sql("UPDATE audit SET action = 'view' WHERE number = 2")
+    assert cli.main(["audit", str(opened.folder), *key]) == 2
+    told = capsys.readouterr()
+    assert "- entry 2 was changed." in told.out
+    assert "a fault in the audit" in told.err
+    assert cli.main(["audit", str(opened.folder), *key, "--since", "nonsense"]) == 2
+    assert "is no line of an earlier audit" in capsys.readouterr().err
