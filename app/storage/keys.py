@@ -1,8 +1,9 @@
 """Who may open the library? One random data key, wrapped once for every operator and once for the recovery key.
 
-A slot's wrapping key comes from a passphrase by Argon2id (RFC 9106), the wrapping is AES-256-GCM and is bound to the
-slot's own words. The slots' file holds nothing that opens without a passphrase, and no names: operators have short
-codes. Nothing here limits what an operator may do; roles are the application's, not cryptography's.
+An operator may have a second slot, which the system's keyring opens (`app.storage.keyring_slot`). A slot's wrapping key
+comes from a secret by Argon2id (RFC 9106), the wrapping is AES-256-GCM and is bound to the slot's own words. The
+slots' file holds nothing that opens without one, and no names: operators have short codes. Nothing here limits
+what an operator may do; roles are the application's, not cryptography's.
 """
 
 import base64
@@ -32,6 +33,7 @@ MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
 FREE_TRIES = 3
 FIRST_DELAY_S, LONGEST_DELAY_S = 2.0, 300.0
 RECOVERY = "recovery"
+KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
 
 
 class KeyRefusedError(Exception):
@@ -52,7 +54,7 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """The data key, wrapped for one operator (`code`) or for the recovery key. Bytes are base64."""
+    """The data key, wrapped for an operator (`code`), an operator's keyring or the recovery key. Bytes are base64."""
 
     code: str
     salt: str
@@ -102,7 +104,7 @@ class KeySlots:
     @property
     def codes(self) -> tuple[str, ...]:
         """The operators that can log in."""
-        return tuple(code for code in self._read() if code != RECOVERY)
+        return tuple(code for code in self._read() if _is_operators(code))
 
     def create(self, code: str, passphrase: str) -> tuple[bytes, str]:
         """Make the first operator's slot and the recovery key's; returns the data key and the recovery key's text.
@@ -128,7 +130,7 @@ class KeySlots:
             No such operator, or not this passphrase; the two are not told apart.
         """
         slot = self._read().get(_normal(code))
-        data_key = slot.opened(_secret(passphrase)) if slot is not None and slot.code != RECOVERY else None
+        data_key = slot.opened(_secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
         if data_key is None:
             raise KeyRefusedError("This passphrase does not open the library", "Type it again, or use the recovery key")
         return data_key
@@ -177,7 +179,7 @@ class KeySlots:
         self._write({**slots, own.code: own})
 
     def remove(self, code: str) -> None:
-        """Take an operator's slot away.
+        """Take an operator's slot away, and that of their keyring.
 
         Raises
         ------
@@ -186,7 +188,8 @@ class KeySlots:
         """
         slots = self._read()
         slots.pop(_checked_code(code), None)
-        if set(slots) <= {RECOVERY}:
+        slots.pop(KEYRING + _normal(code), None)
+        if not any(_is_operators(left) for left in slots):
             raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
         self._write(slots)
 
@@ -195,6 +198,31 @@ class KeySlots:
         text = new_recovery_key()
         self._write({**self._read(), RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
         return text
+
+    def keyring_slot(self, code: str) -> Slot | None:
+        """The slot that an operator's keyring opens; None when it was not asked to."""
+        return self._read().get(KEYRING + _normal(code))
+
+    def set_keyring_slot(self, data_key: bytes, code: str, secret: bytes) -> Slot:
+        """Let what an operator's keyring holds open the library, in place of what it held before.
+
+        Raises
+        ------
+        KeyRefusedError
+            No such operator.
+        """
+        slots = self._read()
+        if _checked_code(code) not in slots:
+            raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+        own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
+        self._write({**slots, own.code: own})
+        return own
+
+    def remove_keyring_slot(self, code: str) -> None:
+        """From now on only the passphrase opens the library for this operator."""
+        slots = self._read()
+        if slots.pop(KEYRING + _normal(code), None) is not None:
+            self._write(slots)
 
     def _read(self) -> dict[str, Slot]:
         try:
@@ -284,6 +312,10 @@ def _whole(slot: Slot) -> Slot:
 
 def _normal(code: str) -> str:
     return code.strip().casefold()
+
+
+def _is_operators(code: str) -> bool:
+    return code != RECOVERY and not code.startswith(KEYRING)
 
 
 def _checked_code(code: str) -> str:
