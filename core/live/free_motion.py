@@ -13,7 +13,7 @@ from core.live.pairing import MAX_WAIT_S
 from core.live.sensors import LiveSensor, LiveSensors
 from core.samples import ImuBlock
 
-LOOK_S = 4.0  # how often a lag is looked for
+LOOK_S = 5.0  # how often a lag is looked for
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,8 @@ from core.live.orientation import OrientedSamples, joined
 from core.live.pairing import PairedSamples, Pairing, joined_rows
 from core.pair import FAST_RAD_S, pair_of
 
-KEPT_LOOKS = 5
-SAMPLES = 200
+KEPT_LOOKS = 4
+SAMPLES = 150
 MIN_MOVING_S = 4.0
 WORTH_TELLING_S = 0.005
 
@@ -40,7 +40,7 @@ class LagState:
 
 
 class LiveLag:
-    """The lag of one joint's distal sensor, from the samples between the last five looks."""
+    """The lag of one joint's distal sensor, from the samples between the last looks."""
 
     def __init__(self, proximal_step_s: float, distal_step_s: float) -> None:
         self._pairing = Pairing(proximal_step_s, distal_step_s, 0.0)
