@@ -93,6 +93,7 @@ SENTENCES = {
     "no_joint": (
         "no joint angle could be computed. Two neighbouring sensors, such as thigh and shank, must be worn and move."
     ),
+    "feet_only": "only feet carry sensors, so there are steps and no joint angles.",
     "too_little_motion": "no axis was found, for lack of motion or usable samples. Record ten seconds of free motion.",
     "sign_in_doubt": (
         "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or "

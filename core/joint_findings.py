@@ -4,7 +4,7 @@ from typing import Protocol
 
 import numpy as np
 
-from core.body import Joint, Site
+from core.body import Joint, Segment, Site
 from core.findings import Finding, Severity
 from core.identified import Identified
 from core.results import JointCalibration, Method, RecordingAnalysis, ZeroKind
@@ -30,7 +30,8 @@ def about_session(session: Session) -> list[Finding]:
     if session.is_simulated:
         findings.append(Finding("simulated", Severity.INFO, "session"))
     kinds = {recording.kind for recording in session.recordings if recording.is_kept}
-    if RecordingKind.STANDING not in kinds:
+    is_joint_worn = any(r.holds(joint.proximal, joint.distal) for r in session.recordings for joint in Joint)
+    if RecordingKind.STANDING not in kinds and is_joint_worn:
         findings.append(Finding("no_standing", Severity.WARNING, "session"))
     for recording in session.recordings:
         for site, block in recording.imu.items():
@@ -122,5 +123,7 @@ def about_missing_joints(
             key = "joint_left_out" if spoilt else "too_little_motion"
             findings.append(Finding(key, Severity.GRAVE, str(joint)))
     if not any(found.joints for found in recordings):
-        findings.append(Finding("no_joint", Severity.GRAVE, "session"))
+        is_feet_only = {site.segment for r in kept for site in r.imu} == {Segment.FOOT}
+        key, severity = ("feet_only", Severity.INFO) if is_feet_only else ("no_joint", Severity.GRAVE)
+        findings.append(Finding(key, severity, "session"))
     return findings
