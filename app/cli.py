@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from app.library_commands import LibrarySession, add_key_arguments, default_folder
-from app.logs import log_folder, start_logging
+from app.logs import log_folder, start_logging, version_of
 
 if TYPE_CHECKING:
     from core.findings import Finding
@@ -97,7 +97,8 @@ def _say_last(message: str, code: int) -> int:
 class _Parser(argparse.ArgumentParser):
     def error(self, message: str) -> NoReturn:
         """Refuse in one line, as everything else is refused."""
-        self.exit(REFUSED, f"{self.prog}: {message}. See {self.prog} --help.\n")
+        plain = message.removeprefix("argument : ")  # the list of subcommands has no name
+        self.exit(REFUSED, f"{self.prog}: {plain}. See {self.prog} --help.\n")
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -107,6 +108,7 @@ def _parser() -> argparse.ArgumentParser:
         "Without a subcommand the window opens.",
         epilog="Research use. Not a medical device.",
     )
+    parser.add_argument("--version", action="version", version=f"gaitwright {version_of('gaitwright')}")
     commands = parser.add_subparsers(title="subcommands", metavar="", required=True)
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))

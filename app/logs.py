@@ -57,7 +57,7 @@ def start_logging(folder: Path) -> None:
 
 def error_report(folder: Path) -> str:
     """What may be sent to whoever mends this: versions, the kind of machine, the log's last lines. No names in it."""
-    libraries = [f"{name} {_version(name)}" for name in ("gaitwright", *NAMED_LIBRARIES)]
+    libraries = [f"{name} {version_of(name)}" for name in ("gaitwright", *NAMED_LIBRARIES)]
     machine = f"Python {platform.python_version()}, {platform.system()} {platform.release()}, {platform.machine()}"
     try:
         lines = (folder / FILE_NAME).read_text(encoding="utf-8").splitlines()[-REPORTED_LINES:]
@@ -71,7 +71,7 @@ class NamelessFormatter(logging.Formatter):
 
     def format(self, record: logging.LogRecord) -> str:
         at = time.strftime("%Y-%m-%dT%H:%M:%S", time.gmtime(record.created))
-        head = f"{at}.{int(record.msecs):03d}Z {_version('gaitwright')} {record.process} {record.levelname}"
+        head = f"{at}.{int(record.msecs):03d}Z {version_of('gaitwright')} {record.process} {record.levelname}"
         logger = _module(record.name)
         text = _text(record) if _is_own(logger) else "said something"
         lines = [f"{head} {logger} line {record.lineno}: {text}"]
@@ -158,7 +158,8 @@ def _is_own(module: str) -> bool:
 
 
 @cache
-def _version(distribution: str) -> str:
+def version_of(distribution: str) -> str:
+    """What is installed of a library, or of this program."""
     try:
         return importlib.metadata.version(distribution)
     except importlib.metadata.PackageNotFoundError:

@@ -1,6 +1,7 @@
 """Does the command line keep its word: exit codes, one-line refusals, whole results or none, nothing destroyed?"""
 
 import csv
+import importlib.metadata
 import io
 import json
 import os
@@ -498,3 +499,16 @@ def test_a_map_that_names_no_file_is_refused(tmp_path: Path, capsys: pytest.Capt
         assert main([*arguments, "--map", text]) == 2
         assert "--map" in refusal(capsys)
     assert not (tmp_path / "session").exists()
+
+
+def test_it_says_its_version(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="0"):
+        cli.main(["--version"])
+    assert capsys.readouterr().out.strip() == f"gaitwright {importlib.metadata.version('gaitwright')}"
+
+
+def test_an_unknown_subcommand_is_named_with_those_there_are(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["nonsense"])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("gaitwright: invalid choice: 'nonsense' (choose from ")
