@@ -1,6 +1,9 @@
 """Files that are whole or not there at all, whatever happens while they are written."""
 
 import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 
@@ -34,3 +37,34 @@ def sync_folder(folder: Path) -> None:
         os.fsync(descriptor)
     finally:
         os.close(descriptor)
+
+
+@contextmanager
+def held(path: Path) -> Iterator[None]:
+    """Be the one program that holds the file `path`, made if need be.
+
+    The operating system lets go of it when the program ends, however it ends.
+
+    Raises
+    ------
+    BlockingIOError
+        Another program holds it.
+    OSError
+        It cannot be made.
+    """
+    descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
+    try:
+        try:
+            if sys.platform == "win32":
+                import msvcrt
+
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            else:
+                import fcntl
+
+                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError as error:
+            raise BlockingIOError(error.errno, "another program holds this", str(path)) from error
+        yield
+    finally:
+        os.close(descriptor)  # and unlocks it

@@ -10,8 +10,10 @@ import base64
 import json
 import os
 import secrets
+import time
 import unicodedata
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
@@ -19,7 +21,7 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
 
-from app.storage.files import replace_file
+from app.storage.files import held, replace_file
 
 FORMAT = "gaitwright-keys/1"
 KEY_BYTES = 32
@@ -32,6 +34,7 @@ LETTERS = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"  # Crockford's: no I, L, O, U to be
 MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
 FREE_TRIES = 3
 FIRST_DELAY_S, LONGEST_DELAY_S = 2.0, 300.0
+BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
 KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
 
@@ -158,11 +161,11 @@ class KeySlots:
         KeyRefusedError
             The code is taken, or the passphrase too short.
         """
-        slots = self._read()
-        if _checked_code(code) in slots:
-            raise KeyRefusedError(f"{_normal(code)} is taken", "Choose another code")
-        own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
-        self._write({**slots, own.code: own})
+        with self._changing() as slots:
+            if _checked_code(code) in slots:
+                raise KeyRefusedError(f"{_normal(code)} is taken", "Choose another code")
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            self._write({**slots, own.code: own})
 
     def set_passphrase(self, data_key: bytes, code: str, passphrase: str) -> None:
         """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
@@ -172,11 +175,11 @@ class KeySlots:
         KeyRefusedError
             No such operator, or the passphrase is too short.
         """
-        slots = self._read()
-        if _checked_code(code) not in slots:
-            raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
-        own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
-        self._write({**slots, own.code: own})
+        with self._changing() as slots:
+            if _checked_code(code) not in slots:
+                raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            self._write({**slots, own.code: own})
 
     def remove(self, code: str) -> None:
         """Take an operator's slot away, and that of their keyring.
@@ -186,17 +189,18 @@ class KeySlots:
         KeyRefusedError
             It is the last one, or the recovery key's.
         """
-        slots = self._read()
-        slots.pop(_checked_code(code), None)
-        slots.pop(KEYRING + _normal(code), None)
-        if not any(_is_operators(left) for left in slots):
-            raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
-        self._write(slots)
+        with self._changing() as slots:
+            slots.pop(_checked_code(code), None)
+            slots.pop(KEYRING + _normal(code), None)
+            if not any(_is_operators(left) for left in slots):
+                raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
+            self._write(slots)
 
     def renew_recovery_key(self, data_key: bytes) -> str:
         """Make a new recovery key and end the old one; returns its text."""
         text = new_recovery_key()
-        self._write({**self._read(), RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
+        with self._changing() as slots:
+            self._write({**slots, RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
         return text
 
     def keyring_slot(self, code: str) -> Slot | None:
@@ -211,18 +215,32 @@ class KeySlots:
         KeyRefusedError
             No such operator.
         """
-        slots = self._read()
-        if _checked_code(code) not in slots:
-            raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
-        own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
-        self._write({**slots, own.code: own})
-        return own
+        with self._changing() as slots:
+            if _checked_code(code) not in slots:
+                raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+            own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
+            self._write({**slots, own.code: own})
+            return own
 
     def remove_keyring_slot(self, code: str) -> None:
         """From now on only the passphrase opens the library for this operator."""
-        slots = self._read()
-        if slots.pop(KEYRING + _normal(code), None) is not None:
-            self._write(slots)
+        with self._changing() as slots:
+            if slots.pop(KEYRING + _normal(code), None) is not None:
+                self._write(slots)
+
+    @contextmanager
+    def _changing(self) -> Iterator[dict[str, Slot]]:
+        """The slots, held until what was done with them is written: of two changes at once neither is lost."""
+        deadline = time.monotonic() + BUSY_S
+        while True:
+            try:
+                with held(self._path.with_name(self._path.name + ".lock")):
+                    yield self._read()
+                    return
+            except BlockingIOError:
+                if time.monotonic() >= deadline:
+                    raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
+                time.sleep(0.05)
 
     def _read(self) -> dict[str, Slot]:
         try:

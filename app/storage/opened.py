@@ -6,9 +6,7 @@ recordings/ID.SEGMENT.journal      the samples
 in-use                             locked by the program that records here
 """
 
-import os
 import shutil
-import sys
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -17,7 +15,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
-from app.storage.files import sync_folder
+from app.storage.files import held, sync_folder
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator
@@ -135,23 +133,8 @@ def held_alone(folder: Path) -> Iterator[None]:
     LibraryError
         Another program holds it.
     """
-    descriptor = os.open(folder / IN_USE, os.O_RDWR | os.O_CREAT, 0o600)
     try:
-        _lock(descriptor)
-        yield
-    finally:
-        os.close(descriptor)  # and unlocks it
-
-
-def _lock(descriptor: int) -> None:
-    try:
-        if sys.platform == "win32":
-            import msvcrt
-
-            msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-        else:
-            import fcntl
-
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
+        with held(folder / IN_USE):
+            yield
+    except BlockingIOError as error:
         raise LibraryError("Gaitwright is open with this library already", "Use that window, or close it") from error

@@ -5,11 +5,13 @@ import random
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
-from app.storage.files import replace_file
+from app.storage import keys
+from app.storage.files import held, replace_file
 from app.storage.keys import (
     Cost,
     KeyRefusedError,
@@ -240,3 +242,21 @@ def test_a_damaged_slot_is_said_to_be_damaged(slots: KeySlots, tmp_path: Path, f
     (tmp_path / "keys.json").write_text(json.dumps(content))
     with pytest.raises(KeyRefusedError, match="is damaged"):
         slots.open("hk", OLD)
+
+
+def test_of_two_changes_at_once_neither_is_lost(slots: KeySlots, tmp_path: Path) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    codes = [f"op{k}" for k in range(12)]
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(lambda code: KeySlots(tmp_path / "keys.json", CHEAP).add(data_key, code, NEW), codes))
+    assert set(slots.codes) == {"hk", *codes}
+
+
+def test_a_change_that_another_program_holds_up_for_long_is_refused(
+    slots: KeySlots, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    data_key, _ = slots.create("hk", OLD)
+    monkeypatch.setattr(keys, "BUSY_S", 0.1)
+    with held(tmp_path / "keys.json.lock"), pytest.raises(KeyRefusedError, match="Somebody else"):
+        slots.add(data_key, "ab", NEW)
+    slots.add(data_key, "ab", NEW)
