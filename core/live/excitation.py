@@ -114,6 +114,8 @@ class ExcitationState:
         How far the calibration may be from the truth.
     sign_margin
         Cost of the best rival over the best hypothesis; 1 while nothing is known.
+    wanting
+        The worse of both gauges' figures over what closes it.
     is_closed
         Good enough.
     is_plateau
@@ -131,6 +133,7 @@ class ExcitationState:
     axis_sd_with_floor_rad: float
     centre_sd_with_floor_m: float
     sign_margin: float
+    wanting: float
     is_closed: bool
     is_plateau: bool
     trend: float
@@ -225,6 +228,7 @@ class Excitation:
                 SD_FACTOR_HUMAN * centre_m, wanted.centre_floor_m, CENTRE_PRIOR_M * loose
             ),
             sign_margin=margin,
+            wanting=wanting,
             is_closed=self._is_closed,
             is_plateau=is_plateau,
             trend=trend,

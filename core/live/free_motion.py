@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.body import Joint, Side, Site
-from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState, Wanted
+from core.live.excitation import HUMAN, PROSTHESIS, Excitation, ExcitationState
 from core.live.lag import LagState, LiveLag
 from core.live.orientation import NOTHING, OrientedSamples, joined
 from core.live.pairing import MAX_WAIT_S
@@ -56,12 +56,12 @@ class FreeMotion:
         self._sensors = LiveSensors(sensors)
         worn = [joint for joint in Joint if joint.proximal in sensors and joint.distal in sensors]
         asked = [joint for joint in worn if joint.is_knee or joint.side not in without_ankle]
-        self._wanted = {joint: PROSTHESIS if joint.side in prosthetic_sides else HUMAN for joint in asked}
         self._joints = {
             joint: _JointMotion(
-                Excitation(joint, wanted), LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s)
+                Excitation(joint, PROSTHESIS if joint.side in prosthetic_sides else HUMAN),
+                LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s),
             )
-            for joint, wanted in self._wanted.items()
+            for joint in asked
         }
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> FreeMotionState:
@@ -77,11 +77,9 @@ class FreeMotion:
             motion.update(turned.get(joint.proximal, NOTHING), turned.get(joint.distal, NOTHING))
         joints = {joint: motion.excitation.state for joint, motion in self._joints.items()}
         lags = {joint: motion.lag for joint, motion in self._joints.items() if motion.lag is not None}
-        return FreeMotionState(joints, lags, self._weakest(joints))
-
-    def _weakest(self, joints: Mapping[Joint, ExcitationState]) -> Joint | None:
         is_open = [joint for joint, state in joints.items() if not (state.is_closed or state.is_plateau)]
-        return max(is_open, key=lambda joint: _wanting(joint, joints[joint], self._wanted[joint]), default=None)
+        weakest = max(is_open, key=lambda joint: joints[joint].wanting, default=None)
+        return FreeMotionState(joints, lags, weakest)
 
     @property
     def late(self) -> dict[Site, int]:
@@ -127,8 +125,3 @@ def _cut(samples: OrientedSamples, at_s: float) -> tuple[OrientedSamples, Orient
         return samples, NOTHING
     first = int(np.searchsorted(samples.time_s, at_s))
     return samples.part(slice(0, first)), samples.part(slice(first, None))
-
-
-def _wanting(joint: Joint, state: ExcitationState, wanted: Wanted) -> float:
-    axis = state.axis_sd_rad / wanted.axis_rad if joint.is_knee else 0.0
-    return max(axis, state.centre_sd_m / wanted.centre_m)

@@ -3,8 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from core.body import Site
 from core.live.orientation import LiveOrientation, OrientedSamples
 from core.live.streams import Stream
@@ -34,7 +32,6 @@ class LiveSensors:
             site: LiveOrientation(sensor.gyro_bias_rad_s, sensor.rate_kind, sensor.step_s)
             for site, sensor in sensors.items()
         }
-        self.heard_s = dict.fromkeys(sensors, -np.inf)
 
     def update(self, blocks: Mapping[Site, ImuBlock]) -> dict[Site, OrientedSamples]:
         """Take new samples of some or all sites; returns what they and those before them have settled.
@@ -48,7 +45,6 @@ class LiveSensors:
         for site, block in blocks.items():
             if len(block) == 0:
                 continue
-            self.heard_s[site] = max(self.heard_s[site], float(block.time_s[-1]))
             stream = self._streams[site]
             stream.feed(block)
             even = stream.take()

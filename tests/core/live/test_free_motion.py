@@ -120,3 +120,17 @@ def test_a_silent_sensor_keeps_nothing_waiting_for_long(circling: SimulatedSessi
     for k in range(10):
         motion.update({Site.LEFT_THIGH: replace(block, time_s=block.time_s + 18.01 * k)})
     assert motion.update({}).joints[Joint.LEFT_KNEE].moved_s == 0.0
+
+
+def test_samples_that_come_twice_are_counted_and_change_nothing(
+    circling: SimulatedSession, states: list[FreeMotionState]
+) -> None:
+    motion = FreeMotion(sensors_of(circling))
+    site = Site.LEFT_FOOT
+    for blocks in in_blocks(circling.session.recordings[1].imu, 0.5):
+        motion.update(blocks)
+        state = motion.update({site: blocks[site]})
+    assert motion.late == {Site.LEFT_THIGH: 0, Site.LEFT_SHANK: 0, site: len(circling.session.recordings[1].imu[site])}
+    assert state.joints[Joint.LEFT_ANKLE].centre_sd_m == pytest.approx(
+        states[-1].joints[Joint.LEFT_ANKLE].centre_sd_m, rel=1e-9
+    )
