@@ -1,0 +1,92 @@
+"""What is every step of the wizard? A page, a row in the rail, a bar of verbs, and what keys do meanwhile."""
+
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QWidget
+
+from app.theme import Look
+from app.widgets.action_bar import BarState
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Intent
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+
+
+class Step(QObject):
+    """Made once per visit. `page` is made with it and shows the visit as it is whenever the step is entered.
+
+    Signals
+    -------
+    changed
+        The bar, or the step's row in the rail, is another one now.
+    done
+        Nothing is left to do here: the wizard goes on to the next step.
+    told
+        What happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
+    offered
+        Something was done that can be undone: what, for the toast; `undo` takes it back.
+    """
+
+    changed = Signal()
+    done = Signal()
+    told = Signal(str, str)
+    offered = Signal(str)
+
+    def __init__(self, look: Look, visit: "Visit", page: QWidget, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._look, self._visit, self.page = look, visit, page
+
+    @property
+    def title(self) -> str:
+        """Its name in the rail."""
+        raise NotImplementedError
+
+    @property
+    def note(self) -> str:
+        """What came of it, under the name; empty while nothing has."""
+        return ""
+
+    @property
+    def state(self) -> StepState:
+        """DONE, TODO, ATTENTION or SKIPPED; that it is the current one the wizard knows itself."""
+        raise NotImplementedError
+
+    @property
+    def can_enter(self) -> str:
+        """Why it cannot be entered yet, in a sentence; empty where it can."""
+        return ""
+
+    @property
+    def topic(self) -> str:
+        """The page of the manual that F1 opens."""
+        raise NotImplementedError
+
+    def enter(self) -> None:
+        """It comes into sight: show the visit as it is, begin what begins by itself."""
+
+    def leave(self) -> None:
+        """It goes out of sight: end what must not go on unseen."""
+
+    def tick(self) -> None:
+        """Called 30 times a second while it is in sight: show what is live."""
+
+    def bar(self) -> BarState:
+        raise NotImplementedError
+
+    def on_primary(self) -> None:
+        """The primary verb, by mouse or Enter."""
+
+    def on_other(self, number: int) -> None:
+        """One of the verbs left of the primary one."""
+
+    def on_quiet(self, number: int) -> None:
+        """One of the quiet verbs after Back."""
+
+    def on_intent(self, intent: Intent) -> bool:
+        """A key that the frame does not know what to do with; returns whether it meant something here."""
+        return False
+
+    def undo(self) -> None:
+        """Take back what was offered last."""
