@@ -23,6 +23,20 @@ class Icon(StrEnum):
     INFO = "info"
     WARNING = "warning"
     GRAVE = "grave"
+    BACK = "back"
+    REPEAT = "repeat"
+    SOUND = "sound"
+    SOUND_OFF = "sound_off"
+    HOME = "home"
+    SETTINGS = "settings"
+    HELP = "help"
+    LIGHT_OR_DARK = "light_or_dark"
+    IMPORT = "import"
+    ADD = "add"
+    WAVE = "wave"
+    STILL = "still"
+    SILENT = "silent"
+    RECORDING = "recording"
 
 
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
@@ -137,6 +151,91 @@ def _grave(painter: QPainter, ink: QColor) -> None:
     painter.fillPath(shape, QBrush(ink))
 
 
+def _back(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (15, 6), (9, 12), (15, 18))
+
+
+def _repeat(painter: QPainter, _ink: QColor) -> None:
+    painter.drawArc(QRectF(4, 4, 16, 16), 35 * 16, 300 * 16)
+    _lines(painter, (18.8, 3.2), (18.6, 7.6), (14.2, 7.4))
+
+
+def _speaker(painter: QPainter) -> None:
+    _lines(painter, (3.5, 9.5), (3.5, 14.5), (7, 14.5), (11.5, 18.5), (11.5, 5.5), (7, 9.5), (3.5, 9.5))
+
+
+def _sound(painter: QPainter, _ink: QColor) -> None:
+    _speaker(painter)
+    painter.drawArc(QRectF(10.5, 8.5, 7, 7), -50 * 16, 100 * 16)
+    painter.drawArc(QRectF(8.5, 5, 14, 14), -50 * 16, 100 * 16)
+
+
+def _sound_off(painter: QPainter, _ink: QColor) -> None:
+    _speaker(painter)
+    _lines(painter, (15.5, 9.5), (20.5, 14.5))
+    _lines(painter, (20.5, 9.5), (15.5, 14.5))
+
+
+def _home(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (3, 11.5), (12, 3.5), (21, 11.5))
+    _lines(painter, (5.5, 9.8), (5.5, 20), (9.5, 20), (9.5, 14), (14.5, 14), (14.5, 20), (18.5, 20), (18.5, 9.8))
+
+
+def _settings(painter: QPainter, _ink: QColor) -> None:
+    for y, knob in ((6, 14.5), (12, 8.5), (18, 16)):
+        _lines(painter, (3, y), (knob - 2.2, y))
+        _lines(painter, (knob + 2.2, y), (21, y))
+        painter.drawEllipse(QPointF(knob, y), 2.2, 2.2)
+
+
+def _help(painter: QPainter, _ink: QColor) -> None:
+    painter.drawEllipse(QPointF(12, 12), 9, 9)
+    curve = QPainterPath(QPointF(9.3, 9.6))
+    curve.cubicTo(9.4, 5.9, 14.9, 6.1, 14.7, 9.5)
+    curve.cubicTo(14.6, 11.6, 12, 11.6, 12, 13.9)
+    painter.drawPath(curve)
+    painter.drawPoint(QPointF(12, 16.9))
+
+
+def _light_or_dark(painter: QPainter, ink: QColor) -> None:
+    painter.drawEllipse(QPointF(12, 12), 9, 9)
+    painter.setBrush(QBrush(ink))
+    painter.drawChord(QRectF(3, 3, 18, 18), 90 * 16, 180 * 16)
+
+
+def _import(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (12, 3.5), (12, 14.5))
+    _lines(painter, (7.5, 10), (12, 14.5), (16.5, 10))
+    _lines(painter, (3.5, 16), (3.5, 20), (20.5, 20), (20.5, 16))
+
+
+def _add(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (12, 4.5), (12, 19.5))
+    _lines(painter, (4.5, 12), (19.5, 12))
+
+
+def _wave(painter: QPainter, _ink: QColor) -> None:
+    curve = QPainterPath(QPointF(2.5, 12))
+    curve.cubicTo(5, 12, 5.5, 5, 8, 5)
+    curve.cubicTo(11, 5, 13, 19, 16, 19)
+    curve.cubicTo(18.5, 19, 19, 12, 21.5, 12)
+    painter.drawPath(curve)
+
+
+def _still(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (3, 12), (21, 12))
+
+
+def _silent(painter: QPainter, _ink: QColor) -> None:
+    painter.drawEllipse(QPointF(12, 12), 9, 9)
+    _lines(painter, (5.8, 5.8), (18.2, 18.2))
+
+
+def _recording(painter: QPainter, ink: QColor) -> None:
+    painter.setBrush(QBrush(ink))
+    painter.drawEllipse(QPointF(12, 12), 7, 7)
+
+
 _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.FOLDER: _folder,
     Icon.PLAY: _play,
@@ -149,4 +248,18 @@ _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.INFO: _info,
     Icon.WARNING: _warning,
     Icon.GRAVE: _grave,
+    Icon.BACK: _back,
+    Icon.REPEAT: _repeat,
+    Icon.SOUND: _sound,
+    Icon.SOUND_OFF: _sound_off,
+    Icon.HOME: _home,
+    Icon.SETTINGS: _settings,
+    Icon.HELP: _help,
+    Icon.LIGHT_OR_DARK: _light_or_dark,
+    Icon.IMPORT: _import,
+    Icon.ADD: _add,
+    Icon.WAVE: _wave,
+    Icon.STILL: _still,
+    Icon.SILENT: _silent,
+    Icon.RECORDING: _recording,
 }
