@@ -1,0 +1,314 @@
+"""One line to type into: its label above, its unit and its leg inside, and what is wrong with it below."""
+
+import math
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleAnnouncementEvent,
+    QColor,
+    QFont,
+    QFontMetrics,
+    QPainter,
+    QPaintEvent,
+    QPalette,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.chip import paint_chip
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
+from app.wording import tr
+from core.body import Side
+
+HEIGHT = 48
+PADDING = 14
+CHIP_PADDING = 10
+CHIP = 24
+TEXT, SIDE_TEXT = 16, 20  # a side's fields hold one figure each, read beside the patient
+
+
+class Field(QWidget):
+    """Keeps what was typed, right or wrong.
+
+    Parameters
+    ----------
+    has_label
+        Without, the label is told to readers of screens only: for fields in a row under one heading.
+    is_secret
+        Shows dots.
+    is_code
+        Tells 0 from O.
+    """
+
+    edited = Signal(str)  # by the user
+    committed = Signal()  # by Enter, or by leaving after a change
+
+    def __init__(
+        self,
+        look: Look,
+        label: str,
+        *,
+        unit: str = "",
+        is_optional: bool = False,
+        side: Side | None = None,
+        is_secret: bool = False,
+        is_code: bool = False,
+        placeholder: str = "",
+        has_label: bool = True,
+    ) -> None:
+        super().__init__()
+        self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
+        self._caption = Text(look, label, size=14, weight=MEDIUM)
+        self._optional = Text(look, tr("optional"), size=12, tone="ink2")
+        self._box = _Box(look, side, is_code)
+        self._wrong_mark = IconMark(look, Icon.WARNING)
+        self._wrong = Text(look, size=14, wraps=True)
+        self._caption.setBuddy(self._box)
+        self._caption.setVisible(has_label)
+        self._optional.setVisible(has_label and is_optional)
+        self._box.setPlaceholderText(placeholder)
+        if is_secret:
+            self._box.setEchoMode(QLineEdit.EchoMode.Password)
+        self.setFocusProxy(self._box)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
+        self._above = QHBoxLayout()
+        self._above.addWidget(self._caption, 1)
+        self._above.addWidget(self._optional, 0, Qt.AlignmentFlag.AlignBottom)
+        self._below = QHBoxLayout()
+        self._below.addWidget(self._wrong_mark, 0, Qt.AlignmentFlag.AlignTop)
+        self._below.addWidget(self._wrong, 1)
+        self._column = QVBoxLayout(self)
+        self._column.addLayout(self._above)
+        self._column.addWidget(self._box)
+        self._column.addLayout(self._below)
+        self._box.textEdited.connect(self._on_text_edited)
+        self._box.editingFinished.connect(self._on_editing_finished)
+        look.changed.connect(self._on_look_changed)
+        self.set_unit(unit)
+        self.set_wrong("")
+        self._on_look_changed()
+
+    @property
+    def line_edit(self) -> QLineEdit:
+        """What has the focus, for the order of tabs."""
+        return self._box
+
+    @property
+    def text(self) -> str:
+        return self._box.text()
+
+    @property
+    def is_wrong(self) -> bool:
+        return bool(self._wrong.text())
+
+    def set_text(self, text: str) -> None:
+        if text != self._box.text():  # else the cursor would jump
+            self._box.setText(text)
+
+    def set_unit(self, unit: str) -> None:
+        self._box.set_unit(unit)
+        self._name()
+
+    def set_wrong(self, sentence: str) -> None:
+        """Say what is wrong and what to do; an empty sentence takes it back. What was typed stays."""
+        is_news = sentence != self._wrong.text()
+        self._wrong.setText(sentence)
+        self._wrong.setVisible(bool(sentence))
+        self._wrong_mark.setVisible(bool(sentence))
+        self._box.set_wrong(bool(sentence))
+        self._name()
+        if sentence and is_news:
+            QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self._box, sentence))
+
+    def _name(self) -> None:
+        sides = {Side.LEFT: tr("Left"), Side.RIGHT: tr("Right"), None: ""}
+        label = self._label
+        if self._side is not None and label:
+            label = f"{sides[self._side]} {label[0].lower()}{label[1:]}"
+        state = self._wrong.text() or (tr("optional") if self._is_optional else "")
+        self._box.setAccessibleName(", ".join(filter(None, [label, self._box.unit, state])))
+
+    def _on_text_edited(self, text: str) -> None:
+        self.edited.emit(text)
+
+    def _on_editing_finished(self) -> None:
+        self.committed.emit()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(px(6))
+        self._above.setSpacing(px(8))
+        self._below.setSpacing(px(8))
+
+
+class NumberField(Field):
+    """A number between `low` and `high`, with a comma or a point; says itself which numbers fit."""
+
+    def __init__(
+        self,
+        look: Look,
+        label: str,
+        *,
+        low: float,
+        high: float,
+        decimals: int = 0,
+        unit: str = "",
+        is_optional: bool = False,
+        side: Side | None = None,
+        placeholder: str = "",
+        has_label: bool = True,
+    ) -> None:
+        super().__init__(
+            look,
+            label,
+            unit=unit,
+            is_optional=is_optional,
+            side=side,
+            placeholder=placeholder,
+            has_label=has_label,
+        )
+        self.low, self.high, self.decimals = low, high, decimals
+        self._box.setInputMethodHints(Qt.InputMethodHint.ImhFormattedNumbersOnly)
+
+    @property
+    def value(self) -> float | None:
+        """The number typed; None where there is none, or none that fits."""
+        number = _number(self.text, self.decimals)
+        return number if number is not None and self.low <= number <= self.high else None
+
+    def set_value(self, value: float | None) -> None:
+        if value is None or value != self.value:  # else "15.0" would turn into "15" under the cursor
+            self.set_text("" if value is None else _plain(value, self.decimals))
+        self._judge()
+
+    def _on_text_edited(self, text: str) -> None:
+        if self.is_wrong:  # said when the field was left; taken back as soon as it is right
+            self._judge()
+        super()._on_text_edited(text)
+
+    def _on_editing_finished(self) -> None:
+        self._judge()
+        super()._on_editing_finished()
+
+    def _judge(self) -> None:
+        if not self.text.strip() or self.value is not None:
+            self.set_wrong("")
+            return
+        wanted = (
+            tr("Type a number from {low} to {high}.") if self.decimals else tr("Type {low} to {high}, no decimals.")
+        )
+        unit = self._box.unit
+        space = "" if unit in ("", "°", "%") else " "
+        low, high = (_plain(limit, self.decimals).replace("-", "\N{MINUS SIGN}") for limit in (self.low, self.high))
+        self.set_wrong(wanted.format(low=low, high=f"{high}{space}{unit}"))
+
+
+class _Box(QLineEdit):
+    """The line itself. It is as large as its frame, so that the ring round the focus goes round the frame."""
+
+    def __init__(self, look: Look, side: Side | None, is_code: bool) -> None:
+        super().__init__()
+        self._look, self._side, self._is_code = look, side, is_code
+        self._is_wrong = False
+        self.unit = ""
+        self.setStyleSheet("background: transparent; border: none")  # the frame is painted under the text
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        if side is not None:
+            self.setAlignment(Qt.AlignmentFlag.AlignRight)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def set_unit(self, unit: str) -> None:
+        self.unit = unit
+        self._on_look_changed()
+
+    def set_wrong(self, is_wrong: bool) -> None:
+        if is_wrong != self._is_wrong:
+            self._is_wrong = is_wrong
+            self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        margins = self.textMargins()
+        letters = QFontMetrics(self.font()).horizontalAdvance("0000")
+        return QSize(letters + margins.left() + margins.right(), self._look.theme.px(HEIGHT))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        event.ignore()  # who scrolls past must not change a number
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        border = c.caution_edge if self._is_wrong else c.control if self.isEnabled() else c.line
+        painter.setPen(theme.pen(border, 1.75 if self._is_wrong else 1.25))
+        painter.setBrush(QColor(c.caution if self._is_wrong else c.surface))
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        painter.drawRoundedRect(box, radius, radius)
+        if self.isEnabled() and self.underMouse() and not self.hasFocus():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(is_pressed=False))
+            painter.drawRoundedRect(box, radius, radius)
+        if self._side is not None:
+            top = (self.height() - px(CHIP)) / 2
+            paint_chip(painter, QRectF(px(CHIP_PADDING), top, px(CHIP), px(CHIP)), self._side, theme)
+        if self.unit:
+            painter.setFont(self._unit_font())
+            painter.setPen(QColor(c.caution_ink if self._is_wrong else c.ink2 if self.isEnabled() else c.disabled))
+            right = self.rect().adjusted(0, 0, -px(PADDING), 0)
+            painter.drawText(right, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, self.unit)
+        painter.end()
+        super().paintEvent(event)
+
+    def _unit_font(self) -> QFont:
+        return self._look.theme.font(14 if self._side is None else SIDE_TEXT - 2)
+
+    def _on_look_changed(self) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        self.setFont(
+            theme.font(TEXT if self._side is None else SIDE_TEXT, SEMIBOLD if self._is_code else REGULAR, self._is_code)
+        )
+        palette = self.palette()
+        ink = QColor(c.caution_ink if self._is_wrong else c.ink)
+        for role, colour in (
+            (QPalette.ColorRole.Text, ink),
+            (QPalette.ColorRole.PlaceholderText, QColor(c.ink3)),
+            (QPalette.ColorRole.Highlight, QColor(c.inv)),
+            (QPalette.ColorRole.HighlightedText, QColor(c.inv_ink)),
+        ):
+            palette.setColor(role, colour)
+        palette.setColor(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text, QColor(c.disabled))
+        self.setPalette(palette)
+        unit_width = QFontMetrics(self._unit_font()).horizontalAdvance(self.unit) + px(6) if self.unit else 0
+        left = px(PADDING) if self._side is None else px(CHIP_PADDING + CHIP + 8)
+        # Qt itself keeps 2 px clear on either side of the text
+        self.setTextMargins(left - 2, 0, px(PADDING) + unit_width - 2, 0)
+        self.updateGeometry()
+        self.update()
+
+
+def _number(text: str, decimals: int) -> float | None:
+    """Give the number a clinician wrote, rounded as it is stored; None where it is none."""
+    try:
+        number = float(text.strip().replace(",", ".").replace("\N{MINUS SIGN}", "-"))
+    except ValueError:
+        return None
+    if not math.isfinite(number) or (decimals == 0 and number != round(number)):
+        return None
+    return round(number, decimals)
+
+
+def _plain(value: float, decimals: int) -> str:
+    """Write a number without noughts that say nothing: 15, 82.5."""
+    written = f"{value:.{decimals}f}"
+    return written.rstrip("0").rstrip(".") if decimals else written

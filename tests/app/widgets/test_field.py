@@ -1,0 +1,161 @@
+"""What is typed into a field: kept as it was, judged when it is left, and told to who cannot see it."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QWheelEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.theme import Look, load_fonts
+from app.widgets.field import Field, NumberField
+from app.widgets.focus_ring import FocusRing
+from core.body import Side
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def window(qtbot: QtBot) -> QWidget:
+    window = QWidget()
+    QVBoxLayout(window)
+    qtbot.addWidget(window)
+    return window
+
+
+def shown(qtbot: QtBot, window: QWidget, *fields: Field) -> None:
+    for field in fields:
+        layout = window.layout()
+        assert layout is not None
+        layout.addWidget(field)
+    with qtbot.waitActive(window):
+        window.show()
+        window.activateWindow()
+
+
+def knee(look: Look) -> NumberField:
+    return NumberField(look, "Knee flexion", low=-60, high=150, decimals=1, unit="°", side=Side.LEFT)
+
+
+def test_a_field_tells_side_label_unit_and_state_to_readers_of_screens(
+    qtbot: QtBot, window: QWidget, look: Look
+) -> None:
+    mass = Field(look, "Mass", unit="kg", is_optional=True)
+    flexion = knee(look)
+    shown(qtbot, window, mass, flexion)
+    assert mass.line_edit.accessibleName() == "Mass, kg, optional"
+    assert flexion.line_edit.accessibleName() == "Left knee flexion, °"
+    flexion.set_wrong("This is no angle. Type degrees.")
+    assert flexion.line_edit.accessibleName() == "Left knee flexion, °, This is no angle. Type degrees."
+
+
+def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look: Look) -> None:
+    field = Field(look, "Code", is_code=True)
+    shown(qtbot, window, field)
+    with qtbot.assertNotEmitted(field.edited), qtbot.assertNotEmitted(field.committed):
+        field.set_text("P-0147")
+    with qtbot.waitSignal(field.edited) as edited:
+        QTest.keyClicks(field.line_edit, "8")
+    assert edited.args == ["P-01478"]
+
+
+def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget, look: Look) -> None:
+    one, other = Field(look, "Device"), Field(look, "Clinic number")
+    shown(qtbot, window, one, other)
+    one.setFocus()
+    with qtbot.assertNotEmitted(one.committed):
+        other.setFocus()
+        one.setFocus()
+    QTest.keyClicks(one.line_edit, "carbon foot")
+    with qtbot.waitSignal(one.committed):
+        other.setFocus()
+    with qtbot.waitSignal(other.committed):
+        QTest.keyClick(other.line_edit, Qt.Key.Key_Return)
+
+
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [("15", 15.0), ("7,5", 7.5), ("7.25", 7.2), ("-5", -5.0), ("\N{MINUS SIGN}5", -5.0), ("", None), ("x", None)],
+)
+def test_a_number_takes_comma_point_and_either_minus(look: Look, qtbot: QtBot, typed: str, value: float | None) -> None:
+    field = knee(look)
+    qtbot.addWidget(field)
+    field.set_text(typed)
+    assert field.value == value
+
+
+@pytest.mark.parametrize("typed", ["151", "-61", "inf", "nan", "15°"])
+def test_a_number_that_does_not_fit_stays_and_says_what_fits(
+    qtbot: QtBot, window: QWidget, look: Look, typed: str
+) -> None:
+    field = knee(look)
+    shown(qtbot, window, field)
+    field.setFocus()
+    QTest.keyClicks(field.line_edit, typed)
+    assert not field.is_wrong  # it may not be at its end yet
+    QTest.keyClick(field.line_edit, Qt.Key.Key_Return)
+    assert field.text == typed
+    assert field.value is None
+    assert "Type a number from \N{MINUS SIGN}60 to 150°." in field.line_edit.accessibleName()
+    field.line_edit.selectAll()
+    QTest.keyClicks(field.line_edit, "15")
+    assert not field.is_wrong  # as soon as it is right
+
+
+def test_a_year_has_no_decimals(look: Look, qtbot: QtBot) -> None:
+    year = NumberField(look, "Birth year", low=1900, high=2026)
+    qtbot.addWidget(year)
+    year.set_text("1968.5")
+    assert year.value is None
+    year.set_value(1968)
+    assert year.text == "1968"
+
+
+def test_the_value_of_a_number_is_written_without_noughts(look: Look, qtbot: QtBot) -> None:
+    mass = NumberField(look, "Mass", low=1, high=400, decimals=1, unit="kg")
+    qtbot.addWidget(mass)
+    for value, written in ((82.0, "82"), (82.5, "82.5"), (100.0, "100"), (None, "")):
+        mass.set_value(value)
+        assert mass.text == written
+        assert mass.value == value
+
+
+def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: Look) -> None:
+    field = knee(look)
+    field.set_value(15)
+    shown(qtbot, window, field)
+    field.setFocus()
+    nothing, flags = QPoint(), Qt.ScrollPhase.NoScrollPhase
+    turn = QWheelEvent(
+        QPointF(),
+        QPointF(),
+        nothing,
+        QPoint(0, 120),
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        flags,
+        False,
+    )
+    QApplication.sendEvent(field.line_edit, turn)
+    assert field.value == 15
+    assert not turn.isAccepted()  # what lies around it scrolls
+
+
+def test_the_ring_of_the_focus_goes_round_the_frame(qtbot: QtBot, window: QWidget, look: Look) -> None:
+    field = knee(look)
+    ring = FocusRing(look, window)
+    shown(qtbot, window, field)
+    field.setFocus()
+    frame = field.line_edit
+    corner = frame.mapTo(window, QPoint())
+    assert frame.height() == 48
+    assert ring.geometry() == frame.rect().translated(corner).adjusted(-5, -5, 5, 5)
