@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 class Step(QObject):
-    """Made once per visit. `page` is made with it and shows the visit as it is whenever the step is entered.
+    """Made once per visit; its page once it is entered, and shown the visit as it is whenever that happens.
 
     Signals
     -------
@@ -34,9 +34,14 @@ class Step(QObject):
     told = Signal(str, str)
     offered = Signal(str)
 
-    def __init__(self, look: Look, visit: "Visit", page: QWidget, parent: QObject | None = None) -> None:
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._look, self._visit, self.page = look, visit, page
+        self._look, self._visit = look, visit
+
+    @property
+    def page(self) -> QWidget:
+        """Made at the first call: the window must not wait for pages that nobody has come to."""
+        raise NotImplementedError
 
     @property
     def title(self) -> str:

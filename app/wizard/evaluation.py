@@ -1,0 +1,85 @@
+"""What do the recordings of a visit tell so far? Computed beside the screen whenever one is added."""
+
+import logging
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.workers.background import Background, Report, Work
+from core.body import Joint, Side
+
+if TYPE_CHECKING:
+    from core.results import Analysis, JointCalibration
+    from core.samples import Session
+
+_log = logging.getLogger(__name__)
+
+
+class Evaluation(QObject):
+    """`analysis` is that of `session`, both None before the first; a newer question takes the older one's place."""
+
+    done = Signal()
+    progressed = Signal(float, str)
+    refused = Signal(str, str)
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.session: Session | None = None
+        self.analysis: Analysis | None = None
+        self._asked: Session | None = None
+        self._background = Background(self)
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        self._background.progressed.connect(self.progressed)
+
+    @property
+    def is_busy(self) -> bool:
+        return self._background.is_busy
+
+    @property
+    def calibration(self) -> "Mapping[Joint, JointCalibration]":
+        """The latest of each joint."""
+        return {} if self.analysis is None else calibration_of(self.analysis)
+
+    def strides(self, walk: str) -> dict[Side, int]:
+        """How many strides of each side a walk holds, by its name; empty where it was not evaluated."""
+        if self.analysis is None:
+            return {}
+        gait = (recording.gait for recording in self.analysis.recordings if recording.name == walk)
+        return {side: len(found.strides) for of_both in gait for side, found in of_both.items()}
+
+    def ask(self, session: "Session") -> None:
+        """Find out what `session` tells; `done` follows."""
+        self._asked = session
+        self._background.start(_analysing(session))
+
+    def finish(self) -> None:
+        """Wait for the last thread, at the end of the program."""
+        self._background.finish()
+
+    def _on_done(self, analysis: "Analysis") -> None:
+        self.session, self.analysis = self._asked, analysis
+        self.done.emit()
+
+    def _on_failed(self, error: Exception) -> None:
+        _log.error("an analysis ended early", exc_info=error)
+        from app.wording import tr
+
+        self.refused.emit(
+            tr("The analysis ended before it was done."), tr("The recordings are kept; the log holds the details.")
+        )
+
+
+def calibration_of(analysis: "Analysis") -> "Mapping[Joint, JointCalibration]":
+    """The latest calibration of each joint in an analysis."""
+    return {joint: found for calibration in analysis.calibrations for joint, found in calibration.joints.items()}
+
+
+def _analysing(session: "Session") -> Work:
+    def work(report: Report) -> object:
+        from core.analysis import analyse
+
+        return analyse(session, progress=report)
+
+    return work

@@ -1,0 +1,84 @@
+"""The patient of a visit, kept as it is typed."""
+
+from dataclasses import replace
+
+from PySide6.QtCore import QObject, QTimer, Signal
+
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import StoredPatient
+from app.workers.library_desk import LibraryDesk
+from core.samples import Patient
+
+SAVED_AFTER_MS = 500  # without a key pressed
+
+
+class PatientRecord(QObject):
+    """`told` is what stands on the screen, `stored` what the library holds; the second follows the first.
+
+    A new patient is made by `commit`, when the code has been typed wholly: half a code is nobody's.
+    """
+
+    changed = Signal()
+    code_taken = Signal(str)
+    refused = Signal(str, str)
+
+    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+        super().__init__(parent)
+        self._desk = desk
+        self.told = Patient()
+        self.stored: StoredPatient | None = None
+        self._is_saving = False
+        self._pause = QTimer(self)
+        self._pause.setSingleShot(True)
+        self._pause.setInterval(SAVED_AFTER_MS)
+        self._pause.timeout.connect(self.commit)
+
+    @property
+    def is_saved(self) -> bool:
+        return self.stored is not None and self.stored.told == self.told
+
+    @property
+    def is_saving(self) -> bool:
+        return self._is_saving
+
+    def choose(self, stored: StoredPatient) -> None:
+        self.stored, self.told = stored, stored.told
+        self.changed.emit()
+
+    def edit(self, told: Patient) -> None:
+        """Take what is on the screen; a patient of the library is changed once the typing pauses."""
+        self.told = replace(told, code=told.code.strip())
+        if self.stored is not None and self.told.code == self.stored.told.code:
+            self._pause.start()
+
+    def commit(self) -> None:
+        """Save what is on the screen now, and make the patient if there is none yet."""
+        self._pause.stop()
+        if self._is_saving or self.is_saved or not self.told.code:
+            return
+        self._is_saving = True
+        stored, told = self.stored, self.told
+
+        def save(opened: OpenedLibrary) -> StoredPatient | None:
+            patients = opened.library.patients
+            if stored is not None and stored.told.code == told.code:
+                return patients.change(stored, told)
+            if patients.find(told.code) is not None:
+                return None
+            return patients.create(told) if stored is None else patients.change(stored, told)
+
+        self._desk.run(save, self._on_saved, self._on_refused, self)
+
+    def _on_saved(self, stored: StoredPatient | None) -> None:
+        self._is_saving = False
+        if stored is None:
+            self.code_taken.emit(self.told.code)
+            return
+        self.stored = stored
+        self.changed.emit()
+        if not self.is_saved:
+            self._pause.start()  # typed on meanwhile
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._is_saving = False
+        self.refused.emit(what, remedy)

@@ -1,0 +1,219 @@
+"""The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from datetime import datetime
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.storage.stored import StoredRecording, StoredSession
+from app.workers.library_desk import LibraryDesk
+from core.body import Side
+from core.samples import Recording, RecordingKind
+
+if TYPE_CHECKING:
+    from app.acquisition.acquisition import Acquisition
+    from app.acquisition.recorder import Recorder
+    from app.storage.journal.disk import Trouble
+    from app.storage.opened import OpenedLibrary
+
+
+@dataclass(frozen=True, slots=True)
+class Ongoing:
+    """What is being recorded. `began_s` is on the acquisition's clock."""
+
+    told: Recording
+    began_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Take:
+    """A recording that has ended. `recording` holds what its journal holds; None until it has been read.
+
+    `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is.
+    """
+
+    stored: StoredRecording
+    recording: Recording | None = None
+    strides: Mapping[Side, int] | None = None
+    is_decided: bool = True
+
+    @property
+    def id(self) -> UUID:
+        return self.stored.id
+
+    @property
+    def told(self) -> Recording:
+        return self.stored.told
+
+
+class Takes(QObject):
+    """All calls to the library are made by the desk's thread; this lives on the screen's."""
+
+    changed = Signal()
+    begun = Signal()
+    ended = Signal(object)  # Take
+    refused = Signal(str, str)
+    troubled = Signal(str)  # app.storage.journal.disk.Trouble; emitted by whichever thread meets it
+
+    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+        super().__init__(parent)
+        self._desk = desk
+        self.session: StoredSession | None = None
+        self.ongoing: Ongoing | None = None
+        self.every: tuple[Take, ...] = ()
+        self._recorder: Recorder | None = None
+        self._must_stop = False
+        self._strides: Mapping[Side, int] | None = None
+        self._is_stopping = False
+        self._is_restrapped = False
+
+    @property
+    def is_recording(self) -> bool:
+        return self.ongoing is not None
+
+    @property
+    def is_stopping(self) -> bool:
+        """Whether a recording has been stopped and is not read back yet."""
+        return self._is_stopping
+
+    @property
+    def walks(self) -> tuple[Take, ...]:
+        return self._of(RecordingKind.WALKING)
+
+    @property
+    def standing(self) -> Take | None:
+        """The one in force."""
+        return next((take for take in reversed(self._of(RecordingKind.STANDING)) if take.told.is_kept), None)
+
+    @property
+    def free_motion(self) -> Take | None:
+        return next((take for take in reversed(self._of(RecordingKind.FREE_MOTION)) if take.told.is_kept), None)
+
+    @property
+    def is_restrapped(self) -> bool:
+        """Whether sensors were strapped anew since the last recording: what was calibrated holds no longer."""
+        return self._is_restrapped
+
+    def take_over(self, session: StoredSession, takes: tuple[Take, ...]) -> None:
+        """Go on with a session of the library."""
+        self.session, self.every = session, takes
+        self.changed.emit()
+
+    def begin(self, acquisition: "Acquisition", kind: RecordingKind, condition: str = "") -> None:
+        """Record from now on; `begun` or `refused` follows.
+
+        Raises
+        ------
+        RuntimeError
+            Something is being recorded already, or there is no session.
+        """
+        if self.session is None or self.ongoing is not None:
+            raise RuntimeError("a recording needs a session, and is made one at a time")
+        told = Recording(
+            name=self._new_name(kind),
+            kind=kind,
+            folder="",
+            imu={},
+            condition=condition,
+            started=datetime.now().astimezone().isoformat(timespec="seconds"),
+            is_restrapped_before=self._is_restrapped,
+        )
+        self.ongoing = Ongoing(told, acquisition.now_s)
+        self._must_stop, self._strides = False, None
+        session_id = self.session.id
+
+        def start(opened: "OpenedLibrary") -> "Recorder":
+            from app.acquisition.recorder import Recorder
+
+            return Recorder.begin(opened, acquisition, session_id, told, self._on_trouble)
+
+        self._desk.run(start, self._on_started, self._on_refused, self)
+        self.changed.emit()
+
+    def stop(self, strides: Mapping[Side, int] | None = None) -> None:
+        """Stop, and read back what was recorded; `ended` follows. One that has not begun yet ends as soon as it has."""
+        if self.ongoing is None or self._is_stopping:
+            return
+        self._must_stop, self._strides = True, strides
+        if self._recorder is None:
+            return
+        recorder, self._recorder = self._recorder, None
+        self._is_stopping = True
+        self._desk.run(recorder.stop, self._on_stopped, self._on_refused, self)
+        self.changed.emit()
+
+    def mark(self, text: str) -> None:
+        """Note in the journal what happens now."""
+        if self._recorder is not None:
+            self._recorder.mark(text)
+
+    def say_restrapped(self) -> None:
+        """What is recorded next is a new calibration's."""
+        self._is_restrapped = True
+        self.changed.emit()
+
+    def keep(self, take: Take, is_kept: bool) -> None:
+        """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
+        self._put(replace(take, is_decided=True))
+        if take.told.is_kept != is_kept:
+            self.change(take, replace(take.told, is_kept=is_kept))
+
+    def change(self, take: Take, told: Recording) -> None:
+        """Correct what was told of a recording; `changed` follows."""
+
+        def save(opened: "OpenedLibrary") -> StoredRecording:
+            current = opened.library.recordings.find(take.id)
+            return opened.library.recordings.change(current or take.stored, told)
+
+        self._desk.run(save, self._on_changed, self._on_refused, self)
+
+    def recordings(self) -> tuple[Recording, ...]:
+        """Those that count and have been read, in order of time, as an analysis takes them."""
+        read = [replace(take.told, imu=take.recording.imu) for take in self.every if take.recording is not None]
+        return tuple(recording for recording in read if recording.is_kept)
+
+    def _of(self, kind: RecordingKind) -> tuple[Take, ...]:
+        return tuple(take for take in self.every if take.told.kind is kind)
+
+    def _new_name(self, kind: RecordingKind) -> str:
+        """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
+        word = {RecordingKind.STANDING: "standing", RecordingKind.FREE_MOTION: "free motion"}.get(kind, "walk")
+        taken = {take.told.name for take in self.every}
+        first = f"{word} 1" if kind is RecordingKind.WALKING else word
+        return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
+
+    def _put(self, take: Take) -> None:
+        known = {other.id: other for other in self.every}
+        self.every = tuple((known | {take.id: take}).values())
+        self.changed.emit()
+
+    def _on_trouble(self, trouble: "Trouble") -> None:
+        self.troubled.emit(str(trouble))
+
+    def _on_started(self, recorder: "Recorder") -> None:
+        self._recorder = recorder
+        self._is_restrapped = False
+        self.begun.emit()
+        if self._must_stop:
+            self.stop(self._strides)
+
+    def _on_stopped(self, result: tuple[StoredRecording, Recording]) -> None:
+        stored, recording = result
+        is_walk = stored.told.kind is RecordingKind.WALKING
+        take = Take(stored, recording, self._strides, is_decided=not is_walk)
+        self.ongoing, self._is_stopping = None, False
+        self._put(take)
+        self.ended.emit(take)
+
+    def _on_changed(self, stored: StoredRecording) -> None:
+        before = next(take for take in self.every if take.id == stored.id)
+        self._put(replace(before, stored=stored))
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        if self._recorder is None:  # it did not begin, or did not end well: nothing is being recorded any more
+            self.ongoing, self._is_stopping = None, False
+        self.changed.emit()
+        self.refused.emit(what, remedy)

@@ -1,0 +1,294 @@
+"""One session in progress: whose it is, what is worn, what was recorded, and what that tells.
+
+It lives on the screen's thread. Steps read it and ask it; it knows no page. What takes long is done by the library's
+desk or beside the screen, and comes back as a signal.
+"""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from datetime import datetime
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.logs import version_of
+from app.storage.stored import RecordingState, StoredPatient, StoredSession
+from app.wizard.evaluation import Evaluation
+from app.wizard.patient_record import PatientRecord
+from app.wizard.takes import Take, Takes
+from app.wizard.worn_sensors import SourceChoice, WornSensors
+from app.workers.library_desk import LibraryDesk
+from core.body import Joint, Side
+from core.samples import Patient, Recording, RecordingKind, Session
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+    from core.calibration.rest import Rest
+    from core.live.sensors import LiveSensor
+
+TARGET_S = 300.0  # from the patient to the first walk
+
+
+class Visit(QObject):
+    """`session` is None until the patient is known. Nothing of it is lost when this object goes: all is in the library.
+
+    Signals
+    -------
+    changed
+        The session's row, or what is known of zero and standing.
+    resumed
+        A session of the library has been read, with its recordings.
+    refused
+        What the library or a source refused, and what to do.
+    """
+
+    changed = Signal()
+    resumed = Signal()
+    refused = Signal(str, str)
+
+    def __init__(
+        self,
+        desk: LibraryDesk,
+        choices: Sequence[SourceChoice],
+        parent: QObject | None = None,
+        now_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        super().__init__(parent)
+        self._desk, self._now_s = desk, now_s
+        self.choices = tuple(choices)
+        self.session: StoredSession | None = None
+        self.patient = PatientRecord(desk, self)
+        self.sensors = WornSensors(self)
+        self.takes = Takes(desk, self)
+        self.evaluation = Evaluation(self)
+        self.rests: dict[str, Rest] = {}
+        """What each sensor, by name, reads while the patient stands; empty until then."""
+        self.has_skipped_standing = False
+        self.without_ankle: frozenset[Side] = frozenset()
+        self._began_s: float | None = None
+        self._ended_s: float | None = None
+        self._is_changing = False
+        self._wanted: Session | None = None
+        self.patient.refused.connect(self.refused)
+        self.sensors.refused.connect(self.refused)
+        self.takes.refused.connect(self.refused)
+        self.evaluation.refused.connect(self.refused)
+        self.takes.ended.connect(self._on_take_ended)
+        self.takes.changed.connect(self._on_takes_changed)
+
+    # the stopwatch
+
+    @property
+    def elapsed_s(self) -> float | None:
+        """Since the session began; it stands still once the results are looked at. None: looked at only."""
+        if self._began_s is None:
+            return None
+        return (self._now_s() if self._ended_s is None else self._ended_s) - self._began_s
+
+    def begin_stopwatch(self) -> None:
+        self._began_s, self._ended_s = self._now_s(), None
+
+    def end_stopwatch(self) -> None:
+        if self._ended_s is None:
+            self._ended_s = self._now_s()
+
+    # the session
+
+    @property
+    def told(self) -> Session:
+        """What was said about the session, the last word of it on the screen; without recordings."""
+        told = self._wanted or (self.session.told if self.session is not None else Session(recordings=()))
+        return replace(told, recordings=(), patient=self.patient.told)
+
+    @property
+    def prosthetic_sides(self) -> frozenset[Side]:
+        said = self.patient.told.prosthetic_side
+        return frozenset(side for side in Side if said in (side, "both"))
+
+    @property
+    def is_simulated(self) -> bool:
+        acquisition = self.sensors.acquisition
+        return bool(self.told.is_simulated or (acquisition is not None and acquisition.is_simulated))
+
+    def begin_session(self) -> None:
+        """Make the session's row, once the patient has one; `changed` follows."""
+        patient = self.patient.stored
+        if self.session is not None or patient is None or self._is_changing:
+            return
+        self._is_changing = True
+        state = self._desk.state
+        told = Session(
+            recordings=(),
+            started=datetime.now().astimezone().isoformat(timespec="seconds"),
+            operator=state.operator.name if state is not None else "",
+            software=f"gaitwright {version_of('gaitwright')}",
+        )
+
+        def create(opened: "OpenedLibrary") -> StoredSession:
+            return opened.library.sessions.create(patient.id, told)
+
+        self._desk.run(create, self._on_session_changed, self._on_refused, self)
+
+    def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
+        """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
+        zero = {**self.told.zero_rad}
+        if zero_rad is None:
+            zero.pop(joint, None)
+        else:
+            zero[joint] = zero_rad
+        self._change(replace(self.told, zero_rad=zero))
+
+    def place_sensors(self) -> None:
+        """Tell the library who wears what: what is recorded next takes it."""
+        if self.session is None:
+            return
+        session_id, placed = self.session.id, self.sensors.placed()
+
+        def place(opened: "OpenedLibrary") -> StoredSession:
+            opened.library.sessions.place(session_id, placed)
+            return opened.library.sessions.get(session_id)
+
+        self._desk.run(place, self._on_session_changed, self._on_refused, self)
+
+    def correct_placement(self) -> None:
+        """Tell the library that everything so far was worn as it is said now; what was recorded is read anew."""
+        if self.session is None:
+            return
+        session_id, placed = self.session.id, self.sensors.placed()
+        stored = [take.stored for take in self.takes.every]
+
+        def correct(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[Take, ...]]:
+            sessions = opened.library.sessions
+            sessions.place(session_id, placed)
+            if stored:
+                current = [opened.library.recordings.find(recording.id) for recording in stored]
+                sessions.correct_placement([recording for recording in current if recording], placed)
+            return sessions.get(session_id), _read(opened, sessions.get(session_id))
+
+        self._desk.run(correct, self._on_read, self._on_refused, self)
+
+    def resume(self, session_id: UUID) -> None:
+        """Take up a session of the library where it was left; `resumed` follows."""
+
+        def read(opened: "OpenedLibrary") -> tuple[StoredPatient, StoredSession, tuple[Take, ...]]:
+            session = opened.library.sessions.view(session_id)
+            return opened.library.patients.get(session.patient_id), session, _read(opened, session)
+
+        self._desk.run(read, self._on_resumed, self._on_refused, self)
+
+    def live_sensors(self) -> "Mapping[str, LiveSensor]":
+        """What the live estimator has to know of each sensor that is worn, by its name."""
+        from app.acquisition.works import live_sensors
+
+        return live_sensors(self.sensors.site_of, self.rests, self.sensors.status)
+
+    def evaluate(self, with_walk: Recording | None = None) -> None:
+        """Find out what the recordings tell, with a walk that still goes on; `evaluation.done` follows."""
+        recordings = self.takes.recordings() + ((with_walk,) if with_walk is not None else ())
+        if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
+            sensors = self.session.told.sensors if self.session is not None else {}
+            told = replace(self.told, sensors=sensors, is_simulated=self.is_simulated)
+            self.evaluation.ask(replace(told, recordings=recordings))
+
+    def close(self) -> None:
+        """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
+        self.patient.commit()
+        self.takes.stop()
+        self.sensors.close()
+        self.evaluation.finish()
+
+    def _change(self, told: Session) -> None:
+        self._wanted = told
+        if self.session is None or self._is_changing:
+            return
+        self._is_changing = True
+        session = self.session
+
+        def save(opened: "OpenedLibrary") -> StoredSession:
+            current = opened.library.sessions.get(session.id)
+            return opened.library.sessions.change(current, replace(current.told, zero_rad=told.zero_rad))
+
+        self._desk.run(save, self._on_session_changed, self._on_refused, self)
+
+    def _on_session_changed(self, session: StoredSession) -> None:
+        self._is_changing = False
+        self.session = self.takes.session = session
+        wanted = self._wanted
+        if wanted is not None and dict(wanted.zero_rad) != dict(session.told.zero_rad):
+            self._change(wanted)  # typed on meanwhile
+        else:
+            self._wanted = None
+        self.changed.emit()
+
+    def _on_read(self, read: tuple[StoredSession, tuple[Take, ...]]) -> None:
+        session, takes = read
+        before = {take.id: take for take in self.takes.every}
+        self.session = session
+        kept = (replace(before.get(take.id, take), stored=take.stored, recording=take.recording) for take in takes)
+        self.takes.take_over(session, tuple(kept))
+        self.changed.emit()
+        self.evaluate()
+
+    def _on_resumed(self, read: tuple[StoredPatient, StoredSession, tuple[Take, ...]]) -> None:
+        patient, self.session, takes = read
+        self.patient.choose(patient)
+        self.takes.take_over(self.session, takes)
+        self.rests = _rests(takes)
+        self.resumed.emit()
+        self.changed.emit()
+        self.evaluate()
+
+    def _on_take_ended(self, _take: Take) -> None:
+        self.evaluate()
+
+    def _on_takes_changed(self) -> None:
+        self.changed.emit()
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._is_changing = False
+        self._wanted = None
+        self.refused.emit(what, remedy)
+        self.changed.emit()
+
+
+def _read(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
+    """All recordings of a session that can be read, with their samples."""
+    from app.library_commands import DECODERS
+    from app.storage.exchange import recording_with_samples
+
+    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
+    return tuple(
+        Take(stored, recording_with_samples(opened, stored, DECODERS)[0])
+        for stored in session.recordings
+        if stored.state in usable
+    )
+
+
+def _rests(takes: Sequence[Take]) -> "dict[str, Rest]":
+    """What each sensor reads at rest, by its name, as the latest standing tells."""
+    from core.calibration.rest import rest_of
+
+    rests: dict[str, Rest] = {}
+    for take in takes:
+        if take.told.kind is RecordingKind.STANDING and take.recording and take.stored.placement and take.told.is_kept:
+            worn = take.stored.placement.sensors
+            found = {worn[site].name: rest_of(block) for site, block in take.recording.imu.items() if site in worn}
+            rests |= {name: rest for name, rest in found.items() if rest is not None}
+    return rests
+
+
+def patient_line(patient: Patient) -> str:
+    """What the clinic typed of a patient, in one line beside the code."""
+    from app.wording import tr
+
+    sexes = {"female": tr("female"), "male": tr("male")}
+    person = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
+    sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
+    about = ""
+    if patient.prosthetic_side in sides:
+        about = tr("{side} prosthetic").format(side=sides[patient.prosthetic_side])
+    elif patient.affected_side in sides:
+        about = tr("{side} affected").format(side=sides[patient.affected_side])
+    return " · ".join(filter(None, [person, about, patient.device]))

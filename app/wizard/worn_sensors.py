@@ -1,0 +1,167 @@
+"""Which sensors are there, and who wears what where?"""
+
+import logging
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.wording import name_of, tr
+from app.workers.background import Background, Report, Work
+from core.body import Joint, Site
+from devices.live import SourceRefusedError
+
+if TYPE_CHECKING:
+    from app.acquisition.acquisition import Acquisition, SensorStatus
+    from app.storage.stored import PlacedSensor
+    from devices.live import LiveSource
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class SourceChoice:
+    """Something that sensors can be heard through. `make` may take a second: it is called beside the screen."""
+
+    key: str
+    name: str
+    make: Callable[[], "Sequence[LiveSource]"]
+
+
+class WornSensors(QObject):
+    """`acquisition` is None until a source is open; `site_of` gives the site by the sensor's name.
+
+    Left to the motion (`is_left_to_motion`), sensors have no site until the free motion has told it.
+    """
+
+    changed = Signal()
+    opened = Signal()
+    refused = Signal(str, str)
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.acquisition: Acquisition | None = None
+        self.choice: SourceChoice | None = None
+        self.site_of: dict[str, Site] = {}
+        self.is_left_to_motion = False
+        self._background = Background(self)
+        self._background.done.connect(self._on_opened)
+        self._background.failed.connect(self._on_failed)
+
+    @property
+    def is_searching(self) -> bool:
+        return self._background.is_busy
+
+    @property
+    def sensor_at(self) -> dict[Site, str]:
+        return {site: sensor for sensor, site in self.site_of.items()}
+
+    @property
+    def status(self) -> "Mapping[str, SensorStatus]":
+        return {} if self.acquisition is None else self.acquisition.status()
+
+    @property
+    def joints(self) -> list[Joint]:
+        """Those that have a sensor on both sides."""
+        worn = self.sensor_at
+        return [joint for joint in Joint if joint.proximal in worn and joint.distal in worn]
+
+    def search(self, choice: SourceChoice) -> None:
+        """Open a source beside the screen; `opened` or `refused` follows. What was open before is closed."""
+        self._close()
+        self.choice = choice
+        self._background.start(_opening(choice))
+        self.changed.emit()
+
+    def close(self) -> None:
+        """Let go of the sensors."""
+        self._background.finish()
+        self._close()
+
+    def assign(self, sensor: str, site: Site | None) -> None:
+        """Wear `sensor` at `site`; one that was worn there takes the place that `sensor` had, or none."""
+        before = self.site_of.pop(sensor, None)
+        other = self.sensor_at.get(site) if site is not None else None
+        if other is not None:
+            del self.site_of[other]
+            if before is not None:
+                self.site_of[other] = before
+        if site is not None:
+            self.site_of[sensor] = site
+        self.is_left_to_motion = False
+        self.changed.emit()
+
+    def assign_all(self, site_of: Mapping[str, Site]) -> None:
+        """Wear all sensors as said, the others nowhere."""
+        self.site_of = dict(site_of)
+        self.changed.emit()
+
+    def leave_to_motion(self, is_left: bool) -> None:
+        self.is_left_to_motion = is_left
+        if is_left:
+            self.site_of = {}
+        self.changed.emit()
+
+    def placed(self) -> "dict[Site, PlacedSensor]":
+        """What the library is told of the sensors that are worn."""
+        from app.storage.stored import PlacedSensor
+        from core.samples import SensorInfo
+
+        status = self.status
+        placed = {}
+        for sensor, site in self.site_of.items():
+            told = status[sensor].told
+            info = SensorInfo(told.serial, told.model, told.firmware, told.rate_hz, told.rate_kind)
+            placed[site] = PlacedSensor(sensor, info)
+        return placed
+
+    def price_of_missing(self) -> str:
+        """What is not measured for want of sensors, in a sentence; empty where all six are worn."""
+        worn = self.sensor_at
+        lost = [name_of(joint) for joint in Joint if joint not in self.joints]
+        if not lost or not worn:
+            return ""
+        return tr("Without {sites}: no {joints} angles.").format(
+            sites=", ".join(name_of(site) for site in Site if site not in worn), joints=", ".join(lost)
+        )
+
+    def _close(self) -> None:
+        self._background.stop()
+        if self.acquisition is not None:
+            self.acquisition.close()
+        self.acquisition, self.choice, self.site_of = None, None, {}
+
+    def _on_opened(self, acquisition: "Acquisition") -> None:
+        self.acquisition = acquisition
+        self.opened.emit()
+        self.changed.emit()
+
+    def _on_failed(self, error: Exception) -> None:
+        choice, self.choice = self.choice, None
+        if isinstance(error, SourceRefusedError):
+            self.refused.emit(error.what, error.remedy)
+        else:
+            _log.error("a source did not open", exc_info=error)
+            name = choice.name if choice is not None else tr("This source")
+            self.refused.emit(
+                tr("{name} cannot be opened.").format(name=name), tr("Choose another source; the log has more.")
+            )
+        self.changed.emit()
+
+
+def _opening(choice: SourceChoice) -> Work:
+    def work(report: Report) -> object:
+        from app.acquisition.acquisition import Acquisition
+
+        report(0.0, choice.name)
+        acquisition = Acquisition(choice.make())
+        acquisition.start()
+        try:
+            report(1.0, choice.name)  # raises where nobody waits any more
+        except BaseException:
+            acquisition.close()
+            raise
+        return acquisition
+
+    return work
