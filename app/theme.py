@@ -35,6 +35,7 @@ class Colours:
     ink3: str
     inv: str
     inv_ink: str
+    inv_ink2: str
     caution: str
     caution_ink: str
     caution_edge: str
@@ -65,6 +66,7 @@ LIGHT = Colours(
     ink3="#586775",
     inv="#14202B",
     inv_ink="#FFFFFF",
+    inv_ink2="#BCC7D0",
     caution="#FFF1B8",
     caution_ink="#14202B",
     caution_edge="#B58A00",
@@ -95,6 +97,7 @@ DARK = Colours(
     ink3="#93A1AD",
     inv="#EDF1F4",
     inv_ink="#10161B",
+    inv_ink2="#43525F",
     caution="#3B3206",
     caution_ink="#FBF6DF",
     caution_edge="#E2C340",
@@ -144,6 +147,9 @@ class Theme:
 
     def text(self, side: Side) -> QColor:
         return QColor(self.colours.left_text if side is Side.LEFT else self.colours.right_text)
+
+    def pale(self, side: Side) -> QColor:
+        return QColor(self.colours.left_pale if side is Side.LEFT else self.colours.right_pale)
 
     def soft(self, side: Side) -> QColor:
         return QColor(self.colours.left_soft if side is Side.LEFT else self.colours.right_soft)

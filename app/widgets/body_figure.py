@@ -1,0 +1,276 @@
+"""Which sensor sits where on the patient? A drawn person who faces you, like an X-ray: right stands at the left."""
+
+from collections.abc import Mapping
+from enum import Enum, auto
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.theme import Look, Theme
+from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
+from app.widgets.chip import LETTERS
+from app.widgets.text import SEMIBOLD
+from app.wording import name_of, tr
+from core.body import Joint, Side, Site
+
+MIDDLE = WHOLE.center().x()
+SENSOR = (20.0, 13.0)  # at most, px: a sensor's box does not grow with the figure
+SENSOR_UNITS = 32.0  # of the drawing, where the figure is small
+SMALL_BELOW = 100  # px high: lines thin, no pelvis, no joints
+SENTENCE_ROOM = 32
+LETTER_AT = QPointF(108, 36)  # from the middle and the top, units of the drawing
+LEG_LETTER_AT = QPointF(74, 214)
+SEGMENT_SLACK = 6  # units of the drawing: a finger hits beside the outline
+
+
+class SensorMark(Enum):
+    """How a place looks. Without a mark it is left bare, for it is not used."""
+
+    WORN = auto()
+    LOOK = auto()  # heard, but something about it wants a look: battery, loss
+    SILENT = auto()
+    GAP = auto()  # a sensor is still to come here
+
+
+def mark_words(mark: SensorMark) -> str:
+    """Say a mark as a reader of screens does."""
+    return {
+        SensorMark.WORN: tr("worn"),
+        SensorMark.LOOK: tr("wants a look"),
+        SensorMark.SILENT: tr("silent"),
+        SensorMark.GAP: tr("no sensor yet"),
+    }[mark]
+
+
+def paint_legs(
+    painter: QPainter,
+    rect: QRectF,
+    theme: Theme,
+    emphasised: Site | None,
+    worn: Mapping[Site, SensorMark],
+    is_from_behind: bool = False,
+) -> None:
+    """Draw both legs with their sensors as large as `rect` allows; with pelvis and joints where it is large."""
+    is_small = rect.height() < SMALL_BELOW * theme.scale
+    painter.save()
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    place = _placing(BARE_LEGS if is_small else LEGS, rect, is_from_behind)
+    if not is_small:
+        _paint_plain(painter, theme, place, "pelvis")
+    _paint_segments(painter, theme, place, emphasised, is_small)
+    if not is_small:
+        _paint_joints(painter, theme, place)
+    _paint_sensors(painter, theme, place, worn)
+    painter.restore()
+
+
+class BodyFigure(QWidget):
+    """The whole person with large R and L, or the legs alone with their joints marked."""
+
+    def __init__(self, look: Look, legs_only: bool = False) -> None:
+        super().__init__()
+        self._look, self._is_legs_only = look, legs_only
+        self._is_from_behind = False
+        self._worn: dict[Site, SensorMark] = {}
+        self._emphasised: Site | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self._name()
+        look.changed.connect(self._on_look_changed)
+
+    @property
+    def is_from_behind(self) -> bool:
+        return self._is_from_behind
+
+    def show_worn(self, worn: Mapping[Site, SensorMark]) -> None:
+        """Mark the places of the sensors; a site that is not in `worn` stays bare."""
+        if dict(worn) != self._worn:
+            self._worn = dict(worn)
+            self._name()
+            self.update()
+
+    def emphasise(self, site: Site | None) -> None:
+        """Darken one segment: the one to move, or the place that is next."""
+        if site != self._emphasised:
+            self._emphasised = site
+            self._name()
+            self.update()
+
+    def set_from_behind(self, is_from_behind: bool) -> None:
+        """Turn the figure's back to you: the patient's right then stands at the right."""
+        self._is_from_behind = is_from_behind
+        self._name()
+        self._on_look_changed()
+
+    def set_legs_only(self, is_legs_only: bool) -> None:
+        self._is_legs_only = is_legs_only
+        self._on_look_changed()
+
+    def site_at(self, point: QPointF) -> Site | None:
+        """Which segment lies under `point` of the widget; just beside its outline counts as well."""
+        to_drawing, _ = self._placed().inverted()
+        spot = to_drawing.map(point)
+        near = QRectF(0, 0, 2 * SEGMENT_SLACK, 2 * SEGMENT_SLACK)
+        near.moveCenter(spot)
+        outlines = body_shapes().outlines
+        hit = [site for site in Site if outlines[site].contains(spot)]
+        hit += [site for site in Site if outlines[site].intersects(near)]
+        return hit[0] if hit else None
+
+    def anchor(self, site: Site) -> QPointF:
+        """Where the sensor of `site` sits, in the widget."""
+        return self._placed().map(body_shapes().points[f"{site}_sensor"])
+
+    def joint_anchor(self, joint: Joint) -> QPointF:
+        """Where `joint` lies, in the widget."""
+        return self._placed().map(body_shapes().points[joint])
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(200), px(440)) if self._is_legs_only else QSize(px(300), px(520))
+
+    def minimumSizeHint(self) -> QSize:
+        theme = self._look.theme
+        sentence = QFontMetrics(theme.font(14)).horizontalAdvance(self._sentence())
+        if self._is_legs_only:
+            return QSize(max(sentence, theme.px(170)), theme.px(180))
+        return QSize(max(sentence, theme.px(250)), theme.px(300))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        place = self._placed()
+        if self._is_legs_only:
+            paint_legs(painter, self._room(), theme, self._emphasised, self._worn, self._is_from_behind)
+        else:
+            for name in ("right_arm", "left_arm", "body", "head"):
+                _paint_plain(painter, theme, place, name)
+            if not self._is_from_behind:
+                _paint_eyes(painter, theme, place)
+            _paint_segments(painter, theme, place, self._emphasised, is_small=False)
+            _paint_sensors(painter, theme, place, self._worn)
+        self._paint_letters(painter, place)
+        painter.setPen(QColor(theme.colours.ink2))
+        painter.setFont(theme.font(14))
+        foot = QRectF(0, self.height() - theme.px(SENTENCE_ROOM), self.width(), theme.px(SENTENCE_ROOM))
+        painter.drawText(foot, Qt.AlignmentFlag.AlignCenter, self._sentence())
+
+    def _room(self) -> QRectF:
+        px = self._look.theme.px
+        return QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
+
+    def _placed(self) -> QTransform:
+        return _placing(LEGS if self._is_legs_only else WHOLE, self._room(), self._is_from_behind)
+
+    def _sentence(self) -> str:
+        return tr("Seen from behind") if self._is_from_behind else tr("The patient faces you")
+
+    def _paint_letters(self, painter: QPainter, place: QTransform) -> None:
+        """R and L beside the person they belong to, as large as the room is; inside the widget whatever its width."""
+        theme = self._look.theme
+        at = LEG_LETTER_AT if self._is_legs_only else LETTER_AT
+        letter, note = theme.font(28 if self._is_legs_only else 40, SEMIBOLD), theme.font(14)
+        words = {Side.LEFT: tr("patient's left"), Side.RIGHT: tr("patient's right")}
+        for side in Side:
+            sign = 1 if side is Side.LEFT else -1
+            middle = place.map(QPointF(MIDDLE + sign * at.x(), at.y()))
+            half = max(QFontMetrics(note).horizontalAdvance(words[side]) if not self._is_legs_only else 0, theme.px(24))
+            x = min(max(middle.x(), half / 2), self.width() - half / 2)
+            painter.setPen(theme.text(side))
+            painter.setFont(letter)
+            box = QRectF(x - half / 2, middle.y() - theme.px(24), half, theme.px(48))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, LETTERS[side])
+            if not self._is_legs_only:
+                painter.setPen(QColor(theme.colours.ink2))
+                painter.setFont(note)
+                painter.drawText(
+                    box.translated(0, theme.px(42)).adjusted(0, 0, 0, -theme.px(24)),
+                    Qt.AlignmentFlag.AlignCenter,
+                    words[side],
+                )
+
+    def _name(self) -> None:
+        self.setAccessibleName(self._sentence())
+        places = [
+            tr("{site}: {state}").format(site=name_of(site), state=mark_words(self._worn[site]))
+            for site in Site
+            if site in self._worn
+        ]
+        if self._emphasised is not None:
+            places.append(tr("marked: {site}").format(site=name_of(self._emphasised)))
+        self.setAccessibleDescription("; ".join(places))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+def _placing(part: QRectF, rect: QRectF, is_from_behind: bool) -> QTransform:
+    """From the drawing to the screen: `part` as large as `rect` allows, in its middle; mirrored from behind."""
+    scale = min(rect.width() / part.width(), rect.height() / part.height())
+    place = QTransform()
+    place.translate(rect.center().x(), rect.center().y())
+    place.scale(-scale if is_from_behind else scale, scale)
+    place.translate(-part.center().x(), -part.center().y())
+    return place
+
+
+def _paint_plain(painter: QPainter, theme: Theme, place: QTransform, name: str) -> None:
+    painter.setPen(theme.pen(theme.colours.control, 1.5))
+    painter.setBrush(QColor(theme.colours.track))
+    painter.drawPath(place.map(body_shapes().outlines[name]))
+
+
+def _paint_eyes(painter: QPainter, theme: Theme, place: QTransform) -> None:
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QColor(theme.colours.ink2))
+    for side in Side:
+        painter.drawEllipse(place.map(body_shapes().points[f"{side}_eye"]), 2.2 * theme.scale, 2.2 * theme.scale)
+
+
+def _paint_segments(
+    painter: QPainter, theme: Theme, place: QTransform, emphasised: Site | None, is_small: bool
+) -> None:
+    for site in Site:
+        is_emphasised = site is emphasised
+        width = (2.0 if is_emphasised else 1.25) if is_small else (3.5 if is_emphasised else 2.0)
+        painter.setPen(theme.side_pen(site.side, width))
+        painter.setBrush(theme.soft(site.side) if is_emphasised else theme.pale(site.side))
+        painter.drawPath(place.map(body_shapes().outlines[site]))
+
+
+def _paint_joints(painter: QPainter, theme: Theme, place: QTransform) -> None:
+    painter.setPen(theme.pen(theme.colours.ink, 2))
+    painter.setBrush(QColor(theme.colours.surface))
+    for joint in Joint:
+        painter.drawEllipse(place.map(body_shapes().points[joint]), 5 * theme.scale, 5 * theme.scale)
+
+
+def _paint_sensors(painter: QPainter, theme: Theme, place: QTransform, worn: Mapping[Site, SensorMark]) -> None:
+    """A dark box where a sensor is worn; yellow where it wants a look, with a bar where it is silent; else a gap."""
+    c = theme.colours
+    width = min(SENSOR_UNITS * abs(place.m11()), SENSOR[0] * theme.scale)
+    is_small = width < SENSOR[0] / 2 * theme.scale
+    for site, mark in worn.items():
+        box = QRectF(0, 0, width, width * SENSOR[1] / SENSOR[0])
+        box.moveCenter(place.map(body_shapes().points[f"{site}_sensor"]))
+        radius = width / 8
+        if mark is SensorMark.WORN:
+            painter.setPen(theme.pen(c.surface, 0.75 if is_small else 1))
+            painter.setBrush(QColor(c.ink))
+            painter.drawRoundedRect(box, radius, radius)
+            continue
+        grown = width / 20
+        box.adjust(-grown, -grown, grown, grown)
+        pen = theme.pen(c.ink if mark is SensorMark.GAP else c.caution_mark_ink, 1 if is_small else 1.5)
+        if mark is SensorMark.GAP:
+            pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+            pen.setDashPattern([2.0, 1.6])
+        painter.setPen(pen)
+        painter.setBrush(QColor(c.caution if mark is SensorMark.GAP else c.caution_mark))
+        painter.drawRoundedRect(box, radius, radius)
+        if mark is SensorMark.SILENT:
+            painter.drawLine(
+                box.bottomLeft() + QPointF(width / 8, -width / 8), box.topRight() + QPointF(-width / 8, width / 8)
+            )
