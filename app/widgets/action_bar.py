@@ -1,0 +1,415 @@
+"""What can be done now? Back at the left, the primary verb at the right, and its consequence in words beside it."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleAnnouncementEvent,
+    QColor,
+    QPainter,
+    QPaintEvent,
+    QPalette,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.button import HEIGHT, Button, Kind
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
+
+BAR = 72
+STOP_HEIGHT = 56  # what stops a recording is found first
+PRIMARY_WIDTH = 208
+NARROW_BELOW = 964  # the bar's share of a window of 1180
+NOTE_WIDTH = 300  # longer words beside a verb take a second line
+NOTE_AT_LEAST = 170
+DOT = 16
+
+Row = Sequence[QWidget]
+
+
+@dataclass(frozen=True, slots=True)
+class Verb:
+    """`is_wished`: pressing it is what we want, so it is filled. `key` is what its cap shows."""
+
+    text: str
+    key: str = ""
+    icon: Icon | None = None
+    is_wished: bool = True
+    is_enabled: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class RecordingNote:
+    """What is being recorded; while there is one, the bar is inverse, to be seen across the room."""
+
+    title: str
+    note: str
+    elapsed_s: float
+    has_sound: bool
+
+
+@dataclass(frozen=True, slots=True)
+class BarState:
+    """`others` stand left of the primary verb, `quiet` ones after Back; without Back the first takes its place."""
+
+    primary: Verb | None = None
+    others: tuple[Verb, ...] = ()
+    quiet: tuple[Verb, ...] = ()
+    note: str = ""
+    recording: RecordingNote | None = None
+    has_back: bool = True
+
+
+class ActionBar(QWidget):
+    """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
+
+    back_pressed = Signal()
+    primary_pressed = Signal()
+    other_pressed = Signal(int)
+    quiet_pressed = Signal(int)
+    sound_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._state = BarState()
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(tr("Actions"))
+        self._clock = _Clock(look, self)
+        self.back = VerbButton(look, self)
+        self._quiet: list[VerbButton] = []
+        self._title = Text(look, size=15, weight=SEMIBOLD, wraps=True, parent=self)
+        self._note = Text(look, size=14, tone="ink2", wraps=True, parent=self)
+        self.sound = VerbButton(look, self)
+        self._others: list[VerbButton] = []
+        self.primary = VerbButton(look, self, is_primary=True)
+        self.back.clicked.connect(self.back_pressed)
+        self.primary.clicked.connect(self.primary_pressed)
+        self.sound.clicked.connect(self.sound_pressed)
+        look.changed.connect(self._on_look_changed)
+        self._show()
+
+    @property
+    def state(self) -> BarState:
+        return self._state
+
+    @property
+    def others(self) -> Sequence["VerbButton"]:
+        return [button for button in self._others if not button.isHidden()]
+
+    @property
+    def quiet(self) -> Sequence["VerbButton"]:
+        return [button for button in self._quiet if not button.isHidden()]
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        """All that can be pressed, in the order of reading."""
+        buttons = [self.back, *self._quiet, self.sound, *self._others, self.primary]
+        return [button for button in buttons if not button.isHidden()]
+
+    def show_state(self, state: BarState) -> None:
+        """Show what can be done; cheap where only the elapsed time is another."""
+        before, self._state = self._state, state
+        if state.recording is not None:
+            self._clock.show_elapsed(state.recording.elapsed_s)
+        if _without_time(before) != _without_time(state):
+            self._show()
+            if state.recording is not None and before.recording is None:
+                words = f"{state.recording.title}. {state.recording.note}"
+                QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, words))
+
+    def focus(self) -> None:
+        """Give the focus to what will most likely be pressed."""
+        order = self.tab_order
+        best = self.primary if self.primary in order and self.primary.isEnabled() else next(iter(order), None)
+        if best is not None:
+            best.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self._arrange()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c = theme.colours
+        is_inverse = self._state.recording is not None
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(c.inv if is_inverse else c.surface))
+        if not is_inverse:
+            painter.setPen(theme.pen(c.line, 1))
+            painter.drawLine(self.rect().topLeft(), self.rect().topRight())
+
+    def _show(self) -> None:
+        state = self._state
+        recording = state.recording
+        is_inverse = recording is not None
+        had_focus = any(button.hasFocus() for button in self.tab_order)
+        self._keep_enough(self._quiet, len(state.quiet), self._on_quiet_clicked)
+        self._keep_enough(self._others, len(state.others), self._on_other_clicked)
+        sound = None
+        if recording is not None:
+            on = recording.has_sound
+            sound = Verb(tr("Sound on") if on else tr("Sound off"), "", Icon.SOUND if on else Icon.SOUND_OFF)
+        back = Verb(tr("Back"), "", Icon.BACK) if state.has_back and not is_inverse else None
+        self.back.show_verb(back, Kind.SECONDARY, is_inverse)
+        self.sound.show_verb(sound, Kind.QUIET, is_inverse)
+        for k, (button, verb) in enumerate(zip(self._quiet, _padded(state.quiet, len(self._quiet)), strict=True)):
+            takes_place_of_back = k == 0 and not state.has_back
+            button.show_verb(verb, Kind.SECONDARY if takes_place_of_back else Kind.QUIET, is_inverse)
+        for button, verb in zip(self._others, _padded(state.others, len(self._others)), strict=True):
+            button.show_verb(verb, Kind.SECONDARY, is_inverse)
+        wished = state.primary is not None and (state.primary.is_wished or is_inverse)
+        self.primary.show_verb(state.primary, Kind.PRIMARY if wished else Kind.SECONDARY, is_inverse)
+        self._clock.setVisible(is_inverse)
+        self._title.setText(recording.title if recording is not None else "")
+        self._note.setText(recording.note if recording is not None else state.note)
+        for text in (self._title, self._note):
+            text.setVisible(bool(text.text()))
+        self._colour()
+        self._arrange()
+        if had_focus and not any(button.hasFocus() for button in self.tab_order):
+            self.focus()
+
+    def _keep_enough(self, buttons: list["VerbButton"], count: int, slot: Callable[[], None]) -> None:
+        while len(buttons) < count:
+            button = VerbButton(self._look, self)
+            button.clicked.connect(slot)
+            buttons.append(button)
+            order = [self.back, *self._quiet, self.sound, *self._others, self.primary]
+            for before, after in pairwise(order):
+                QWidget.setTabOrder(before, after)
+
+    def _colour(self) -> None:
+        c = self._look.theme.colours
+        is_inverse = self._state.recording is not None
+        for text, colour in (
+            (self._title, c.inv_ink if is_inverse else c.ink),
+            (self._note, c.inv_ink2 if is_inverse else c.ink2),
+        ):
+            palette = text.palette()
+            palette.setColor(QPalette.ColorRole.WindowText, QColor(colour))
+            text.setPalette(palette)
+        self.update()
+
+    def _arrange(self) -> None:
+        """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
+        px = self._look.theme.px
+        margin, gap = (px(24), px(16)) if self.width() >= px(NARROW_BELOW) else (px(16), px(8))
+        room = max(self.width() - 2 * margin, 1)
+        left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
+        right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
+        before = _width(left, gap) + (2 * gap if left else 0)
+        after = _width(right, gap) + (2 * gap if right else 0)
+        is_one_row = before + after - 2 * gap <= room
+        is_beside = is_one_row and self._fits(room - before - after)
+        rows = [(left, right)] if is_one_row else [*_rows(left, room, gap), *_rows(right, room, gap, is_right=True)]
+        line = px(BAR) if is_beside else px(HEIGHT + 8)
+        top = 0
+        if is_beside:
+            self._place_words(self._narrowed(QRect(margin + before, 0, room - before - after, line)))
+        else:
+            height = self._words_height(room)
+            self._place_words(QRect(margin, px(8), room, height))
+            top = px(8) + height
+        for first, last in rows:
+            self._place_row(first, margin, top, line, gap)
+            self._place_row(last, margin + room - _width(last, gap), top, line, gap)
+            top += line
+        self.setFixedHeight(top if is_beside else max(top + px(4), px(BAR)))
+
+    def _place_row(self, widgets: Row, x: int, top: int, line: int, gap: int) -> None:
+        for widget in widgets:
+            size = widget.sizeHint()
+            widget.setGeometry(QRect(QPoint(x, top + (line - size.height()) // 2), size))
+            x += size.width() + gap
+
+    def _fits(self, width: int) -> bool:
+        """Tell whether the words may stand beside the verbs: not squeezed, and no higher than the bar."""
+        px = self._look.theme.px
+        texts = [text for text in (self._title, self._note) if text.text()]
+        widest = max((text.fontMetrics().horizontalAdvance(text.text()) for text in texts), default=0)
+        return width >= min(widest, px(NOTE_AT_LEAST)) and self._words_height(width) <= px(BAR - 8)
+
+    def _words_height(self, width: int) -> int:
+        texts = [text for text in (self._title, self._note) if text.text()]
+        return sum(text.heightForWidth(max(width, 1)) for text in texts)
+
+    def _narrowed(self, box: QRect) -> QRect:
+        """Give lines of a length that is read at a glance: two short ones rather than a long one."""
+        px = self._look.theme.px
+        if self._state.recording is not None:
+            return box
+        for widest in (NOTE_WIDTH, 2 * NOTE_WIDTH):
+            left = max(box.left(), box.right() + 1 - px(widest))
+            if self._words_height(box.right() + 1 - left) <= px(44):
+                return QRect(left, box.top(), box.right() + 1 - left, box.height())
+        return box
+
+    def _place_words(self, box: QRect) -> None:
+        """Place title and note: by the primary verb whose price they tell, or after the time of a recording."""
+        align = Qt.AlignmentFlag.AlignRight if self._state.recording is None else Qt.AlignmentFlag.AlignLeft
+        top = box.top() + (box.height() - self._words_height(box.width())) // 2
+        for text in (self._title, self._note):
+            height = text.heightForWidth(box.width()) if text.text() else 0
+            text.setAlignment(align | Qt.AlignmentFlag.AlignVCenter)
+            text.setGeometry(box.left(), top, box.width(), height)
+            top += height
+
+    def _on_other_clicked(self) -> None:
+        self.other_pressed.emit(next(k for k, one in enumerate(self._others) if one is self.sender()))
+
+    def _on_quiet_clicked(self) -> None:
+        self.quiet_pressed.emit(next(k for k, one in enumerate(self._quiet) if one is self.sender()))
+
+    def _on_look_changed(self) -> None:
+        self._colour()
+        self._arrange()
+
+
+class VerbButton(Button):
+    """A button whose word, key and kind follow what can be done now; hidden while it is nothing."""
+
+    def __init__(self, look: Look, parent: QWidget, is_primary: bool = False) -> None:
+        super().__init__(look, "", parent=parent)
+        self._is_primary, self._is_inverse = is_primary, False
+        self.hide()
+
+    @property
+    def is_filled(self) -> bool:
+        return self._kind is Kind.PRIMARY
+
+    def show_verb(self, verb: Verb | None, kind: Kind, is_inverse: bool) -> None:
+        self.setVisible(verb is not None)
+        if verb is None:
+            return
+        self._kind, self._icon, self._key, self._is_inverse = kind, verb.icon, verb.key, is_inverse
+        self._height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
+        self.setText(verb.text)
+        self.setAccessibleName(verb.text)
+        self.setAccessibleDescription(tr("Key {key}").format(key=verb.key) if verb.key else "")
+        self.setEnabled(verb.is_enabled)
+        self.updateGeometry()
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        size = super().sizeHint()
+        if self._is_primary:
+            size.setWidth(max(size.width(), self._look.theme.px(PRIMARY_WIDTH)))
+        return size
+
+    def _paint_frame(self, painter: QPainter) -> QColor:
+        c = self._look.theme.colours
+        if self._is_inverse:
+            return self._paint_inverse_frame(painter)
+        if self._kind is Kind.PRIMARY and not self.isEnabled():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(c.track))
+            radius = CONTROL_RADIUS * self._look.theme.scale
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+            return QColor(c.disabled)
+        return super()._paint_frame(painter)
+
+    def _paint_inverse_frame(self, painter: QPainter) -> QColor:
+        """Draw the frame on the inverse bar, and the focus within it: the usual ring would be ink on ink."""
+        theme = self._look.theme
+        c = theme.colours
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        ink = QColor(c.inv if self._kind is Kind.PRIMARY else c.inv_ink)
+        if not self.isEnabled():
+            ink = QColor(c.disabled)
+        painter.setPen(theme.pen(c.inv_ink2, 1.25) if self._kind is Kind.SECONDARY else Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(c.inv_ink) if self._kind is Kind.PRIMARY else Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(box, radius, radius)
+        if self.isEnabled() and (self.underMouse() or self.isDown()):
+            veil = QColor(ink)
+            veil.setAlphaF(0.20 if self.isDown() else 0.08)
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(veil)
+            painter.drawRoundedRect(box, radius, radius)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        if self.hasFocus():
+            inset = 3 * theme.scale
+            painter.setPen(theme.pen(ink, 2))
+            painter.drawRoundedRect(box.adjusted(inset, inset, -inset, -inset), radius - inset / 2, radius - inset / 2)
+        return ink
+
+
+class _Clock(QWidget):
+    """The dot of a recording and its time. The dot does not blink."""
+
+    def __init__(self, look: Look, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look, self._time = look, "00:00"
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self.updateGeometry)
+
+    def show_elapsed(self, elapsed_s: float) -> None:
+        time = clock_time(elapsed_s)
+        if time != self._time:
+            self._time = time
+            self.setAccessibleName(tr("Recording, {time}").format(time=time))
+            self.update()
+
+    def painted_texts(self) -> list[tuple[str, QRect]]:
+        """Give each text with the box it is painted in."""
+        return [(self._time, QRect(self._text_left(), 0, self.width() - self._text_left(), self.height()))]
+
+    def sizeHint(self) -> QSize:
+        theme = self._look.theme
+        self.setFont(theme.font(40, SEMIBOLD))
+        return QSize(self._text_left() + self.fontMetrics().horizontalAdvance("000:00"), theme.px(HEIGHT))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
+        middle = (self.height() - side) / 2
+        dot = QRectF(theme.px(12) - side / 2, middle, side, side)
+        paint_icon(painter, Icon.RECORDING, dot, theme.colours.inv_ink)
+        painter.setPen(QColor(theme.colours.inv_ink))
+        painter.setFont(theme.font(40, SEMIBOLD))
+        for text, box in self.painted_texts():
+            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, text)
+
+    def _text_left(self) -> int:
+        return self._look.theme.px(36)
+
+
+def clock_time(elapsed_s: float) -> str:
+    """Give a time as minutes and seconds: "04:06"."""
+    minutes, seconds = divmod(int(max(elapsed_s, 0.0)), 60)
+    return f"{minutes:02d}:{seconds:02d}"
+
+
+def _without_time(state: BarState) -> BarState:
+    if state.recording is None:
+        return state
+    return replace(state, recording=replace(state.recording, elapsed_s=0.0))
+
+
+def _padded(verbs: tuple[Verb, ...], length: int) -> list[Verb | None]:
+    return [*verbs, *[None] * (length - len(verbs))]
+
+
+def _width(widgets: Row, gap: int) -> int:
+    return sum(widget.sizeHint().width() for widget in widgets) + gap * max(len(widgets) - 1, 0)
+
+
+def _rows(widgets: Row, room: int, gap: int, is_right: bool = False) -> list[tuple[Row, Row]]:
+    """Fill rows one after another; what is wider than a row has one of its own."""
+    rows: list[list[QWidget]] = []
+    for widget in widgets:
+        if rows and _width([*rows[-1], widget], gap) <= room:
+            rows[-1].append(widget)
+        else:
+            rows.append([widget])
+    return [([], row) if is_right else (row, []) for row in rows]
