@@ -59,8 +59,13 @@ class Step(QObject):
         raise NotImplementedError
 
     @property
-    def can_enter(self) -> str:
+    def cannot_enter(self) -> str:
         """Why it cannot be entered yet, in a sentence; empty where it can."""
+        return ""
+
+    @property
+    def cannot_leave(self) -> str:
+        """Why it cannot be left now, in two sentences at most; empty where it can."""
         return ""
 
     @property
