@@ -1,0 +1,318 @@
+"""The thread that asks the library: in order, answered on the screen's thread, refused in words."""
+
+import shutil
+from collections.abc import Callable, Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from threading import Event, current_thread, main_thread
+
+import pytest
+from PySide6.QtCore import QObject
+from pytestqt.qtbot import QtBot
+
+from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary, held_alone
+from app.storage.stored import LibraryError, Operator, Role, StoredPatient
+from app.workers.background import Report
+from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from core.samples import Patient
+
+PASSPHRASE = "four short words here"
+
+
+@pytest.fixture(scope="session")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A closed library whose operators are `hk` and the viewer `vi`."""
+    folder = tmp_path_factory.mktemp("desk")
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    data_key, _ = slots.create("hk", PASSPHRASE)
+    slots.add(data_key, "vi", PASSPHRASE)
+    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+        library.operators.add(Operator("vi", "V. Iten", Role.VIEWER))
+    return folder
+
+
+@pytest.fixture
+def folder(untouched: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(untouched, tmp_path / "library"))
+
+
+@pytest.fixture
+def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
+    desk = LibraryDesk()
+    yield desk
+    desk.finish()
+
+
+class Asker(QObject):
+    """Notes what it is told, and where."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.results: list[object] = []
+        self.refusals: list[tuple[str, str]] = []
+        self.shares: list[float] = []
+        self.threads = {main_thread()}
+
+    def on_done(self, result: object) -> None:
+        self.threads.add(current_thread())
+        self.results.append(result)
+
+    def on_failed(self, what: str, remedy: str) -> None:
+        self.threads.add(current_thread())
+        self.refusals.append((what, remedy))
+
+    def on_progressed(self, share: float, _what: str) -> None:
+        self.shares.append(share)
+
+
+def opened(qtbot: QtBot, desk: LibraryDesk, folder: Path, code: str = "hk") -> OpenedState:
+    with qtbot.waitSignal(desk.opened) as told:
+        desk.open(folder, PASSPHRASE, code)
+    (state,) = told.args or []
+    assert isinstance(state, OpenedState)
+    return state
+
+
+def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened(qtbot, desk, folder)
+    asker = Asker()
+    worked_in = []
+
+    def adding(code: str) -> Callable[[OpenedLibrary], str]:
+        def add(library: OpenedLibrary) -> str:
+            worked_in.append(current_thread())
+            return library.library.patients.create(Patient(code=code)).told.code
+
+        return add
+
+    for code in ("P-1", "P-2", "P-3"):
+        desk.run(adding(code), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 3)
+    assert asker.results == ["P-1", "P-2", "P-3"]
+    assert asker.threads == {main_thread()}
+    assert main_thread() not in worked_in
+    assert len(set(worked_in)) == 1
+
+
+def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened(qtbot, desk, folder)
+    asker = Asker()
+    for _ in range(2):
+        desk.run(
+            lambda library: library.library.patients.create(Patient(code="P-1")), asker.on_done, asker.on_failed, asker
+        )
+    qtbot.waitUntil(lambda: bool(asker.refusals))
+    assert asker.refusals == [
+        ("Another patient has this code.", "Open that patient, or choose another code."),
+    ]
+    assert len(asker.results) == 1
+
+
+def test_what_nobody_foresaw_is_logged_and_told_plainly(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    opened(qtbot, desk, folder)
+
+    def call(_library: OpenedLibrary) -> None:
+        raise ZeroDivisionError("P-0147")
+
+    with qtbot.waitSignal(desk.refused) as told:
+        desk.run(call, None, None, desk)
+    assert told.args is not None
+    assert "P-0147" not in " ".join(told.args)
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened(qtbot, desk, folder)
+    go_on, asker = Event(), Asker()
+    heard = asker.results
+    desk.run(lambda _library: go_on.wait(5), asker.on_done, asker.on_failed, asker)
+    del asker
+    go_on.set()
+    last = Asker()
+    desk.run(lambda _library: "after it", last.on_done, last.on_failed, last)
+    qtbot.waitUntil(lambda: bool(last.results))
+    assert heard == []
+
+
+def test_calls_before_opening_and_after_closing_are_refused(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    asker = Asker()
+    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 1)
+    opened(qtbot, desk, folder)
+    with qtbot.waitSignal(desk.closed):
+        desk.close()
+    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 2)
+    assert asker.results == []
+    assert desk.state is None
+
+
+def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, tmp_path: Path
+) -> None:
+    for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
+        with qtbot.waitSignal(desk.not_opened) as told:
+            desk.open(place, "not this one", "hk")
+        assert told.args is not None
+        assert told.args[2] is is_key
+        assert all(sentence.endswith(".") for sentence in told.args[:2])
+
+
+def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
+    qtbot: QtBot, desk: LibraryDesk, tmp_path: Path
+) -> None:
+    with qtbot.waitSignal(desk.opened) as told:
+        desk.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
+    (state,) = told.args or []
+    assert state.operator.role is Role.ADMINISTRATOR
+    assert state.recovery_key
+    assert state.recovery_key not in repr(state)
+    desk.close()
+    with qtbot.waitSignal(desk.opened) as told:
+        desk.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
+    (state,) = told.args or []
+    assert state.recovery_key == ""
+    desk.close()
+    with qtbot.waitSignal(desk.opened):
+        desk.open(tmp_path / "new", "another four words")
+
+
+def test_the_folder_says_who_may_open_it(qtbot: QtBot, desk: LibraryDesk, folder: Path, tmp_path: Path) -> None:
+    asker = Asker()
+    for place in (folder, tmp_path / "nothing"):
+        desk.look(place, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2)
+    there, nothing = asker.results
+    assert isinstance(there, LibraryPlace)
+    assert (there.exists, there.codes, there.remembered) == (True, ("hk", "vi"), ())
+    assert isinstance(nothing, LibraryPlace)
+    assert not nothing.exists
+
+
+def test_a_keyring_without_the_key_sends_back_to_the_passphrase(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    with qtbot.waitSignal(desk.not_opened) as told:
+        desk.open_remembered(folder, "hk")
+    assert told.args is not None
+    assert told.args[1] == "Type it."
+
+
+def test_a_library_that_another_program_holds_is_not_opened(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    with held_alone(folder), qtbot.waitSignal(desk.not_opened) as told:
+        desk.open(folder, PASSPHRASE, "hk")
+    assert told.args is not None
+    assert "open with this library already" in told.args[0]
+    opened(qtbot, desk, folder)
+
+
+def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    long_ago = datetime.now(UTC) - timedelta(days=40)
+    with Library.open(folder, data_key, lambda: long_ago) as library:
+        library.log_in("hk")
+        library.patients.delete(library.patients.create(Patient(code="P-9")))
+    asker = Asker()
+    for code, left in (("vi", 1), ("hk", 0)):
+        opened(qtbot, desk, folder, code)
+        asker.results.clear()
+        desk.run(deleted, asker.on_done, asker.on_failed, asker)
+        qtbot.waitUntil(lambda: bool(asker.results))
+        assert asker.results == [left]
+
+
+def deleted(library: OpenedLibrary) -> int:
+    return len(library.library.patients.search(is_deleted=True))
+
+
+def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(qtbot: QtBot, desk: LibraryDesk) -> None:
+    with qtbot.waitSignal(desk.opened, timeout=30_000) as told:
+        desk.open_demonstration()
+    (state,) = told.args or []
+    assert state.is_demonstration
+    folder = state.library.folder
+    asker = Asker()
+    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results))
+    (patients,) = asker.results
+    assert isinstance(patients, tuple)
+    (patient,) = patients
+    assert isinstance(patient, StoredPatient)
+    assert (patient.told.code, patient.sessions) == ("DEMO-1", 1)
+    with qtbot.waitSignal(desk.closed):
+        desk.close()
+    assert not folder.exists()
+
+
+def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened(qtbot, desk, folder)
+    asker, ended = Asker(), Event()
+
+    def work(_library: OpenedLibrary, report: Report) -> None:
+        try:
+            while True:
+                report(0.5, "walk 1")
+        finally:
+            ended.set()
+
+    desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    qtbot.waitUntil(lambda: asker.shares[:1] == [0.5])
+    desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    assert asker.refusals == [("Something else is still being done.", "Wait for it, or stop it.")]
+    with qtbot.waitSignal(desk.closed):
+        desk.close()  # stops it first
+    assert ended.is_set()
+    assert asker.results == []
+
+
+def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened(qtbot, desk, folder)
+    asker = Asker()
+    desk.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
+    qtbot.waitUntil(lambda: bool(asker.results))
+    assert asker.results == [folder]
+
+    def refused(_library: OpenedLibrary, _report: Report) -> None:
+        raise LibraryError("There is no room", "Make some")
+
+    qtbot.waitUntil(lambda: desk._long.is_idle)
+    desk.run_long(refused, asker.on_done, asker.on_failed, None, asker)
+    qtbot.waitUntil(lambda: bool(asker.refusals))
+    assert asker.refusals == [("There is no room.", "Make some.")]
+
+
+def test_a_passphrase_that_is_remembered_opens_next_time(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept: dict[str, str] = {}
+
+    class Keyring:
+        priority = 5
+
+        def set_password(self, _service: str, name: str, secret: str) -> None:
+            kept[name] = secret
+
+        def get_password(self, _service: str, name: str) -> str | None:
+            return kept.get(name)
+
+    monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
+    with qtbot.waitSignal(desk.opened):
+        desk.open(folder, PASSPHRASE, "hk", must_remember=True)
+    desk.close()
+    with qtbot.waitSignal(desk.opened):
+        desk.open_remembered(folder, "hk")
+
+
+def test_a_refusing_keyring_is_no_reason_not_to_open(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object) -> None:
+        raise KeyRefusedError("The keyring takes no key", "Unlock it")
+
+    monkeypatch.setattr("app.storage.keyring_slot.remember", refuse)
+    with qtbot.waitSignal(desk.opened):
+        desk.open(folder, PASSPHRASE, "hk", must_remember=True)
