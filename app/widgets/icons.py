@@ -37,6 +37,8 @@ class Icon(StrEnum):
     STILL = "still"
     SILENT = "silent"
     RECORDING = "recording"
+    BEND = "bend"
+    NEXT = "next"
 
 
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
@@ -222,6 +224,17 @@ def _wave(painter: QPainter, _ink: QColor) -> None:
     painter.drawPath(curve)
 
 
+def _bend(painter: QPainter, _ink: QColor) -> None:
+    """A thigh, a shank below it, and the way the shank swings."""
+    _lines(painter, (2.5, 6), (11, 6.5), (8, 19.5))
+    painter.drawArc(QRectF(-1, -5.5, 24, 24), -72 * 16, 54 * 16)
+    _lines(painter, (18.2, 10.6), (22.4, 9.4), (23, 13.6))
+
+
+def _next(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (9, 6), (15, 12), (9, 18))
+
+
 def _still(painter: QPainter, _ink: QColor) -> None:
     _lines(painter, (3, 12), (21, 12))
 
@@ -262,4 +275,6 @@ _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.STILL: _still,
     Icon.SILENT: _silent,
     Icon.RECORDING: _recording,
+    Icon.BEND: _bend,
+    Icon.NEXT: _next,
 }
