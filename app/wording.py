@@ -1,8 +1,10 @@
 """What do we tell the clinician? Every message: what happened, then what to do or what follows.
 
 At most two sentences, the part first and its side before it, numbers with units, no blame. English is the source; other
-languages come from the gettext catalogues in `resources/locale`. To add a message, add its key to `SENTENCES`: the
-figures in braces are those that the finding carries in its `numbers`.
+languages come from the gettext catalogues in `resources/locale`, which `packaging/catalogue.py` gathers from the code:
+whatever is shown stands as it is inside `tr` or `tr_n`, or inside `later` where it is written down before it is shown.
+To add a finding's message, add its key to `SENTENCES`: the figures in braces are those that the finding carries in its
+`numbers`.
 """
 
 import gettext
@@ -12,8 +14,9 @@ from pathlib import Path
 from core.body import Joint, Site
 from core.findings import Finding
 
-_LOCALE = Path(__file__).parents[1] / "resources" / "locale"
-_catalogue = gettext.translation("gaitwright", _LOCALE, languages=["en"], fallback=True)
+DOMAIN = "gaitwright"
+LOCALE = Path(__file__).parents[1] / "resources" / "locale"
+_catalogue = gettext.NullTranslations()
 
 SENTENCES = {
     # what the reader noticed
@@ -235,9 +238,33 @@ NAMES = {
 WHOLE_SESSION = "session"  # what a finding about no part in particular says as its place
 
 
+def use_language(language: str) -> None:
+    """Speak `language` from now on, as "de", as far as there is a catalogue of it; else English.
+
+    "pseudo" is no language: it is English made as long as German, which tests show on every page.
+    """
+    global _catalogue
+    if language == "pseudo":
+        from app.pseudo_language import PseudoLanguage
+
+        _catalogue = PseudoLanguage()
+    else:
+        _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
+
+
 def tr(message: str) -> str:
     """Give the message in the user's language."""
-    return _catalogue.gettext(message)
+    return _catalogue.gettext(message) if message else ""  # gettext's answer to nothing is the catalogue's head
+
+
+def tr_n(one: str, many: str, count: int) -> str:
+    """Give the message in the user's language, in the form that belongs to `count`, as `{count} strides`."""
+    return _catalogue.ngettext(one, many, count)
+
+
+def later(message: str) -> str:
+    """Tell the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
+    return message
 
 
 def sentence(finding: Finding) -> str:

@@ -1,0 +1,67 @@
+"""Gather every sentence of the screen for the translators: `python packaging/catalogue.py`.
+
+Writes `resources/locale/gaitwright.pot`, the template of all catalogues. It names the file of a sentence and not its
+line, so that it changes only when a sentence does.
+"""
+
+import ast
+import io
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from babel.messages.catalog import Catalog
+from babel.messages.pofile import write_po
+
+ROOT = Path(__file__).resolve().parents[1]
+TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
+TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of sentences each takes
+
+HEAD = b"""\
+# Every sentence that Gaitwright shows. Made by packaging/catalogue.py; change the sentences in the code.
+msgid ""
+msgstr ""
+"Project-Id-Version: gaitwright\\n"
+"MIME-Version: 1.0\\n"
+"Content-Type: text/plain; charset=utf-8\\n"
+"Content-Transfer-Encoding: 8bit\\n"
+
+"""
+
+
+def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
+    """Find what stands inside the functions of `app.wording`, in the order of reading; one and many as a pair."""
+    calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
+    for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
+        taken = call.args[: TAKERS.get(ast.unparse(call.func), 0)]
+        said = [one.value for one in taken if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        if said and len(said) == len(taken):
+            yield said[0] if len(said) == 1 else tuple(said)
+
+
+def gathered() -> Catalog:
+    """Give every sentence of `app`, and those that findings are told by."""
+    catalogue = Catalog(charset="utf-8")
+    for file in sorted((ROOT / "app").rglob("*.py")):
+        for message in sentences(file):
+            catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
+    sys.path.insert(0, str(ROOT))  # a script sees its own folder only
+    from app.wording import NAMES, SENTENCES
+
+    words = [word for names in NAMES.values() for word in names.values()]
+    for message in (*SENTENCES.values(), *words):
+        catalogue.add(message, locations=[("app/wording.py", 0)])
+    return catalogue
+
+
+def template() -> bytes:
+    """Give what the file holds, without the time it was made: the same sentences give the same file."""
+    text = io.BytesIO()
+    write_po(text, gathered(), omit_header=True, include_lineno=False, sort_by_file=True)
+    return HEAD + text.getvalue()
+
+
+if __name__ == "__main__":
+    TEMPLATE.parent.mkdir(exist_ok=True)
+    TEMPLATE.write_bytes(template())
+    print(TEMPLATE.relative_to(ROOT))
