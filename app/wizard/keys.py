@@ -1,0 +1,197 @@
+"""What does a key mean while the wizard is in sight? One filter turns keys into intents; nobody else reads them.
+
+Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
+was written. A button that has the focus is pressed by Space and Enter, as everywhere; but while something runs Space
+stops it, whatever has the focus but a text field: who stops a walk looks at the patient and not at the screen.
+"""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from PySide6.QtCore import QEvent, QObject, Qt, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QAbstractItemView,
+    QAbstractSpinBox,
+    QApplication,
+    QComboBox,
+    QLineEdit,
+    QPlainTextEdit,
+    QTextEdit,
+    QWidget,
+)
+
+
+class Action(Enum):
+    RUN = auto()  # Space: start, stop, again: the thing that runs
+    PRIMARY = auto()  # Enter
+    KEEP = auto()
+    DISCARD = auto()
+    LEFT_LEG = auto()
+    RIGHT_LEG = auto()
+    LABEL = auto()  # number: 1 to 9
+    IDENTIFY = auto()
+    STRIDES = auto()
+    EARLIER = auto()
+    LATER = auto()
+    FILL = auto()
+    UNFILL = auto()  # Esc
+    BAND = auto()
+    STEP = auto()  # number: 1 to 7
+    BACK = auto()
+    HELP = auto()
+    NEXT_REGION = auto()
+    PREVIOUS_REGION = auto()
+    LARGER = auto()
+    SMALLER = auto()
+    USUAL_SIZE = auto()
+    SEARCH = auto()
+    NEW_PATIENT = auto()
+    SAVE = auto()
+    PRINT = auto()
+    UNDO = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Intent:
+    """What a key asks for. `number` is that of the step or label, from 1; 0 where there is none."""
+
+    action: Action
+    number: int = 0
+
+
+_Key = Qt.Key
+_PLAIN: dict[int, Action] = {
+    _Key.Key_Space: Action.RUN,
+    _Key.Key_K: Action.KEEP,
+    _Key.Key_D: Action.DISCARD,
+    _Key.Key_L: Action.LEFT_LEG,
+    _Key.Key_R: Action.RIGHT_LEG,
+    _Key.Key_I: Action.IDENTIFY,
+    _Key.Key_S: Action.STRIDES,
+    _Key.Key_F: Action.FILL,
+    _Key.Key_B: Action.BAND,
+}
+_BRACKETS = {"[": Action.EARLIER, "]": Action.LATER}  # by what is written: many keyboards have them on AltGr
+_WITH_CTRL: dict[int, Action] = {
+    _Key.Key_Plus: Action.LARGER,
+    _Key.Key_Equal: Action.LARGER,  # the same key, where plus needs Shift
+    _Key.Key_Minus: Action.SMALLER,
+    _Key.Key_0: Action.USUAL_SIZE,
+    _Key.Key_F: Action.SEARCH,
+    _Key.Key_N: Action.NEW_PATIENT,
+    _Key.Key_S: Action.SAVE,
+    _Key.Key_P: Action.PRINT,
+    _Key.Key_Z: Action.UNDO,
+}
+_STEPS: dict[int, int] = {
+    _Key.Key_1: 1,
+    _Key.Key_2: 2,
+    _Key.Key_3: 3,
+    _Key.Key_4: 4,
+    _Key.Key_5: 5,
+    _Key.Key_6: 6,
+    _Key.Key_7: 7,
+}
+_REPEATED_WHILE_HELD = {Action.EARLIER, Action.LATER, Action.LARGER, Action.SMALLER}
+_ENTER = (_Key.Key_Return, _Key.Key_Enter)
+_NO_LETTERS = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
+
+_TEXT_FIELDS = (QLineEdit, QPlainTextEdit, QTextEdit, QAbstractSpinBox)
+_PRESSED_BY_SPACE = (QAbstractButton, QComboBox, QAbstractItemView)
+
+
+class Keys(QObject):
+    """Listens in the window of `root` while `root` is in sight; a dialog has its keys for itself."""
+
+    pressed = Signal(object)  # Intent
+
+    def __init__(self, root: QWidget) -> None:
+        super().__init__(root)
+        self._root, self._is_running = root, False
+        application = QApplication.instance()
+        assert application is not None
+        application.installEventFilter(self)
+
+    def set_running(self, is_running: bool) -> None:
+        """Say whether something runs that Space stops."""
+        self._is_running = is_running
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() is not QEvent.Type.KeyPress or not isinstance(event, QKeyEvent):
+            return False
+        if (
+            not isinstance(watched, QWidget)
+            or not self._root.isVisible()
+            or watched.window() is not self._root.window()
+        ):
+            return False
+        if event.key() in _ENTER:  # what nobody on its way up from the focus wanted is for the primary verb
+            return watched is self._root.window() and self._emit(Intent(Action.PRIMARY), event)
+        focused = watched.window().focusWidget() or watched.window()
+        if watched is not focused:
+            return False
+        intent = self._intent(event, focused)
+        return intent is not None and self._emit(intent, event)
+
+    def _intent(self, event: QKeyEvent, focused: QWidget) -> Intent | None:
+        is_text = _takes_text(focused)
+        plain = _plain_intent(event)
+        if plain is None:
+            intent = _modified_intent(event)
+            return None if is_text and intent == Intent(Action.UNDO) else intent
+        if is_text:
+            return None
+        if plain.action is Action.RUN and not self._is_running and isinstance(focused, _PRESSED_BY_SPACE):
+            return None
+        return plain
+
+    def _emit(self, intent: Intent, event: QKeyEvent) -> bool:
+        """Take the key. A key that is held down starts and stops nothing twice."""
+        if not event.isAutoRepeat() or intent.action in _REPEATED_WHILE_HELD:
+            self.pressed.emit(intent)
+        return True
+
+
+def _takes_text(widget: QWidget) -> bool:
+    if isinstance(widget, QComboBox):
+        return widget.isEditable()
+    if isinstance(widget, (QLineEdit, QPlainTextEdit, QTextEdit)):
+        return not widget.isReadOnly()
+    return isinstance(widget, _TEXT_FIELDS)
+
+
+def _plain_intent(event: QKeyEvent) -> Intent | None:
+    """Give what a key means alone, or with Shift."""
+    if event.text() in _BRACKETS:
+        return Intent(_BRACKETS[event.text()])
+    if event.modifiers() & _NO_LETTERS:
+        return None
+    if len(event.text()) == 1 and event.text() in "123456789":
+        return Intent(Action.LABEL, int(event.text()))
+    if event.key() == _Key.Key_Escape:
+        return Intent(Action.UNFILL)
+    action = _PLAIN.get(event.key())
+    return Intent(action) if action is not None else None
+
+
+def _modified_intent(event: QKeyEvent) -> Intent | None:
+    """Give what a key of functions, or one with Ctrl or Alt, means."""
+    key = event.key()
+    held = event.modifiers() & ~(Qt.KeyboardModifier.KeypadModifier | Qt.KeyboardModifier.ShiftModifier)
+    has_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+    if held == Qt.KeyboardModifier.NoModifier:
+        if key == _Key.Key_F6:
+            return Intent(Action.PREVIOUS_REGION if has_shift else Action.NEXT_REGION)
+        return Intent(Action.HELP) if key == _Key.Key_F1 else None
+    if held == Qt.KeyboardModifier.AltModifier:
+        return Intent(Action.BACK) if key == _Key.Key_Left else None
+    if held != Qt.KeyboardModifier.ControlModifier:
+        return None
+    if key in _STEPS and not has_shift:
+        return Intent(Action.STEP, _STEPS[key])
+    action = _WITH_CTRL.get(key)
+    if action is None or (has_shift and action is not Action.LARGER):
+        return None
+    return Intent(action)
