@@ -112,10 +112,11 @@ class Takes(QObject):
         """
         if self.session is None or self.ongoing is not None:
             raise RuntimeError("a recording needs a session, and is made one at a time")
+        name = self._new_name(kind)
         told = Recording(
-            name=self._new_name(kind),
+            name=name,
             kind=kind,
-            folder="",
+            folder=name.replace(" ", "_"),
             imu={},
             condition=condition,
             started=datetime.now().astimezone().isoformat(timespec="seconds"),

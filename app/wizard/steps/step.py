@@ -25,12 +25,15 @@ class Step(QObject):
         Nothing is left to do here: the wizard goes on to the next step.
     told
         What happened, and what follows or what to do: for the banner. Empty: the last word no longer holds.
+    jumped
+        Another step, by its number from 0, is where to go on.
     offered
         Something was done that can be undone: what, for the toast; `undo` takes it back.
     """
 
     changed = Signal()
     done = Signal()
+    jumped = Signal(int)
     told = Signal(str, str)
     offered = Signal(str)
 

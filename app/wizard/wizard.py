@@ -1,0 +1,329 @@
+"""The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
+
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.action_bar import BarState
+from app.widgets.sensor_strip import SensorTile
+from app.widgets.step_rail import RailRow, StepState
+from app.wizard.keys import Action, Intent, Keys
+from app.wizard.shell import StripMode, WizardShell
+from app.wizard.sources import choices
+from app.wizard.steps.free_motion_step import FreeMotionStep
+from app.wizard.steps.patient_step import PatientStep
+from app.wizard.steps.report_step import ReportStep
+from app.wizard.steps.results_step import ResultsStep
+from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.steps.step import Step
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.visit import Visit, patient_line
+from app.wording import tr
+from app.workers.library_desk import LibraryDesk
+from core.body import Site
+
+if TYPE_CHECKING:
+    from app.acquisition.acquisition import SensorStatus
+    from app.storage.stored import StoredPatient
+
+PATIENT, SENSORS, STAND_STILL, FREE_MOTION, WALKING, RESULTS, REPORT = range(7)
+TICK_MS = 33
+SLOW_TICKS = 8  # tiles and stopwatch: four times a second
+MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
+
+
+class Wizard(QWidget):
+    """One visit at a time; beginning another closes the one before."""
+
+    left = Signal()
+    help_wanted = Signal(str)
+    settings_wanted = Signal()
+
+    def __init__(self, look: Look, desk: LibraryDesk) -> None:
+        super().__init__()
+        self._look, self._desk = look, desk
+        self._visit: Visit | None = None
+        self._steps: list[Step] = []
+        self._current = PATIENT
+        self._ticks = 0
+        self._lands_on = PATIENT
+        self.shell = WizardShell(look)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.addWidget(self.shell)
+        self._keys = Keys(self)
+        self._timer = QTimer(self)
+        self._timer.setInterval(TICK_MS)
+        self._connect()
+
+    @property
+    def visit(self) -> Visit | None:
+        return self._visit
+
+    @property
+    def current(self) -> Step | None:
+        return self._steps[self._current] if self._steps else None
+
+    @property
+    def is_recording(self) -> bool:
+        return self._visit is not None and self._visit.takes.is_recording
+
+    def begin(self, patient: "StoredPatient | None") -> None:
+        """Begin a session, with a patient of the library or one that is still to be typed."""
+        visit = self._begin_visit()
+        visit.begin_stopwatch()
+        if patient is not None:
+            visit.patient.choose(patient)
+        self._go_to(PATIENT)
+
+    def resume(self, session_id: UUID) -> None:
+        """Go on with a session where it was left."""
+        self._take_up(session_id, WALKING)
+
+    def show_session(self, session_id: UUID) -> None:
+        """Look at what came of a session."""
+        self._take_up(session_id, RESULTS)
+
+    def close_visit(self) -> None:
+        """Let go of sensors and visit; what was recorded is in the library."""
+        self._timer.stop()
+        if self._visit is not None:
+            if self._steps:
+                self._steps[self._current].leave()
+            self._visit.close()
+            self._visit.deleteLater()
+        self._visit, self._steps = None, []
+        self.shell.clear_pages()
+
+    def _connect(self) -> None:
+        shell = self.shell
+        shell.rail.step_pressed.connect(self.go_to)
+        shell.rail.below_pressed.connect(self._on_below_pressed)
+        shell.bar.back_pressed.connect(self._on_back)
+        shell.bar.primary_pressed.connect(self._on_primary)
+        shell.bar.other_pressed.connect(self._on_other)
+        shell.bar.quiet_pressed.connect(self._on_quiet)
+        shell.toast.undone.connect(self._on_undo)
+        shell.room_changed.connect(self._on_room_changed)
+        self._keys.pressed.connect(self._on_intent)
+        self._timer.timeout.connect(self._on_tick)
+
+    def _begin_visit(self) -> Visit:
+        self.close_visit()
+        visit = Visit(self._desk, choices(), self)
+        self._visit = visit
+        look = self._look
+        self._steps = [
+            PatientStep(look, visit, self),
+            SensorsStep(look, visit, self),
+            StandStillStep(look, visit, self),
+            FreeMotionStep(look, visit, self),
+            WalkingStep(look, visit, self),
+            ResultsStep(look, visit, self),
+            ReportStep(look, visit, self._desk, self),
+        ]
+        for step in self._steps:
+            step.changed.connect(self._on_step_changed)
+            step.done.connect(self._on_step_done)
+            step.jumped.connect(self.go_to)
+            step.told.connect(self._tell)
+            step.offered.connect(self._on_offered)
+        visit.changed.connect(self._on_visit_changed)
+        visit.sensors.changed.connect(self._on_visit_changed)
+        visit.patient.changed.connect(self._on_visit_changed)
+        visit.evaluation.done.connect(self._on_visit_changed)
+        visit.resumed.connect(self._on_resumed)
+        visit.refused.connect(self._tell)
+        self._current = PATIENT
+        self._timer.start()
+        return visit
+
+    def _take_up(self, session_id: UUID, step: int) -> None:
+        visit = self._begin_visit()
+        self._lands_on = step
+        visit.resume(session_id)
+
+    def go_to(self, number: int) -> None:
+        """Go to a step, if it can be entered and the current one left; else say why not."""
+        if not self._steps or number == self._current:
+            return
+        if reason := self._steps[self._current].cannot_leave or self._steps[number].cannot_enter:
+            self._tell(reason, "")
+            return
+        self._steps[self._current].leave()
+        self._go_to(number)
+
+    def _go_to(self, number: int) -> None:
+        step = self._steps[number]
+        self._current = number
+        self.shell.banner.hide()
+        self.shell.show_page(number, step.page)
+        self.shell.set_strip_mode(_STRIP[number])
+        step.enter()
+        self._show()
+
+    def _show(self) -> None:
+        """Show what stands round the step: rail, header, bar."""
+        if self._visit is None or not self._steps:
+            return
+        rows = []
+        for number, step in enumerate(self._steps):
+            state = StepState.CURRENT if number == self._current else step.state
+            rows.append(RailRow(step.title, step.note, state))
+        self.shell.rail.show_rows(tuple(rows))
+        self.shell.bar.show_state(self._bar())
+        self._keys.set_running(self.is_recording)
+        patient = self._visit.patient.told
+        self.shell.header.show_session(
+            patient.code or tr("New session"), patient_line(patient), self._visit.is_simulated
+        )
+        self._show_slow()
+
+    def _bar(self) -> BarState:
+        return self._steps[self._current].bar()
+
+    def _show_slow(self) -> None:
+        visit = self._visit
+        if visit is None:
+            return
+        self.shell.header.show_elapsed(visit.elapsed_s)
+        status, worn = visit.sensors.status, visit.sensors.sensor_at
+        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status) for site in Site})
+
+    def _tell(self, what: str, then: str) -> None:
+        if what:
+            self.shell.banner.tell(what, then)
+        else:
+            self.shell.banner.hide()
+
+    def _on_tick(self) -> None:
+        if not self._steps or not self.isVisible():
+            return
+        self._steps[self._current].tick()
+        self._ticks += 1
+        if self._ticks % SLOW_TICKS == 0:
+            self._show_slow()
+            if self.is_recording:
+                self.shell.bar.show_state(self._bar())
+
+    def _on_intent(self, intent: Intent) -> None:
+        if not self._steps:
+            return
+        step = self._steps[self._current]
+        if step.on_intent(intent):
+            return
+        match intent.action:
+            case Action.STEP:
+                self.go_to(intent.number - 1)
+            case Action.PRIMARY:
+                self._on_primary()
+            case Action.BACK:
+                self._on_back()
+            case Action.NEXT_REGION:
+                self.shell.focus_next_region(1)
+            case Action.PREVIOUS_REGION:
+                self.shell.focus_next_region(-1)
+            case Action.UNDO:
+                self._on_undo()
+            case Action.HELP:
+                self.help_wanted.emit(step.topic)
+            case Action.LARGER:
+                self._look.grow(1)
+            case Action.SMALLER:
+                self._look.grow(-1)
+            case Action.USUAL_SIZE:
+                self._look.grow(0)
+
+    def _on_primary(self) -> None:
+        if self._steps and (verb := self._bar().primary) is not None and verb.is_enabled:
+            self._steps[self._current].on_primary()
+
+    def _on_other(self, number: int) -> None:
+        self._steps[self._current].on_other(number)
+
+    def _on_quiet(self, number: int) -> None:
+        self._steps[self._current].on_quiet(number)
+
+    def _on_back(self) -> None:
+        if self._current > PATIENT:
+            self.go_to(self._current - 1)
+        else:
+            self.leave()
+
+    def leave(self) -> None:
+        """Go back to the patients; a walk that is being recorded is stopped first, by whoever walks."""
+        if self._steps and (reason := self._steps[self._current].cannot_leave):
+            self._tell(reason, "")
+            return
+        self.close_visit()
+        self.left.emit()
+
+    def _on_undo(self) -> None:
+        self.shell.toast.hide()
+        if self._steps:
+            self._steps[self._current].undo()
+
+    def _on_offered(self, what: str) -> None:
+        self.shell.toast.offer(what)
+
+    def _on_below_pressed(self, key: str) -> None:
+        if key == "patients":
+            self.leave()
+        elif key == "settings":
+            self.settings_wanted.emit()
+        elif key == "help" and self.current is not None:
+            self.help_wanted.emit(self.current.topic)
+
+    def _on_step_changed(self) -> None:
+        self._show()
+
+    def _on_step_done(self) -> None:
+        if self.sender() is self.current and self._current < REPORT:
+            self.go_to(self._current + 1)
+
+    def _on_visit_changed(self) -> None:
+        self._show()
+
+    def _on_resumed(self) -> None:
+        can = not self._steps[self._lands_on].cannot_enter
+        self._go_to(self._lands_on if can else SENSORS)
+
+    def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
+        page = self.current.page if self.current is not None else None
+        if page is None:
+            return
+        if hasattr(page, "set_compact"):
+            page.set_compact(is_compact)
+        if hasattr(page, "set_room"):
+            page.set_room(width, height)
+
+
+_STRIP = {
+    PATIENT: StripMode.FOLDED,
+    SENSORS: StripMode.HIDDEN,
+    STAND_STILL: StripMode.SHOWN,
+    FREE_MOTION: StripMode.SHOWN,
+    WALKING: StripMode.SHOWN,
+    RESULTS: StripMode.FOLDED,
+    REPORT: StripMode.FOLDED,
+}
+
+
+def _tile(site: Site, sensor: str | None, status: "dict[str, SensorStatus]") -> SensorTile:
+    if sensor is None or sensor not in status:
+        return SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
+    heard = status[sensor]
+    return SensorTile(
+        site,
+        sensor,
+        heard.told.battery,
+        heard.heard_hz,
+        heard.lost_share,
+        heard.silent_s,
+        is_moving=heard.movement_rad_s > MOVES_RAD_S,
+        is_worn=True,
+    )
