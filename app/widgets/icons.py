@@ -39,6 +39,10 @@ class Icon(StrEnum):
     RECORDING = "recording"
     BEND = "bend"
     NEXT = "next"
+    SEARCH = "search"
+    DELETE = "delete"
+    LOCK = "lock"
+    PRINT = "print"
 
 
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
@@ -249,6 +253,33 @@ def _recording(painter: QPainter, ink: QColor) -> None:
     painter.drawEllipse(QPointF(12, 12), 7, 7)
 
 
+def _search(painter: QPainter, _ink: QColor) -> None:
+    painter.drawEllipse(QPointF(10.5, 10.5), 6.5, 6.5)
+    _lines(painter, (15.4, 15.4), (20.5, 20.5))
+
+
+def _delete(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (4, 6.5), (20, 6.5))
+    _lines(painter, (9, 6.5), (9, 3.5), (15, 3.5), (15, 6.5))
+    _lines(painter, (6, 6.5), (7, 20.5), (17, 20.5), (18, 6.5))
+    _lines(painter, (10, 10.5), (10, 16.5))
+    _lines(painter, (14, 10.5), (14, 16.5))
+
+
+def _lock(painter: QPainter, _ink: QColor) -> None:
+    painter.drawRoundedRect(QRectF(4.5, 10.5, 15, 10), 2, 2)
+    painter.drawArc(QRectF(7.5, 3.5, 9, 10), 0, 180 * 16)
+    _lines(painter, (7.5, 8.5), (7.5, 10.5))
+    _lines(painter, (16.5, 8.5), (16.5, 10.5))
+    _lines(painter, (12, 14.5), (12, 16.5))
+
+
+def _print(painter: QPainter, _ink: QColor) -> None:
+    _lines(painter, (7, 8.5), (7, 3.5), (17, 3.5), (17, 8.5))
+    _lines(painter, (7, 17), (3.5, 17), (3.5, 8.5), (20.5, 8.5), (20.5, 17), (17, 17))
+    painter.drawRect(QRectF(7, 13.5, 10, 7))
+
+
 _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.FOLDER: _folder,
     Icon.PLAY: _play,
@@ -277,4 +308,8 @@ _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.RECORDING: _recording,
     Icon.BEND: _bend,
     Icon.NEXT: _next,
+    Icon.SEARCH: _search,
+    Icon.DELETE: _delete,
+    Icon.LOCK: _lock,
+    Icon.PRINT: _print,
 }
