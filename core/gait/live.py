@@ -65,6 +65,14 @@ class FootEvent(StrEnum):
     FULL_CONTACT = "full_contact"
 
 
+PHASE_AFTER = {
+    FootEvent.HEEL_RISE: Phase.PRE_SWING,
+    FootEvent.TOE_OFF: Phase.SWING,
+    FootEvent.INITIAL_CONTACT: Phase.LOADING,
+    FootEvent.FULL_CONTACT: Phase.FOOT_FLAT,
+}
+
+
 @dataclass(frozen=True, slots=True)
 class LiveEvent:
     """`time_s` is when it happened, `told_s` the sample that told."""
@@ -76,6 +84,15 @@ class LiveEvent:
     @property
     def is_late(self) -> bool:
         return self.told_s - self.time_s > MAX_DELAY_S
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseChange:
+    """The sample at `told_s` put the foot into another phase, in which it has been since `since_s`."""
+
+    phase: Phase
+    since_s: float
+    told_s: float
 
 
 class LiveEvents:
@@ -91,6 +108,7 @@ class LiveEvents:
         self._motion = LiveMotion(pitch_axis)
         self._time_s, self._step_s = math.nan, math.nan
         self._told: list[LiveEvent] = []
+        self._changes: list[PhaseChange] = []
         self._phase = Phase.UNKNOWN
         self._path: list[Sample] = []  # since the phase began, or since the rate last said that it cannot end yet
         self._pushes: deque[float] = deque(maxlen=MEMORY)
@@ -115,6 +133,14 @@ class LiveEvents:
         return self._phase
 
     @property
+    def changes(self) -> list[PhaseChange]:
+        """What the samples of the last update made of the phase.
+
+        Between two phases told by one sample it may have passed others: its events name them.
+        """
+        return self._changes
+
+    @property
     def cadence_steps_min(self) -> float:
         """From this foot's last strides, two steps each; NaN before two contacts and when it no longer walks."""
         if len(self._contacts_s) < 2 or self._time_s - self._contacts_s[-1] > MAX_STRIDE_S:
@@ -131,17 +157,27 @@ class LiveEvents:
         gyr_rad_s, acc_m_s2 : (n, 3)
             In sensor axes, NaN where a sample is missing; the rates free of the gyroscope's bias.
         """
-        self._told = []
+        self._told, self._changes = [], []
         for now_s, gyr, acc in zip(time_s.tolist(), gyr_rad_s.tolist(), acc_m_s2.tolist(), strict=True):
             step_s = now_s - self._time_s
             if not math.isfinite(sum(gyr) + sum(acc)) or step_s <= 0.0:
                 continue
+            last_s, last_phase = self._time_s, self._phase
             self._time_s, self._step_s = now_s, step_s
             if step_s <= MAX_REPORTED_GAP_S:
                 self._take(gyr, acc)
             else:  # so does the first sample of all, whose step is NaN
                 self._forget_the_step()
+            if self._phase is not last_phase:
+                since_s = last_s if self._phase is Phase.UNKNOWN else self._since_s(now_s)
+                self._changes.append(PhaseChange(self._phase, since_s, now_s))
         return self._told
+
+    def _since_s(self, now_s: float) -> float:
+        """Since when the foot is in the phase that the sample at `now_s` put it into."""
+        last = self._told[-1] if self._told else None
+        is_by_event = last is not None and last.told_s == now_s and PHASE_AFTER[last.event] is self._phase
+        return last.time_s if last is not None and is_by_event else now_s
 
     def _forget_the_step(self) -> None:
         self._phase, self._path, self._waiting, self._flat_since_s = Phase.UNKNOWN, [], [], -math.inf

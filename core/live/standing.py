@@ -19,6 +19,7 @@ WANTED_S = 3.0
 WINDOW_S = 0.25  # how soon a movement is told
 KEPT_S = 10.0  # who stands longer is measured over the last ten seconds
 SILENT_S = 0.5
+SAME_BOUT_S = 1.0  # movements less far apart are one
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +36,11 @@ class StandingState:
         Sensors not heard for half a second, or that repeat one value; without them nothing counts.
     rest
         Bias and specific force of each sensor, once the wanted time was still.
+    movement
+        Of each sensor in its last window, as a share of the limit: from 1 on it moves. Infinite where too little was
+        heard.
+    restarts
+        How often somebody who stood has moved.
     """
 
     still_s: float
@@ -42,6 +48,8 @@ class StandingState:
     moved: tuple[Site, ...] = ()
     silent: tuple[Site, ...] = ()
     rest: Mapping[Site, Rest] = field(default_factory=dict)
+    movement: Mapping[Site, float] = field(default_factory=dict)
+    restarts: int = 0
 
     @property
     def is_done(self) -> bool:
@@ -53,6 +61,7 @@ class Standing:
 
     def __init__(self, sites: Iterable[Site], wanted_s: float = WANTED_S) -> None:
         self._watches = {site: _Watch() for site in sites}
+        self._bouts = _Bouts()
         self._state = StandingState(0.0, wanted_s)
 
     @property
@@ -68,7 +77,8 @@ class Standing:
             A site that was not announced.
         """
         for site, block in blocks.items():
-            self._watches[site].feed(block)
+            for start_s, end_s in self._watches[site].feed(block):
+                self._bouts.add(start_s, end_s)
         self._state = self._told()
         return self._state
 
@@ -76,8 +86,14 @@ class Standing:
         watches = self._watches
         latest_s = max((watch.heard_s for watch in watches.values()), default=-np.inf)
         silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.heard_s <= SILENT_S)
+        begun_s = min((watch.begun_s for watch in watches.values()), default=np.inf)
+        state = replace(
+            self._state,
+            movement={site: w.movement for site, w in watches.items() if np.isfinite(w.heard_s)},
+            restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
+        )
         if silent or not watches:  # a sensor that is not heard may be moving: the count waits for it and begins anew
-            return replace(self._state, still_s=0.0, moved=(), silent=silent, rest={})
+            return replace(state, still_s=0.0, moved=(), silent=silent, rest={})
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
         rest: dict[Site, Rest] = {}
@@ -86,7 +102,7 @@ class Standing:
             known = {site: one for site, one in found.items() if one is not None}
             rest = known if len(known) == len(found) else {}
         moved = tuple(site for site, watch in watches.items() if watch.is_moving)
-        return replace(self._state, still_s=max(0.0, until_s - since_s), moved=moved, silent=(), rest=rest)
+        return replace(state, still_s=max(0.0, until_s - since_s), moved=moved, silent=(), rest=rest)
 
 
 class _Watch:
@@ -94,10 +110,18 @@ class _Watch:
 
     def __init__(self) -> None:
         self.heard_s = self.still_since_s = self.judged_s = -np.inf
-        self.is_moving = self.is_stuck = False
+        self.begun_s = np.inf
+        self.movement = 0.0
+        self.is_stuck = False
         self._samples: ImuBlock | None = None
 
-    def feed(self, block: ImuBlock) -> None:
+    @property
+    def is_moving(self) -> bool:
+        return self.movement >= 1.0
+
+    def feed(self, block: ImuBlock) -> list[tuple[float, float]]:
+        """Take new samples; returns the windows (start, end) in which the sensor moved."""
+        moved: list[tuple[float, float]] = []
         is_new = (block.time_s > self.heard_s) & is_possible(block.gyr_rad_s, block.acc_m_s2)
         is_new[1:] &= np.diff(block.time_s) > 0
         for part in _between_silences(_part(block, is_new)):
@@ -107,29 +131,51 @@ class _Watch:
             else:
                 self._samples = _joined(self._samples, part)
             self.heard_s = float(part.time_s[-1])
-            self._judge(self._samples)
+            self.begun_s = min(self.begun_s, float(part.time_s[0]))
+            moved += self._judge(self._samples)
+        return moved
 
     def rest(self, since_s: float) -> Rest | None:
         return None if self._samples is None else rest_of(_since(self._samples, since_s))
 
-    def _judge(self, samples: ImuBlock) -> None:
+    def _judge(self, samples: ImuBlock) -> list[tuple[float, float]]:
+        moved = []
         while samples.time_s[-1] >= self.judged_s + WINDOW_S:
             until_s = self.judged_s + WINDOW_S
             window = slice(*np.searchsorted(samples.time_s, [self.judged_s, until_s]))
             gyr, acc = samples.gyr_rad_s[window], samples.acc_m_s2[window]
             self.is_stuck = len(gyr) > 2 and not (np.ptp(gyr, axis=0).any() or np.ptp(acc, axis=0).any())
-            self.is_moving = not _is_still(gyr, acc)
-            self.still_since_s = until_s if self.is_moving else self.still_since_s
+            self.movement = _movement(gyr, acc)
+            if self.is_moving:
+                self.still_since_s = until_s
+                moved.append((self.judged_s, until_s))
             self.judged_s = until_s
         self._samples = _since(samples, max(self.still_since_s, self.judged_s - KEPT_S))
+        return moved
 
 
-def _is_still(gyr: FloatArray, acc: FloatArray) -> bool:
+class _Bouts:
+    """Stretches in which any sensor moved, in whatever order they are told."""
+
+    def __init__(self) -> None:
+        self._bouts: list[tuple[float, float]] = []
+
+    def add(self, start_s: float, end_s: float) -> None:
+        near = [(a, b) for a, b in self._bouts if a <= end_s + SAME_BOUT_S and b >= start_s - SAME_BOUT_S]
+        self._bouts = [bout for bout in self._bouts if bout not in near]
+        self._bouts.append((min([start_s, *(a for a, _ in near)]), max([end_s, *(b for _, b in near)])))
+
+    def count_after(self, time_s: float) -> int:
+        return sum(start_s >= time_s for start_s, _ in self._bouts)
+
+
+def _movement(gyr: FloatArray, acc: FloatArray) -> float:
+    """Share of the limits of rest that the samples (n, 3) of a window reach, the worst of three."""
     if len(gyr) < 2:
-        return False
+        return float("inf")
     spread = [float(np.sqrt(np.sum(np.var(values, axis=0)))) for values in (gyr, acc)]
     mean_rate = float(np.linalg.norm(gyr.mean(axis=0)))
-    return spread[0] < MAX_SPREAD_RAD_S and spread[1] < MAX_ACC_SPREAD_M_S2 and mean_rate < MAX_BIAS_RAD_S
+    return max(spread[0] / MAX_SPREAD_RAD_S, spread[1] / MAX_ACC_SPREAD_M_S2, mean_rate / MAX_BIAS_RAD_S)
 
 
 def _between_silences(block: ImuBlock) -> list[ImuBlock]:

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
-from core.gait.live import FootEvent, LiveEvent, LiveEvents
+from core.gait.live import FootEvent, LiveEvent, LiveEvents, PhaseChange
 from core.gait.phases import Phase
 from core.live.angle import AngleSamples, LiveAngle
 from core.live.orientation import NOTHING, OrientedSamples
@@ -37,6 +37,7 @@ class LiveFoot:
     """One foot now: what is new, its phase, its cadence (steps per minute, NaN while it does not walk), its strides."""
 
     events: tuple[LiveEvent, ...]
+    changes: tuple[PhaseChange, ...]
     phase: Phase
     cadence_steps_min: float
     strides: int
@@ -133,7 +134,9 @@ class _Foot:
         time_s = samples.time_s[heard] + self._clock_offset_s
         events = tuple(self._events.update(time_s, samples.gyr_rad_s[heard], samples.acc_m_s2[heard]))
         self._contacts += sum(event.event is FootEvent.INITIAL_CONTACT for event in events)
-        return LiveFoot(events, self._events.phase, self._events.cadence_steps_min, max(0, self._contacts - 1))
+        changes = tuple(self._events.changes)
+        strides = max(0, self._contacts - 1)
+        return LiveFoot(events, changes, self._events.phase, self._events.cadence_steps_min, strides)
 
 
 class _StrapWatch:

@@ -167,6 +167,23 @@ def test_phases_and_cadence_are_those_of_the_whole_walk() -> None:
     assert np.mean(np.array(shown)[inside & is_settled] == true[inside & is_settled]) > 0.97
 
 
+@pytest.mark.parametrize("size", [1, 7, 10_000])
+def test_changes_tell_every_phase_and_since_when(size: int) -> None:
+    foot = walking_feet()[0]
+    events, told, changes, phase = LiveEvents(), [], [], []
+    for a in range(0, len(foot.track), size):
+        part = slice(a, a + size)
+        told += events.update(foot.track.time_s[part], foot.track.gyr_rad_s[part], foot.track.acc_m_s2[part])
+        changes += events.changes
+        phase.append((foot.track.time_s[part][-1], events.phase))
+    for time_s, shown in phase:
+        assert shown is next((c.phase for c in reversed(changes) if c.told_s <= time_s), Phase.UNKNOWN)
+    assert all(change.since_s <= change.told_s for change in changes)
+    contacts = [one.time_s for one in told if one.event is FootEvent.INITIAL_CONTACT]
+    assert [change.since_s for change in changes if change.phase is Phase.LOADING] == contacts
+    assert len(contacts) >= 5
+
+
 def test_cadence_ends_with_the_walk() -> None:
     standing_after = Walk(strides=6, standing_after_s=6.0)
     (foot,) = walker_feet(WalkerSettings(recordings=(Standing(), standing_after), sites=SITES[:1]))

@@ -109,6 +109,28 @@ def test_the_size_of_the_blocks_changes_nothing(stood: Recording, block_s: float
         np.testing.assert_array_equal(other.rest[site].gyr_rad_s, usual.rest[site].gyr_rad_s)
 
 
+def test_a_sensor_moves_just_when_its_movement_reaches_the_limit(stood: Recording) -> None:
+    imu = {**stood.imu, Site.LEFT_SHANK: knocked(stood.imu[Site.LEFT_SHANK], 1.5)}
+    for state in watched(imu):
+        assert state.moved == tuple(site for site in state.movement if state.movement[site] >= 1.0)
+    assert set(state.movement) == set(Site)
+    assert max(state.movement.values()) < 0.8  # the simulated patient stands well
+
+
+@pytest.mark.parametrize("block_s", [0.02, 6.0])
+@pytest.mark.parametrize(
+    ("knocks_s", "restarts"), [((), 0), ((1.5,), 1), ((1.5, 2.0), 1), ((1.5, 4.0), 2), ((0.0,), 0), ((0.0, 2.5), 1)]
+)
+def test_movements_close_together_restart_the_count_once_and_the_first_stillness_none(
+    stood: Recording, knocks_s: tuple[float, ...], restarts: int, block_s: float
+) -> None:
+    imu = dict(stood.imu)
+    for number, at_s in enumerate(knocks_s):
+        site = (Site.LEFT_SHANK, Site.RIGHT_FOOT)[number % 2]
+        imu[site] = knocked(imu[site], at_s)
+    assert watched(imu, block_s)[-1].restarts == restarts
+
+
 def test_long_standing_keeps_memory_and_the_latest_seconds(stood: Recording) -> None:
     block = stood.imu[Site.LEFT_SHANK]
     standing = Standing([Site.LEFT_SHANK])
