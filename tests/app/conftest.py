@@ -1,0 +1,27 @@
+"""What tests of the screen get: a watchdog over its thread, and a language as long as German."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtWidgets import QApplication
+
+from app.wording import use_language
+from tests.app.watchdog import Watchdog
+
+
+@pytest.fixture
+def watchdog(qapp: QApplication) -> Iterator[Watchdog]:
+    """Fail the test, with the stack, if anything holds up the screen's thread for more than 100 ms."""
+    dog = Watchdog()
+    dog.start()
+    yield dog
+    dog.stop()
+    assert dog.late == [], "\n".join(map(str, dog.late))
+
+
+@pytest.fixture
+def pseudo_language() -> Iterator[None]:
+    """Let every sentence on the screen be 35 % longer."""
+    use_language("pseudo")
+    yield
+    use_language("en")
