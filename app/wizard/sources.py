@@ -15,7 +15,7 @@ DEMONSTRATION = "demonstration"
 
 def choices() -> tuple[SourceChoice, ...]:
     """All sources of this machine."""
-    return (SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration),)
+    return (SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True),)
 
 
 def replay_of(folder: Path) -> SourceChoice:
@@ -27,7 +27,7 @@ def replay_of(folder: Path) -> SourceChoice:
 
         return [ReplaySource(read_session(folder))]
 
-    return SourceChoice(f"replay {folder}", tr("Replay of {name}").format(name=folder.name), make)
+    return SourceChoice(f"replay {folder}", tr("Replay of {name}").format(name=folder.name), make, is_simulated=True)
 
 
 def _demonstration() -> "Sequence[LiveSource]":

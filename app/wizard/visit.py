@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from core.calibration.rest import Rest
     from core.live.sensors import LiveSensor
 
-TARGET_S = 300.0  # from the patient to the first walk
+DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
 
 
 class Visit(QObject):
@@ -57,7 +57,7 @@ class Visit(QObject):
     ) -> None:
         super().__init__(parent)
         self._desk, self._now_s = desk, now_s
-        self.choices = tuple(choices)
+        self._choices = tuple(choices)
         self.session: StoredSession | None = None
         self.patient = PatientRecord(desk, self)
         self.sensors = WornSensors(self)
@@ -111,6 +111,18 @@ class Visit(QObject):
     def is_simulated(self) -> bool:
         acquisition = self.sensors.acquisition
         return bool(self.told.is_simulated or (acquisition is not None and acquisition.is_simulated))
+
+    @property
+    def may_simulate(self) -> bool:
+        """Whether simulated recordings may be kept for this patient: the demonstration's, or one coded for it."""
+        state = self._desk.state
+        is_demonstration = state is not None and state.is_demonstration
+        return is_demonstration or self.patient.told.code.startswith(DEMO)
+
+    @property
+    def choices(self) -> tuple[SourceChoice, ...]:
+        """What this patient's sensors can be heard through."""
+        return tuple(choice for choice in self._choices if self.may_simulate or not choice.is_simulated)
 
     def begin_session(self) -> None:
         """Make the session's row, once the patient has one; `changed` follows."""
@@ -195,8 +207,19 @@ class Visit(QObject):
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
-        self.takes.stop()
-        self.sensors.close()
+        if self.takes.is_recording and (acquisition := self.sensors.detach()) is not None:
+            self.takes.stop()
+
+            def close(_opened: "OpenedLibrary") -> None:
+                acquisition.close()
+
+            self._desk.run(close, None, None, self._desk)  # in its turn, after the recording has been stopped
+        else:
+            self.sensors.close()
+
+    def finish(self) -> None:
+        """Wait for all threads: for the end of the program."""
+        self.sensors.finish()
         self.evaluation.finish()
 
     def _change(self, told: Session) -> None:

@@ -1,6 +1,7 @@
 """Which sensors are there, and who wears what where?"""
 
 import logging
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -22,11 +23,15 @@ _log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class SourceChoice:
-    """Something that sensors can be heard through. `make` may take a second: it is called beside the screen."""
+    """Something that sensors can be heard through. `make` may take a second: it is called beside the screen.
+
+    What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
+    """
 
     key: str
     name: str
     make: Callable[[], "Sequence[LiveSource]"]
+    is_simulated: bool = False
 
 
 class WornSensors(QObject):
@@ -45,6 +50,7 @@ class WornSensors(QObject):
         self.choice: SourceChoice | None = None
         self.site_of: dict[str, Site] = {}
         self.is_left_to_motion = False
+        self._closing: list[threading.Thread] = []
         self._background = Background(self)
         self._background.done.connect(self._on_opened)
         self._background.failed.connect(self._on_failed)
@@ -75,9 +81,21 @@ class WornSensors(QObject):
         self.changed.emit()
 
     def close(self) -> None:
-        """Let go of the sensors."""
-        self._background.finish()
+        """Let go of the sensors; `finish` waits until that is done."""
         self._close()
+
+    def detach(self) -> "Acquisition | None":
+        """Forget what was open; whoever takes it closes it."""
+        self._background.stop()
+        acquisition = self.acquisition
+        self.acquisition, self.choice, self.site_of = None, None, {}
+        return acquisition
+
+    def finish(self) -> None:
+        """Wait for the last thread, at the end of the program."""
+        self._background.finish()
+        for thread in self._closing:
+            thread.join()
 
     def assign(self, sensor: str, site: Site | None) -> None:
         """Wear `sensor` at `site`; one that was worn there takes the place that `sensor` had, or none."""
@@ -127,10 +145,11 @@ class WornSensors(QObject):
         )
 
     def _close(self) -> None:
-        self._background.stop()
-        if self.acquisition is not None:
-            self.acquisition.close()
-        self.acquisition, self.choice, self.site_of = None, None, {}
+        acquisition = self.detach()
+        if acquisition is not None:  # closing waits for ports, so another thread does it
+            self._closing = [thread for thread in self._closing if thread.is_alive()]
+            self._closing.append(threading.Thread(target=acquisition.close, name="closing sensors"))
+            self._closing[-1].start()
 
     def _on_opened(self, acquisition: "Acquisition") -> None:
         self.acquisition = acquisition
