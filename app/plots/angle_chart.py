@@ -57,7 +57,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
         for part in (self, self.viewport()):  # a click goes on to the page's control, which takes the focus
             part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._view = pg.ViewBox(enableMenu=False)
-        self._angle_axis, self._time_axis = _AngleAxis("left"), _TimeAxis("bottom")
+        self._angle_axis, self._time_axis = AngleAxis("left"), _TimeAxis("bottom")
         self._layout = pg.GraphicsLayout()
         self._layout.setSpacing(0)
         self._layout.addItem(self._angle_axis, 0, 0)
@@ -172,7 +172,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
             item.update()
 
 
-class _AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
+class AngleAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
     def tickStrings(self, values: list[float], _scale: float, _spacing: float) -> list[str]:
         return [f"{value:.0f}".replace("-", "\N{MINUS SIGN}") for value in values]
 

@@ -89,7 +89,7 @@ class PhaseFrame(Card):
         super().__init__(look, spacing=6)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         for phase, word in LEGEND:
-            self._legend.addWidget(_Swatch(look, phase))
+            self._legend.addWidget(Swatch(look, phase))
             self._legend.addWidget(Text(look, word, size=12, tone="ink2"))
         self._legend.addStretch(1)
         self._title.addWidget(Text(look, "Gait phases", size=14, weight=SEMIBOLD))
@@ -269,7 +269,7 @@ class PhaseLanes(QWidget):
         gap = GAP_PX * self._look.theme.scale / 2
         for phase, x0, x1 in zip(phases, left.tolist(), right.tolist(), strict=True):
             box = QRectF(x0 + gap, area.top(), max(x1 - x0 - 2 * gap, 1.0), area.height())
-            _paint_phase(painter, phase, box, full, pale, self._look.theme)
+            paint_phase(painter, phase, box, full, pale, self._look.theme)
 
     def _paint_too_narrow(
         self, painter: QPainter, left: FloatArray, right: FloatArray, known: list[bool], area: QRectF
@@ -291,7 +291,7 @@ class PhaseLanes(QWidget):
         self.update()
 
 
-class _Swatch(QWidget):
+class Swatch(QWidget):
     """How one phase looks, in grey."""
 
     def __init__(self, look: Look, phase: Phase) -> None:
@@ -308,10 +308,10 @@ class _Swatch(QWidget):
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         c = theme.colours
-        _paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), theme)
+        paint_phase(painter, self._phase, QRectF(self.rect()), QColor(c.ink2), QColor(c.band_1sd), theme)
 
 
-def _paint_phase(painter: QPainter, phase: Phase, box: QRectF, full: QColor, pale: QColor, theme: Theme) -> None:
+def paint_phase(painter: QPainter, phase: Phase, box: QRectF, full: QColor, pale: QColor, theme: Theme) -> None:
     match phase:
         case Phase.LOADING:
             painter.fillRect(box, full)

@@ -1,0 +1,210 @@
+"""When was which foot on the floor, while the patient walks? One lane per leg under the live curves, on their time.
+
+The phases look as in the results: loading full, foot flat pale, pre-swing hatched, swing empty on a base line. What a
+foot did may be told a moment late, so the end of a lane is drawn anew as far back as its phases have changed.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.plots.live_strip import SHOWN_S
+from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
+from app.plots.scrolling_picture import ScrollingPicture
+from app.theme import CHIP_RADIUS, Look
+from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.text import MEDIUM
+from app.wording import tr
+from core.body import Side
+from core.gait.phases import Phase
+
+AXIS_HEIGHT, TICK = 24, 4
+TICK_S = 2.0
+LEAST_WIDTH = 320
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseSpan:
+    """A foot's phase between two instants of the screen's clock; `end_s` None: it still lasts."""
+
+    phase: Phase
+    start_s: float
+    end_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LiveLane:
+    """The last seconds of one foot, in order, and when its sensor was silent, from and to; None: it still is."""
+
+    spans: tuple[PhaseSpan, ...] = ()
+    silent_s: tuple[tuple[float, float | None], ...] = ()
+
+
+class LiveLanes(QWidget):
+    """Left above right over a time axis that ends now."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._seconds = SHOWN_S
+        self._now_s = 0.0
+        self._lanes: Mapping[Side, LiveLane] = {}
+        self._picture: ScrollingPicture | None = None
+        self._drawn: Mapping[Side, tuple[PhaseSpan, ...]] = {}
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self._on_look_changed)
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(BETWEEN) + px(AXIS_HEIGHT))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def set_seconds(self, seconds: float) -> None:
+        """Set how much time is in sight."""
+        if seconds != self._seconds:
+            self._seconds = seconds
+            self.redraw()
+
+    def show_lanes(self, now_s: float, lanes: Mapping[Side, LiveLane]) -> None:
+        """Draw up to `now_s`. A side that is left out has no lane, as on a leg without sensors."""
+        if lanes.keys() != self._lanes.keys():
+            self._picture = None
+        self._now_s, self._lanes = now_s, lanes
+        self.update(self._place.toAlignedRect())
+
+    def clear(self) -> None:
+        self._lanes = {}
+        self.redraw()
+
+    def redraw(self) -> None:
+        """Draw everything anew, the next time it is in sight."""
+        self._picture = None
+        self.update()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._picture = None
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        place, ratio = self._place, self.devicePixelRatioF()
+        if not place.toAlignedRect().contains(event.rect()):
+            self._paint_frame(painter)
+        picture = self._up_to_date(place, ratio)
+        picture.paint(painter, place, ratio)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for side, lane in self._lanes.items():
+            for start_s, end_s in lane.silent_s:
+                self._paint_silent(painter, side, picture.x_of(start_s) / ratio, end_s, picture, ratio)
+
+    @property
+    def _place(self) -> QRectF:
+        """Of the lanes, in px of the widget."""
+        px = self._look.theme.px
+        width = max(self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), 1)
+        return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(BETWEEN))
+
+    def _top(self, side: Side) -> int:
+        px = self._look.theme.px
+        return 0 if side is Side.LEFT else px(LANE) + px(BETWEEN)
+
+    def _up_to_date(self, place: QRectF, ratio: float) -> ScrollingPicture:
+        columns, rows = round(place.width() * ratio), round(place.height() * ratio)
+        picture = self._picture
+        if picture is None or (picture.columns, picture.rows) != (columns, rows):
+            picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
+        from_x = picture.advance(self._now_s)
+        first_s = picture.time_at(0)
+        seen = {side: tuple(_since(first_s, lane.spans)) for side, lane in self._lanes.items()}
+        for side, spans in seen.items():
+            changed = set(spans).symmetric_difference(_since(first_s, self._drawn.get(side, ())))
+            if changed and from_x > 0:
+                changed_x = picture.x_of(min(span.start_s for span in changed))
+                from_x = int(min(max(np.floor(changed_x) - 1, 0), from_x))
+        if from_x < columns:
+            painter = QPainter(picture.pixmap)
+            painter.setClipRect(QRectF(from_x, 0, columns - from_x, rows))
+            painter.fillRect(picture.pixmap.rect(), QColor(self._look.theme.colours.surface))
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            painter.scale(ratio, ratio)
+            for side in self._lanes:
+                self._draw_lane(painter, side, picture, from_x, ratio)
+            painter.end()
+        self._drawn = seen
+        return picture
+
+    def _draw_lane(self, painter: QPainter, side: Side, picture: ScrollingPicture, from_x: int, ratio: float) -> None:
+        """Draw the phases that reach beyond column `from_x`."""
+        theme = self._look.theme
+        full, pale = theme.curve(side), theme.soft(side)
+        gap = GAP_PX * theme.scale / 2
+        for span in self._lanes[side].spans:
+            right = picture.columns + 2.0 if span.end_s is None else picture.x_of(span.end_s)
+            if right >= from_x:
+                left = picture.x_of(span.start_s) / ratio
+                width = max(right / ratio - left - 2 * gap, 1.0)
+                box = QRectF(left + gap, self._top(side), width, theme.px(LANE))
+                paint_phase(painter, span.phase, box, full, pale, theme)
+
+    def _paint_silent(
+        self, painter: QPainter, side: Side, left: float, end_s: float | None, picture: ScrollingPicture, ratio: float
+    ) -> None:
+        theme, place = self._look.theme, self._place
+        c = theme.colours
+        right = (picture.columns if end_s is None else picture.x_of(end_s)) / ratio
+        left = max(left, 0.0)
+        said = tr("{side} foot silent").format(side=LETTERS[side])
+        painter.setFont(theme.font(12, MEDIUM))
+        wanted = painter.fontMetrics().horizontalAdvance(said) + theme.px(16)
+        if end_s is None:
+            left = min(left, right - wanted)
+        if right <= 0:
+            return
+        box = QRectF(place.left() + left, self._top(side), right - left, theme.px(LANE))
+        painter.setPen(theme.pen(c.caution_edge, 1.25))
+        painter.setBrush(QColor(c.caution))
+        radius = CHIP_RADIUS * theme.scale
+        painter.drawRoundedRect(box.adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+        if box.width() >= wanted:
+            painter.setPen(QColor(c.caution_ink))
+            painter.drawText(box, Qt.AlignmentFlag.AlignCenter, said)
+
+    def _paint_frame(self, painter: QPainter) -> None:
+        """Chips and time axis, which stand still."""
+        theme, place = self._look.theme, self._place
+        c, px = theme.colours, theme.px
+        painter.fillRect(self.rect(), QColor(c.surface))
+        chip = px(CHIP)
+        for side in self._lanes or Side:
+            paint_chip(painter, QRectF(0, self._top(side) + (px(LANE) - chip) / 2, chip, chip), side, theme)
+        painter.setFont(theme.font(12))
+        for ago_s in np.arange(0.0, self._seconds + 0.1, TICK_S).tolist():
+            x = place.right() - place.width() * ago_s / self._seconds
+            top = place.bottom() + px(4)
+            painter.setPen(theme.pen(c.control, 1))
+            painter.drawLine(QPointF(x, top), QPointF(x, top + px(TICK)))
+            said = tr("now") if ago_s == 0 else tr("\N{MINUS SIGN}{seconds:.0f} s").format(seconds=ago_s)
+            width = painter.fontMetrics().horizontalAdvance(said) + 2
+            left = min(x - width / 2, self.width() - width)
+            painter.setPen(QColor(c.ink2))
+            label = QRectF(left, top + px(TICK), width, self.height() - top - px(TICK))
+            painter.drawText(label, Qt.AlignmentFlag.AlignCenter, said)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.redraw()
+
+
+def _since(first_s: float, spans: tuple[PhaseSpan, ...]) -> Iterator[PhaseSpan]:
+    """Give the spans as far as they are in sight."""
+    for span in spans:
+        if span.end_s is None or span.end_s > first_s:
+            yield span if span.start_s >= first_s else replace(span, start_s=first_s)

@@ -1,0 +1,367 @@
+"""One kind of joint while the patient walks: the last seconds of both legs, left solid, right dashed, gaps as gaps.
+
+Axes and frame are pyqtgraph's. What moves is one item of our own that keeps its history in a picture, since a wide,
+smooth line of pyqtgraph's is drawn whole in every frame, for more than ten times as long.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
+from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
+
+from app.plots.angle_chart import AngleAxis
+from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
+from app.plots.scrolling_picture import ScrollingPicture
+from app.theme import Look, Theme
+from app.widgets.chip import LETTERS
+from app.widgets.text import MEDIUM
+from app.wording import tr
+from core.body import Side
+from core.samples import BoolArray, FloatArray
+
+LEAST_SIZE = (320, 72)
+FOOT = 6  # under the axis' lowest tick, whose figure is half below it
+CURVE_PX, THIN_PX = 2.5, 1.25
+SHOWN_S = 8.0
+KEPT_S = 15.0  # more than any width shows
+BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts lie closer
+MISSING_S = 0.5  # without a sample for longer, it is said in words
+FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they tell a first angle
+MAX_TICKS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class LiveTrace:
+    """The last seconds of one joint, both (n,): ascending times on the screen's clock, radians, NaN where missing.
+
+    `is_provisional`: the newest samples of an ankle whose axis comes from free motion alone.
+    """
+
+    time_s: FloatArray
+    angle_rad: FloatArray
+    is_provisional: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class MissingSpan:
+    """A stretch without angles of one leg; `end_s` None: it still lasts."""
+
+    side: Side
+    start_s: float
+    end_s: float | None
+
+
+class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
+    """Axes that stay `fixed_deg`, widened by tens where a walk leaves them and kept so.
+
+    `tick_deg` is what two figures of the axis lie apart.
+    """
+
+    def __init__(self, look: Look, fixed_deg: tuple[float, float], tick_deg: float) -> None:
+        super().__init__(useOpenGL=False)
+        self._look, self._tick_deg = look, tick_deg
+        for part in (self, self.viewport()):
+            part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
+        self._axis, self._base = AngleAxis("left"), pg.AxisItem("bottom")
+        self._layout = pg.GraphicsLayout()
+        self._layout.setSpacing(0)
+        self._layout.addItem(self._axis, 0, 0)
+        self._layout.addItem(self._view, 0, 1)
+        self._layout.addItem(self._base, 1, 1)
+        self._axis.linkToView(self._view)
+        self._view.setDefaultPadding(0.0)
+        self._view.disableAutoRange()
+        self._base.setStyle(showValues=False, tickLength=0)
+        for axis in (self._axis, self._base):
+            axis.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)  # they never move, the curves always
+        self.setCentralItem(self._layout)
+        self._history = _HistoryItem(look, fixed_deg, self._view)
+        self._view.sigResized.connect(self._history.on_resized)
+        self._set_range()
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def range_deg(self) -> tuple[float, float]:
+        return self._history.range_deg
+
+    @property
+    def missing(self) -> tuple[MissingSpan, ...]:
+        """Where a leg that is shown has had no angle for longer than a moment."""
+        return self._history.missing
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def set_seconds(self, seconds: float) -> None:
+        """Set how much time is in sight."""
+        self._history.set_seconds(seconds)
+
+    def show_traces(self, now_s: float, traces: Mapping[Side, LiveTrace]) -> None:
+        """Draw up to `now_s`: of each trace what is newer than what is there. A side that is left out shows nothing."""
+        before = self.range_deg
+        self._history.take(now_s, traces)
+        if self.range_deg != before:
+            self._set_range()
+
+    def clear(self) -> None:
+        """Begin with an empty strip. The axis stays as wide as it became."""
+        self._history.clear()
+
+    def _set_range(self) -> None:
+        lowest, highest = self.range_deg
+        self._view.setYRange(lowest, highest, padding=0)
+        step = self._tick_deg if highest - lowest <= MAX_TICKS * self._tick_deg else 2 * self._tick_deg
+        self._axis.setTickSpacing(levels=[(step, 0)])
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._history.update()
+
+    def _on_look_changed(self) -> None:
+        theme = self._look.theme
+        c = theme.colours
+        self.setBackground(c.surface)
+        self._axis.setWidth(theme.px(AXIS_WIDTH))
+        self._base.setHeight(theme.px(FOOT))
+        for axis in (self._axis, self._base):
+            axis.setPen(theme.pen(c.control, 1))
+        self._axis.setTextPen(QColor(c.ink2))
+        self._axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
+        self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+        self._history.redraw()
+        self.updateGeometry()
+
+
+@dataclass(slots=True)
+class _Trace:
+    """What one leg has shown: rows (n,) with a NaN row where the line breaks, and the gaps that count as missing.
+
+    `length_px` is how long the line is up to each row: it tells where in its pattern a dash begins, so that dashes
+    stand still in time.
+    """
+
+    time_s: FloatArray = field(default_factory=lambda: np.zeros(0))
+    angle_deg: FloatArray = field(default_factory=lambda: np.zeros(0))
+    is_thin: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
+    length_px: FloatArray = field(default_factory=lambda: np.zeros(0))
+    last_s: float = -np.inf  # of all rows
+    heard_s: float = -np.inf  # of the rows with an angle
+    gaps: tuple[tuple[float, float], ...] = ()
+
+    def append(self, trace: LiveTrace) -> int:
+        """Take what is newer than the last row, and give how many rows that makes."""
+        first = int(np.searchsorted(trace.time_s, self.last_s, side="right"))
+        if first == len(trace.time_s):
+            return 0
+        time_s, angle_deg = trace.time_s[first:], np.rad2deg(trace.angle_rad[first:])
+        self._note_gaps(time_s[np.isfinite(angle_deg)])
+        since_s = np.diff(time_s, prepend=self.last_s if len(self.time_s) else time_s[0])
+        breaks = np.flatnonzero(since_s > BREAK_S)
+        if len(breaks):
+            time_s = np.insert(time_s, breaks, time_s[breaks] - BREAK_S / 2)
+            angle_deg = np.insert(angle_deg, breaks, np.nan)
+        self.last_s = float(time_s[-1])
+        kept = slice(int(np.searchsorted(self.time_s, self.last_s - KEPT_S)), None)
+        count = len(time_s)
+        self.time_s = np.concatenate([self.time_s[kept], time_s])
+        self.angle_deg = np.concatenate([self.angle_deg[kept], angle_deg])
+        self.is_thin = np.concatenate([self.is_thin[kept], np.full(count, trace.is_provisional)])
+        self.length_px = np.concatenate([self.length_px[kept], np.zeros(count)])
+        return count
+
+    def measure(self, first: int, px_per_s: float, px_per_deg: float) -> None:
+        """Measure the line from row `first` on; the rows before keep what they have."""
+        begin = max(first - 1, 0)
+        steps = np.hypot(np.diff(self.time_s[begin:]) * px_per_s, np.diff(self.angle_deg[begin:]) * px_per_deg)
+        self.length_px[begin + 1 :] = self.length_px[begin] + np.cumsum(np.nan_to_num(steps))
+
+    def _note_gaps(self, known_s: FloatArray) -> None:
+        """Note where, before or among these new instants with an angle, there was none for long."""
+        if not len(known_s):
+            return
+        heard_s = np.concatenate([[self.heard_s], known_s])
+        for row in np.flatnonzero(np.diff(heard_s) > MISSING_S).tolist():
+            if np.isfinite(heard_s[row]):
+                self.gaps += ((float(heard_s[row]), float(heard_s[row + 1])),)
+        self.heard_s = float(heard_s[-1])
+        self.gaps = tuple(gap for gap in self.gaps if gap[1] > self.heard_s - KEPT_S)
+
+    def lines_from(self, time_s: float) -> list[tuple[slice, bool]]:
+        """Give the pieces of the line from the row before `time_s` on, and whether each is thin."""
+        begin = max(int(np.searchsorted(self.time_s, time_s)) - 1, 0)
+        known, thin = np.isfinite(self.angle_deg[begin:]), self.is_thin[begin:]
+        borders = 1 + np.flatnonzero((np.diff(known.astype(np.int8)) != 0) | (np.diff(thin.astype(np.int8)) != 0))
+        pieces = []
+        for start, end in pairwise([0, *borders.tolist(), len(known)]):
+            if end > start and known[start]:
+                joins = end < len(known) and known[end]  # where it grows thick, the pieces meet on one row
+                pieces.append((slice(begin + start, begin + end + joins), bool(thin[start])))
+        return pieces
+
+
+class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
+    """The moving part, as large as the view it lies in. Nothing is drawn while it is out of sight."""
+
+    def __init__(self, look: Look, fixed_deg: tuple[float, float], view: pg.ViewBox) -> None:
+        super().__init__()
+        self._look, self._view = look, view
+        self._fixed = self.range_deg = fixed_deg
+        self._seconds = SHOWN_S
+        self._picture: ScrollingPicture | None = None
+        self._now_s, self._began_s = 0.0, np.nan
+        self._traces: dict[Side, _Trace] = {}
+        self._dirty_s = np.inf  # what is later must be drawn anew
+        self._drawn: tuple[MissingSpan, ...] = ()
+        self.missing: tuple[MissingSpan, ...] = ()
+        self.setParentItem(view)
+
+    def boundingRect(self) -> QRectF:
+        return QRectF(0, 0, self._view.width(), self._view.height())
+
+    def on_resized(self) -> None:
+        self.prepareGeometryChange()
+        self.redraw()
+
+    def set_seconds(self, seconds: float) -> None:
+        if seconds != self._seconds:
+            self._seconds = seconds
+            self.redraw()
+
+    def redraw(self) -> None:
+        """Draw everything anew from the history, the next time it is in sight."""
+        self._picture = None
+        self.update()
+
+    def clear(self) -> None:
+        self._traces, self._began_s, self.missing = {}, np.nan, ()
+        self.redraw()
+
+    def take(self, now_s: float, traces: Mapping[Side, LiveTrace]) -> None:
+        if now_s < self._now_s or self._traces.keys() - traces.keys():
+            self.clear()
+        self._now_s = now_s
+        if np.isnan(self._began_s):
+            self._began_s = now_s
+        for side, live in traces.items():
+            trace = self._traces.setdefault(side, _Trace())
+            count = trace.append(live)
+            if count:
+                first = len(trace.time_s) - count
+                self._dirty_s = min(self._dirty_s, float(trace.time_s[max(first - 1, 0)]))
+                self._widen(trace.angle_deg[first:])
+                if self._picture is not None:
+                    trace.measure(first, *self._scales(self._picture))
+        self.missing = tuple(self._missing())
+        self.update()
+
+    def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
+        ratio = widget.devicePixelRatioF() if widget is not None else 1.0
+        picture = self._up_to_date(ratio)
+        picture.paint(painter, self.boundingRect(), ratio)
+        self._paint_words(painter, picture, ratio)
+
+    def _up_to_date(self, ratio: float) -> ScrollingPicture:
+        """Bring the picture to the present: what is new, what changed since, or all of it."""
+        columns, rows = (max(1, round(length * ratio)) for length in (self._view.width(), self._view.height()))
+        picture = self._picture
+        if picture is None or (picture.columns, picture.rows) != (columns, rows):
+            picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
+            for trace in self._traces.values():
+                trace.measure(0, *self._scales(picture))
+        from_x = picture.advance(self._now_s)
+        changed = set(self.missing).symmetric_difference(self._drawn)
+        dirty_s = min([self._dirty_s, *(span.start_s for span in changed)])
+        reach = CURVE_PX * self._look.theme.scale * ratio  # a line is half as wide to either side
+        if from_x > 0 and dirty_s < np.inf:
+            from_x = int(min(max(np.floor(picture.x_of(dirty_s) - reach), 0), from_x))
+        if from_x < columns:
+            painter = QPainter(picture.pixmap)
+            painter.setClipRect(QRectF(from_x, 0, columns - from_x, rows))
+            self._draw(painter, picture, from_x - 2 * reach, ratio)
+            painter.end()
+        self._drawn, self._dirty_s = self.missing, np.inf
+        return picture
+
+    def _draw(self, painter: QPainter, picture: ScrollingPicture, from_x: float, ratio: float) -> None:
+        """Draw all that lies right of `from_x`, as far as the painter's clip lets through."""
+        theme = self._look.theme
+        painter.fillRect(0, 0, picture.columns, picture.rows, QColor(theme.colours.surface))
+        for span in self.missing:
+            left, right = self._ends(span, picture)
+            painter.fillRect(QRectF(left, 0, right - left, picture.rows), QColor(theme.colours.caution))
+        lowest, highest = self.range_deg
+        per_deg = picture.rows / (highest - lowest)
+        hairline = max(1, round(ratio))
+        painter.fillRect(0, round(highest * per_deg), picture.columns, hairline, QColor(theme.colours.line))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for side, trace in self._traces.items():
+            for rows, is_thin in trace.lines_from(picture.time_at(from_x)):
+                x, y = picture.xs_of(trace.time_s[rows]), (highest - trace.angle_deg[rows]) * per_deg
+                painter.setPen(_pen(theme, side, is_thin, ratio, float(trace.length_px[rows.start])))
+                painter.drawPolyline(pg.functions.arrayToQPolygonF(x, y))
+
+    def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
+        """Say in each box who is missing, as far as the words have room; while it lasts they take it."""
+        theme = self._look.theme
+        px = theme.px
+        painter.setFont(theme.font(12, MEDIUM))
+        metrics = painter.fontMetrics()
+        taken: list[tuple[float, float]] = []
+        for span in self.missing:
+            left, right = (end / ratio for end in self._ends(span, picture))
+            said = tr("{side} missing").format(side=LETTERS[span.side])
+            wanted = metrics.horizontalAdvance(said) + px(16)
+            left = max(left, 0.0)
+            if right - left < wanted:
+                if span.end_s is not None:
+                    continue
+                left = right - wanted
+            row = sum(begin < right and left < end for begin, end in taken)
+            taken.append((left, right))
+            plate = QRectF(left, row * px(20), wanted, px(24))
+            painter.fillRect(plate, QColor(theme.colours.caution))
+            painter.setPen(QColor(theme.colours.caution_ink))
+            painter.drawText(plate, Qt.AlignmentFlag.AlignCenter, said)
+
+    def _ends(self, span: MissingSpan, picture: ScrollingPicture) -> tuple[float, float]:
+        left = picture.x_of(span.start_s)
+        return left, picture.columns if span.end_s is None else picture.x_of(span.end_s)
+
+    def _missing(self) -> Iterator[MissingSpan]:
+        for side, trace in self._traces.items():
+            for start_s, end_s in trace.gaps:
+                if end_s > self._now_s - self._seconds:
+                    yield MissingSpan(side, start_s, end_s)
+            if np.isfinite(trace.heard_s) and self._now_s - trace.heard_s > MISSING_S:
+                yield MissingSpan(side, trace.heard_s, None)
+            elif np.isinf(trace.heard_s) and self._now_s - self._began_s > FIRST_ANGLE_S:
+                yield MissingSpan(side, self._began_s, None)
+
+    def _widen(self, angle_deg: FloatArray) -> None:
+        wanted = range_for(self.range_deg, [angle_deg])
+        if wanted != self.range_deg:
+            self.range_deg = wanted
+            self.redraw()
+
+    def _scales(self, picture: ScrollingPicture) -> tuple[float, float]:
+        lowest, highest = self.range_deg
+        return picture.px_per_s, picture.rows / (highest - lowest)
+
+
+def _pen(theme: Theme, side: Side, is_thin: bool, ratio: float, length_px: float) -> QPen:
+    """Give the pen of a line of which `length_px` are drawn already."""
+    pen = theme.side_pen(side, (THIN_PX if is_thin else CURVE_PX) * ratio)
+    if pen.style() is Qt.PenStyle.CustomDashLine:
+        pen.setDashOffset(length_px / pen.widthF())
+    return pen

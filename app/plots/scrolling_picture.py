@@ -1,0 +1,63 @@
+"""How do live curves cost little? A picture of the last seconds moves on by whole pixels; only its new end is drawn.
+
+Every instant has its column, counted from the clock's zero, so that a sample is drawn at the same fraction of a pixel
+whenever it is drawn: moving the picture on and drawing all of it anew give the same picture.
+"""
+
+import math
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QPainter, QPixmap
+
+from core.samples import FloatArray
+
+
+class ScrollingPicture:
+    """`columns` by `rows` device pixels, the last `seconds` of a clock from left to right."""
+
+    def __init__(self, columns: int, rows: int, seconds: float) -> None:
+        self.columns, self.rows = columns, rows
+        self.pixmap = QPixmap(columns, rows)
+        self._px_per_s = columns / seconds
+        self._last_column: int | None = None  # which ends the picture; None before anything was drawn
+
+    @property
+    def px_per_s(self) -> float:
+        return self._px_per_s
+
+    def advance(self, now_s: float) -> int:
+        """Let the picture end at `now_s`, and give the first of its columns that shows nothing yet.
+
+        A clock that went back, or on by more than the picture holds, makes all of it new.
+        """
+        last = math.floor(now_s * self._px_per_s)
+        before, self._last_column = self._last_column, last
+        if before is None or not 0 <= last - before < self.columns:
+            return 0
+        if last > before:
+            self.pixmap.scroll(before - last, 0, self.pixmap.rect())
+        return self.columns - (last - before)
+
+    def x_of(self, time_s: float) -> float:
+        """Where in the picture an instant lies, px from its left."""
+        return time_s * self._px_per_s - self._left
+
+    def xs_of(self, time_s: FloatArray) -> FloatArray:
+        """The same for (n,) instants."""
+        return time_s * self._px_per_s - self._left
+
+    def time_at(self, x: float) -> float:
+        return (x + self._left) / self._px_per_s
+
+    def paint(self, painter: QPainter, place: QRectF, pixel_ratio: float) -> None:
+        """Copy the picture to `place`, pixel by pixel."""
+        corner = painter.worldTransform().map(place.topLeft())
+        painter.save()
+        painter.resetTransform()
+        painter.scale(1 / pixel_ratio, 1 / pixel_ratio)
+        painter.drawPixmap(round(corner.x() * pixel_ratio), round(corner.y() * pixel_ratio), self.pixmap)
+        painter.restore()
+
+    @property
+    def _left(self) -> int:
+        return (self._last_column or 0) - self.columns
