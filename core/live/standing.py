@@ -7,10 +7,10 @@ since the last movement.
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
+from typing import Generic, TypeVar
 
 import numpy as np
 
-from core.body import Site
 from core.calibration.rest import MAX_ACC_SPREAD_M_S2, MAX_BIAS_RAD_S, MAX_SPREAD_RAD_S, Rest, rest_of
 from core.samples import BoolArray, FloatArray, ImuBlock
 from core.tracks import is_possible
@@ -21,9 +21,12 @@ KEPT_S = 10.0  # who stands longer is measured over the last ten seconds
 SILENT_S = 0.5
 SAME_BOUT_S = 1.0  # movements less far apart are one
 
+Sensor = TypeVar("Sensor", bound=str)
+"""A site, or a name where nobody knows the site yet."""
+
 
 @dataclass(frozen=True, slots=True)
-class StandingState:
+class StandingState(Generic[Sensor]):
     """How far the standing has come.
 
     Attributes
@@ -45,10 +48,10 @@ class StandingState:
 
     still_s: float
     wanted_s: float
-    moved: tuple[Site, ...] = ()
-    silent: tuple[Site, ...] = ()
-    rest: Mapping[Site, Rest] = field(default_factory=dict)
-    movement: Mapping[Site, float] = field(default_factory=dict)
+    moved: tuple[Sensor, ...] = ()
+    silent: tuple[Sensor, ...] = ()
+    rest: Mapping[Sensor, Rest] = field(default_factory=dict)
+    movement: Mapping[Sensor, float] = field(default_factory=dict)
     restarts: int = 0
 
     @property
@@ -56,52 +59,52 @@ class StandingState:
         return bool(self.rest)
 
 
-class Standing:
-    """Watches any number of sensors; fed block by block, of any size and in any order of sites."""
+class Standing(Generic[Sensor]):
+    """Watches any number of sensors; fed block by block, of any size and in any order of sensors."""
 
-    def __init__(self, sites: Iterable[Site], wanted_s: float = WANTED_S) -> None:
-        self._watches = {site: _Watch() for site in sites}
+    def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S) -> None:
+        self._watches = {sensor: _Watch() for sensor in sensors}
         self._bouts = _Bouts()
-        self._state = StandingState(0.0, wanted_s)
+        self._state: StandingState[Sensor] = StandingState(0.0, wanted_s)
 
     @property
-    def state(self) -> StandingState:
+    def state(self) -> StandingState[Sensor]:
         return self._state
 
-    def update(self, blocks: Mapping[Site, ImuBlock]) -> StandingState:
-        """Take new samples of some or all sites.
+    def update(self, blocks: Mapping[Sensor, ImuBlock]) -> StandingState[Sensor]:
+        """Take new samples of some or all sensors.
 
         Raises
         ------
         KeyError
-            A site that was not announced.
+            A sensor that was not announced.
         """
-        for site, block in blocks.items():
-            for start_s, end_s in self._watches[site].feed(block):
+        for sensor, block in blocks.items():
+            for start_s, end_s in self._watches[sensor].feed(block):
                 self._bouts.add(start_s, end_s)
         self._state = self._told()
         return self._state
 
-    def _told(self) -> StandingState:
+    def _told(self) -> StandingState[Sensor]:
         watches = self._watches
         latest_s = max((watch.heard_s for watch in watches.values()), default=-np.inf)
         silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.heard_s <= SILENT_S)
         begun_s = min((watch.begun_s for watch in watches.values()), default=np.inf)
         state = replace(
             self._state,
-            movement={site: w.movement for site, w in watches.items() if np.isfinite(w.heard_s)},
+            movement={sensor: w.movement for sensor, w in watches.items() if np.isfinite(w.heard_s)},
             restarts=self._bouts.count_after(begun_s + SAME_BOUT_S),
         )
         if silent or not watches:  # a sensor that is not heard may be moving: the count waits for it and begins anew
             return replace(state, still_s=0.0, moved=(), silent=silent, rest={})
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
-        rest: dict[Site, Rest] = {}
+        rest: dict[Sensor, Rest] = {}
         if until_s - since_s >= self._state.wanted_s:
-            found = {site: watch.rest(since_s) for site, watch in watches.items()}
-            known = {site: one for site, one in found.items() if one is not None}
+            found = {sensor: watch.rest(since_s) for sensor, watch in watches.items()}
+            known = {sensor: one for sensor, one in found.items() if one is not None}
             rest = known if len(known) == len(found) else {}
-        moved = tuple(site for site, watch in watches.items() if watch.is_moving)
+        moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
         return replace(state, still_s=max(0.0, until_s - since_s), moved=moved, silent=(), rest=rest)
 
 

@@ -37,7 +37,7 @@ def only(block: ImuBlock, keep: np.ndarray) -> ImuBlock:
     return ImuBlock(block.sensor, block.time_s[keep], block.gyr_rad_s[keep], block.acc_m_s2[keep])
 
 
-def watched(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> list[StandingState]:
+def watched(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> list[StandingState[Site]]:
     standing = Standing(imu)
     return [standing.update(blocks) for blocks in in_blocks(imu, block_s)]
 
