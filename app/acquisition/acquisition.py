@@ -1,0 +1,134 @@
+"""All sources of one visit, read side by side: recorded, shown and worked on, none of them waiting for another.
+
+    sources -> readers -> journal (queue, own thread)
+                       -> ring buffers -> the screen, the live work
+
+Times are seconds since `start`, of the sensors' own stamps.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from app.acquisition.heard_sensor import SensorStatus
+from app.acquisition.preview import LiveWork, Preview
+from app.acquisition.reader import Reader
+from app.storage.journal.writer import JournalSummary, JournalWriter
+from core.samples import ImuBlock, RecordingKind
+from devices.host_clock import host_time_ns
+from devices.live import LiveSource, SourceRefusedError
+
+__all__ = ["Acquisition", "LiveWork", "SensorStatus"]
+
+
+class Acquisition:
+    """Every method may be called from any thread; `start`, `close` and `stop_recording` wait, so not from the screen's.
+
+    Parameters
+    ----------
+    now_ns
+        The clock of the sources' stamps and of the journals.
+    """
+
+    def __init__(self, sources: Sequence[LiveSource], now_ns: Callable[[], int] = host_time_ns) -> None:
+        self._now_ns, self._begin_ns = now_ns, now_ns()
+        self._readers = [Reader(source, now_ns) for source in sources]
+        self._preview = Preview(self._readers)
+        self._writer: JournalWriter | None = None
+
+    def start(self) -> None:
+        """Open all sources and read them from now on.
+
+        Raises
+        ------
+        SourceRefusedError
+            One of them does not open, or two have a sensor of the same name; all are closed again.
+        """
+        self._begin_ns = self._now_ns()
+        try:
+            for reader in self._readers:
+                reader.open(self._begin_ns)
+            names = self.sensors
+            if twice := next((name for name in names if names.count(name) > 1), None):
+                raise SourceRefusedError(f"Two sensors are called {twice}", "Connect one of them only")
+        except SourceRefusedError:
+            self.close()
+            raise
+        for reader in self._readers:
+            reader.start()
+        self._preview.start()
+
+    def close(self) -> None:
+        """Stop reading, and a recording that is being made; close all sources."""
+        if self._writer:
+            self.stop_recording()
+        self._preview.close()
+        for reader in self._readers:
+            reader.close()
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        return tuple(name for reader in self._readers for name in reader.sensors)
+
+    @property
+    def is_simulated(self) -> bool:
+        return any(reader.source.info.is_simulated for reader in self._readers)
+
+    @property
+    def now_s(self) -> float:
+        return (self._now_ns() - self._begin_ns) / 1e9
+
+    @property
+    def trouble(self) -> Exception | None:
+        """What the present live work failed with first; the recording goes on."""
+        return self._preview.trouble
+
+    @property
+    def dropped_from_preview(self) -> int:
+        """Samples that the live work was too slow for. They are recorded all the same."""
+        return self._preview.dropped
+
+    def status(self) -> Mapping[str, SensorStatus]:
+        """How each sensor is doing."""
+        now_s = self.now_s
+        return {one.sensor: one for k, reader in enumerate(self._readers) for one in reader.status(k, now_s)}
+
+    def latest(self, sensor: str, seconds: float) -> ImuBlock:
+        """A sensor's samples of the last `seconds`, 30 at most; none of one that is not known."""
+        for reader in self._readers:
+            if sensor in reader.sensors:
+                return reader.since(sensor, self.now_s - seconds)
+        return ImuBlock(sensor, np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
+
+    def record(self, writer: JournalWriter) -> None:
+        """Keep what all sensors measured since the journal was opened, up to `stop_recording`."""
+        if self._writer:
+            raise RuntimeError("a recording is being made already")
+        self._writer = writer
+        for reader in self._readers:
+            reader.record(writer)
+
+    def stop_recording(self) -> JournalSummary:
+        """End the recording with what was measured until now. Waits for sources, half a second at most, and disk."""
+        writer = self._writer
+        if writer is None:
+            raise RuntimeError("no recording is being made")
+        for reader in self._readers:
+            reader.finish_read()
+        for reader in self._readers:
+            reader.stop_recording()
+        self._writer = None
+        return writer.stop()
+
+    def set_work(self, work: LiveWork | None) -> None:
+        """What is done with new samples from now on; see `LiveWork`."""
+        self._preview.set_work(work)
+
+    def ask(self, kind: RecordingKind | None) -> None:
+        """Ask simulated patients to do what is recorded next; None: nothing."""
+        for reader in self._readers:
+            reader.source.ask(kind)
+
+    def identify(self, sensor: str) -> bool:
+        """Light a sensor's LED; False where it has none."""
+        return any(reader.source.identify(sensor) for reader in self._readers if sensor in reader.sensors)

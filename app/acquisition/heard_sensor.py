@@ -1,0 +1,119 @@
+"""What was heard of one sensor: its last seconds, and what is missing of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.acquisition.ring_buffer import RingBuffer
+from core.samples import BoolArray, FloatArray, ImuBlock
+from devices.live import SensorTold
+from devices.source import SensorCounts
+
+KEPT_S = 30.0
+MOST_RATE_HZ = 400.0  # of a sensor that does not tell its rate
+HEARD_S, MOVEMENT_S = 2.0, 1.0
+ON_ITS_WAY_S = 0.25  # so much later than measured a sample may come before anything is missed
+
+
+@dataclass(frozen=True, slots=True)
+class SensorStatus:
+    """How a sensor is doing.
+
+    Attributes
+    ----------
+    source
+        Index of its source.
+    heard_hz
+        Samples per second over the last two.
+    silent_s
+        Since something came last.
+    movement_rad_s
+        Spread of the angular rate over the last second, all axes together.
+    counts
+        Since it was first heard, as they came; a recording's own come from its journal.
+    """
+
+    sensor: str
+    source: int
+    told: SensorTold
+    heard_hz: float
+    silent_s: float
+    movement_rad_s: float
+    counts: SensorCounts
+
+    @property
+    def lost_share(self) -> float:
+        expected = self.counts.received + self.counts.lost
+        return self.counts.lost / expected if expected else 0.0
+
+
+class HeardSensor:
+    """Not for two threads at once. All times in seconds on the acquisition's clock."""
+
+    def __init__(self, name: str, rate_hz: float | None, now_s: float) -> None:
+        self.name, self.rate_hz = name, rate_hz
+        self.usual_hz = rate_hz or MOST_RATE_HZ
+        self.ring = RingBuffer(name, round(KEPT_S * self.usual_hz))
+        self._heard_at_s = now_s
+        self._received = self._lost = self._damaged = self._doubled = self._late = 0
+
+    def hear(self, block: ImuBlock, time_s: FloatArray, now_s: float) -> None:
+        """Take a block's samples, stamped `time_s` (n,); those that come late are counted, and not shown."""
+        self._heard_at_s = now_s
+        last_s = self.ring.last_s
+        step_s = np.diff(time_s, prepend=last_s)
+        if not (step_s > 0).all():  # neither of NaN
+            is_new = self._count_unusual(time_s, last_s)
+            kept_s = time_s[is_new]
+            self._count(np.diff(kept_s, prepend=last_s))
+            self.ring.add(kept_s, block.gyr_rad_s[is_new], block.acc_m_s2[is_new])
+            return
+        self._count(step_s)
+        self.ring.add(time_s, block.gyr_rad_s, block.acc_m_s2)
+
+    def status(self, source: int, told: SensorTold, now_s: float) -> SensorStatus:
+        return SensorStatus(
+            sensor=self.name,
+            source=source,
+            told=told,
+            heard_hz=self._heard_hz(now_s),
+            silent_s=max(now_s - self._heard_at_s, 0.0),
+            movement_rad_s=self._movement_rad_s(now_s),
+            counts=SensorCounts(self._received, self._lost, self._damaged, self._doubled, self._late),
+        )
+
+    def _heard_hz(self, now_s: float) -> float:
+        last_s = self.ring.last_s
+        end_s = last_s if now_s - last_s < ON_ITS_WAY_S else now_s
+        return (len(self.ring.since(end_s - HEARD_S)) - (end_s == last_s)) / HEARD_S
+
+    def _movement_rad_s(self, now_s: float) -> float:
+        rate = self.ring.since(now_s - MOVEMENT_S).gyr_rad_s
+        rate = rate[np.isfinite(rate).all(axis=1)]
+        return float(np.sqrt(rate.var(axis=0).sum())) if len(rate) else 0.0
+
+    def _count(self, step_s: FloatArray) -> None:
+        """Count samples that follow the ones before them by `step_s` (n,): a step of two intervals lost one."""
+        self._received += len(step_s)
+        if self.rate_hz is None or not len(step_s):
+            return
+        steps = step_s * self.rate_hz
+        if steps.max() >= 1.5:
+            missing = np.round(steps[np.isfinite(steps)]) - 1.0
+            self._lost += int(missing[missing > 0].sum())
+
+    def _count_unusual(self, time_s: FloatArray, last_s: float) -> BoolArray:
+        """Which samples (n,) are later than all before them; the others are counted."""
+        is_timed = np.isfinite(time_s)
+        self._damaged += int(np.count_nonzero(~is_timed))
+        newest_s = np.fmax.accumulate(np.concatenate([[last_s], time_s]))
+        is_new: BoolArray = is_timed & (time_s > newest_s[:-1])
+        known_s = np.concatenate([self.ring.since(-np.inf).time_s, time_s[is_new]])
+        for stamp_s in time_s[is_timed & ~is_new]:
+            if (known_s == stamp_s).any():
+                self._doubled += 1
+            else:  # it was taken for lost
+                self._late += 1
+                self._received += 1
+                self._lost = max(self._lost - 1, 0)
+        return is_new

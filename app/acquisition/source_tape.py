@@ -1,0 +1,74 @@
+"""How does one source get into a recording's journal? Its sensors one by one, each told of before its first sample."""
+
+from dataclasses import replace
+
+from app.storage.journal.payloads import SampleLayout, layout_of
+from app.storage.journal.writer import JournalWriter
+from core.samples import BoolArray, ImuBlock
+from devices.live import LiveSource
+from devices.source import SourceInfo
+
+Shape = tuple[bool, bool, bool, tuple[str, ...]]
+BYTES = ""  # the name that a source's bytes are told of by
+
+
+class SourceTape:
+    """Puts what one source sends into a journal; waits for nothing. Not for two threads at once."""
+
+    def __init__(self, writer: JournalWriter, source: LiveSource) -> None:
+        self._writer, self._source = writer, source
+        self._begin_s = writer.header.opened_ns / 1e9
+        self._told: dict[str, tuple[int, SourceInfo, SampleLayout | None]] = {}
+        self._shapes: dict[str, Shape] = {}
+
+    def keep_bytes(self, data: bytes) -> None:
+        if BYTES not in self._told:
+            self._tell(BYTES, self._source.info, None)
+        self._writer.received(self._told[BYTES][0], data)
+
+    def keep_samples(self, block: ImuBlock, rate_hz: float | None = None) -> None:
+        """Keep samples stamped in seconds of the host's clock, from the recording's beginning on."""
+        block = _from(block, self._begin_s)
+        if len(block):
+            self._writer.samples(self._number(block, rate_hz), 0, block)
+
+    def come_back(self) -> None:
+        """The source was lost and is there again: its settings may be others, and bytes do not join those before."""
+        self._shapes.clear()
+        if BYTES in self._told:
+            self._tell(BYTES, self._source.info, None, is_cut=True)
+
+    def _number(self, block: ImuBlock, rate_hz: float | None) -> int:
+        """What the journal calls the block's sensor."""
+        name = block.sensor
+        shape = block.q_earth_from_sensor is None, block.mag is None, block.is_rate_derived, tuple(block.unknown)
+        if self._shapes.get(name) != shape:
+            self._tell(name, replace(self._source.info, sensors=(name,)), layout_of(block, rate_hz))
+            self._shapes[name] = shape
+        return self._told[name][0]
+
+    def _tell(self, name: str, info: SourceInfo, layout: SampleLayout | None, is_cut: bool = False) -> None:
+        if name not in self._told:
+            number = self._writer.source(info, layout)
+        else:
+            number, *before = self._told[name]
+            if is_cut or before != [info, layout]:
+                self._writer.change(number, info, layout)
+        self._told[name] = number, info, layout
+
+
+def _from(block: ImuBlock, begin_s: float) -> ImuBlock:
+    """The samples that are not older than `begin_s`, stamped in seconds since then; those without a stamp, too."""
+    time_s = block.time_s - begin_s
+    is_old = time_s < 0
+    rows: slice | BoolArray = ~is_old if is_old.any() else slice(None)
+    return ImuBlock(
+        sensor=block.sensor,
+        time_s=time_s[rows],
+        gyr_rad_s=block.gyr_rad_s[rows],
+        acc_m_s2=block.acc_m_s2[rows],
+        q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[rows],
+        mag=None if block.mag is None else block.mag[rows],
+        is_rate_derived=block.is_rate_derived,
+        unknown={name: column[rows] for name, column in block.unknown.items()},
+    )
