@@ -9,6 +9,7 @@ from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
     QColor,
+    QFontMetrics,
     QPainter,
     QPaintEvent,
     QPalette,
@@ -19,6 +20,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import HEIGHT, Button, Kind
 from app.widgets.icons import Icon, paint_icon
+from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr
 
@@ -359,26 +361,24 @@ class _Clock(QWidget):
             self.setAccessibleName(tr("Recording, {time}").format(time=time))
             self.update()
 
-    def painted_texts(self) -> list[tuple[str, QRect]]:
-        """Give each text with the box it is painted in."""
-        return [(self._time, QRect(self._text_left(), 0, self.width() - self._text_left(), self.height()))]
+    def painted_texts(self) -> list[PaintedText]:
+        """Give the time in its box."""
+        font = self._look.theme.font(40, SEMIBOLD)
+        return [PaintedText(self._time, QRectF(self.rect()).adjusted(self._text_left(), 0, 0, 0), font, "inv_ink")]
 
     def sizeHint(self) -> QSize:
         theme = self._look.theme
-        self.setFont(theme.font(40, SEMIBOLD))
-        return QSize(self._text_left() + self.fontMetrics().horizontalAdvance("000:00"), theme.px(HEIGHT))
+        widest = QFontMetrics(theme.font(40, SEMIBOLD)).horizontalAdvance("000:00")
+        return QSize(self._text_left() + widest, theme.px(HEIGHT))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         painter = QPainter(self)
         side = theme.px(DOT * 24 / 14)  # the icon's dot is 14 of its 24
-        middle = (self.height() - side) / 2
-        dot = QRectF(theme.px(12) - side / 2, middle, side, side)
+        dot = QRectF(theme.px(12) - side / 2, (self.height() - side) / 2, side, side)
         paint_icon(painter, Icon.RECORDING, dot, theme.colours.inv_ink)
-        painter.setPen(QColor(theme.colours.inv_ink))
-        painter.setFont(theme.font(40, SEMIBOLD))
-        for text, box in self.painted_texts():
-            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, text)
+        for text in self.painted_texts():
+            text.paint(painter, theme.colours)
 
     def _text_left(self) -> int:
         return self._look.theme.px(36)

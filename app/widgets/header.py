@@ -21,7 +21,7 @@ class Header(QWidget):
         self._facts = Text(look, size=14, tone="ink2")
         self._simulated = _Tag(look, "SIMULATED")
         self._row = QHBoxLayout(self)
-        self._row.addWidget(_Mark(look))
+        self._row.addWidget(Mark(look))
         self._row.addWidget(self._name)
         self._row.addWidget(self._code)
         self._row.addWidget(self._facts)
@@ -54,7 +54,7 @@ class Header(QWidget):
         self.update()
 
 
-class _Mark(QWidget):
+class Mark(QWidget):
     """The program's mark: two legs, left solid, right dashed."""
 
     def __init__(self, look: Look) -> None:
