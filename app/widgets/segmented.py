@@ -10,6 +10,7 @@ from app.theme import CONTROL_RADIUS, Look
 from app.widgets.text import MEDIUM, SEMIBOLD
 
 HEIGHT = 52
+PLAIN_HEIGHT = 48  # without second lines, as high as a field
 PADDING = 14
 
 
@@ -24,7 +25,8 @@ class Segmented(QWidget):
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self._group = QButtonGroup(self)
-        self._segments = {key: _Segment(look, word, note, self) for key, word, note in options}
+        height = HEIGHT if any(note for _, _, note in options) else PLAIN_HEIGHT
+        self._segments = {key: _Segment(look, word, note, height, self) for key, word, note in options}
         row = QHBoxLayout(self)
         row.setContentsMargins(2, 2, 2, 2)
         row.setSpacing(0)
@@ -85,9 +87,9 @@ class Segmented(QWidget):
 
 
 class _Segment(QAbstractButton):
-    def __init__(self, look: Look, word: str, note: str, parent: QWidget) -> None:
+    def __init__(self, look: Look, word: str, note: str, height: float, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._note, self._reason = look, note, ""
+        self._look, self._note, self._height, self._reason = look, note, height, ""
         self.setText(word)
         self.setCheckable(True)
         self.setAutoExclusive(True)
@@ -112,7 +114,7 @@ class _Segment(QAbstractButton):
         theme = self._look.theme
         word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
         note = QFontMetrics(theme.font(12)).horizontalAdvance(self._second_line())
-        return QSize(max(word, note) + 2 * theme.px(PADDING), theme.px(HEIGHT) - 4)
+        return QSize(max(word, note) + 2 * theme.px(PADDING), theme.px(self._height) - 4)
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()

@@ -1,0 +1,565 @@
+"""Whom is the session about, and which side? Only the code is needed; the rest chooses the band and is printed."""
+
+from dataclasses import dataclass, field, replace
+from datetime import date
+
+from PySide6.QtCore import QPointF, QRectF, QSignalBlocker, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF, QResizeEvent
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QFrame,
+    QGridLayout,
+    QHBoxLayout,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.reports.reference_bands import reference_curves
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.chips import Chips
+from app.widgets.field import Field, NumberField
+from app.widgets.icons import Icon, IconMark
+from app.widgets.segmented import Segmented
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr
+from core.body import Side
+from core.norms import ReferenceCurves
+from core.samples import Patient
+
+AIDS = ("shoes", "barefoot", "stick", "crutches", "walker", "parallel bars", "AFO")  # as they stand in files
+BAND_AGES = (18, 39)  # "young adults", in the words of the band's source
+ONE_COLUMN_BELOW = 620  # room for the form, where a row of three fields still reads well
+BAND_CARD_WIDTH = 328
+WIDEST = 1240  # further apart, labels and cards no longer belong together
+HIGHEST_CARD = 620
+DRAWING_HEIGHT = 108
+ANY_SIZE = 16777215  # what Qt calls no limit
+
+_ACROSS, _DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+
+
+@dataclass(frozen=True, slots=True)
+class PatientDraft:
+    """What stands on the page. `without_ankle` holds the sides whose prosthetic foot has no ankle joint."""
+
+    patient: Patient = field(default_factory=Patient)
+    without_ankle: frozenset[Side] = frozenset()
+
+
+@dataclass(frozen=True, slots=True)
+class LastVisit:
+    """The visit before this one: its title with the date, and what it is known by, as label and value."""
+
+    title: str
+    facts: tuple[tuple[str, str], ...]
+
+
+class PatientPage(QWidget):
+    """What was typed stays on the page, right or wrong.
+
+    Signals
+    -------
+    edited
+        What stands on the page, with every letter.
+    code_committed
+        The code has been typed to its end.
+    open_pressed
+        The patient whose code was typed is in the library: take that one.
+    same_set_up_pressed
+        As at the last visit, and on to the sensors.
+    """
+
+    edited = Signal(PatientDraft)
+    code_committed = Signal()
+    open_pressed = Signal(str)
+    same_set_up_pressed = Signal()
+
+    def __init__(self, look: Look, today: date | None = None) -> None:
+        super().__init__()
+        self._look = look
+        self._year = (today or date.today()).year
+        self._shown = PatientDraft()
+        self._taken_code = ""
+        self._is_compact = False
+        self._title = Text(look, tr("Who is walking today?"), size=26, weight=SEMIBOLD, wraps=True)
+        self._subtitle = Text(
+            look,
+            tr("Only the code is needed. The rest chooses the reference band and is printed."),
+            size=15,
+            tone="ink2",
+            wraps=True,
+        )
+        self._saved = Text(look, size=14, tone="ink2")
+        self.code = Field(look, tr("Patient code"), is_code=True)
+        self.sex = Segmented(
+            look, tr("Sex"), [("female", tr("Female"), ""), ("male", tr("Male"), ""), ("", tr("Not told"), "")]
+        )
+        self.birth_year = NumberField(look, tr("Birth year"), low=1900, high=self._year, is_optional=True)
+        self.height_cm = NumberField(look, tr("Height"), low=30, high=280, decimals=1, unit=tr("cm"), is_optional=True)
+        self.mass_kg = NumberField(look, tr("Mass"), low=1, high=500, decimals=1, unit=tr("kg"), is_optional=True)
+        self.side = Segmented(
+            look,
+            tr("Which side is it about?"),
+            [
+                ("none", tr("Neither"), ""),
+                ("left", tr("Left"), ""),
+                ("right", tr("Right"), ""),
+                ("both", tr("Both"), ""),
+            ],
+        )
+        self.limb = Segmented(
+            look, tr("What is it?"), [("affected", tr("Affected"), ""), ("prosthetic", tr("Prosthetic"), "")]
+        )
+        self.device = Field(look, tr("Device"), is_optional=True)
+        self.ankles = {
+            Side.LEFT: Chips(look, tr("Left prosthetic foot"), [("none", tr("Left foot has no ankle joint"))]),
+            Side.RIGHT: Chips(look, tr("Right prosthetic foot"), [("none", tr("Right foot has no ankle joint"))]),
+        }
+        words = (
+            tr("Shoes"), tr("Barefoot"), tr("Stick"), tr("Crutches"), tr("Walker"), tr("Parallel bars"), tr("AFO"),
+        )  # fmt: skip
+        self.aids = Chips(look, tr("Aids and footwear"), zip(AIDS, words, strict=True), rivals=("shoes", "barefoot"))
+        self._band = _BandCard(look, reference_curves())
+        self._taken = _TakenCard(look)
+        self._last = _LastVisitCard(look)
+        self._build()
+        self._connect()
+        self.show_draft(PatientDraft())
+        self.show_last_visit(None)
+        self._taken.hide()
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def draft(self) -> PatientDraft:
+        """What stands on the page now; what the page cannot show, or what is half typed, is as it was shown."""
+        told = self._shown.patient
+        affected, prosthetic = told.affected_side, told.prosthetic_side
+        if (self.side.choice, self.limb.choice) != _sides_on_page(told):
+            is_prosthetic = self.limb.choice == "prosthetic"
+            affected, prosthetic = ("none", self.side.choice) if is_prosthetic else (self.side.choice, "none")
+        height_cm = _typed(self.height_cm, told.height_m and told.height_m * 100)
+        birth_year = _typed(self.birth_year, told.birth_year)
+        patient = replace(
+            told,
+            code=self.code.text,
+            birth_year=None if birth_year is None else round(birth_year),
+            sex=self.sex.choice if self.sex.choice != _sex_on_page(told) else told.sex,
+            height_m=None if height_cm is None else round(height_cm / 100, 4),
+            mass_kg=_typed(self.mass_kg, told.mass_kg),
+            device=self.device.text,
+            aids=", ".join(self.aids.chosen) if self.aids.chosen != _aids_in(told) else told.aids,
+            affected_side=affected,
+            prosthetic_side=prosthetic,
+        )
+        asked = _prosthetic(patient)
+        return PatientDraft(patient, frozenset(side for side in asked if self.ankles[side].chosen))
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [
+            self.code.line_edit,
+            *self.sex.segments,
+            self.birth_year.line_edit,
+            self.height_cm.line_edit,
+            self.mass_kg.line_edit,
+            *self.side.segments,
+            *self.limb.segments,
+            self.device.line_edit,
+            *(chip for chips in self.ankles.values() for chip in chips.buttons),
+            *self.aids.buttons,
+            self._taken.open,
+            self._last.same,
+        ]
+
+    def focus(self) -> None:
+        self.code.setFocus()
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Lay the cards below one another where the window is small."""
+        self._is_compact = is_compact
+        self._cards.setDirection(_DOWN if is_compact else _ACROSS)
+        self._on_look_changed()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def show_draft(self, draft: PatientDraft) -> None:
+        """Fill the page; what stands there is not told as an edit."""
+        self._shown = draft
+        told = draft.patient
+        side, limb = _sides_on_page(told)
+        with QSignalBlocker(self.sex), QSignalBlocker(self.side), QSignalBlocker(self.limb):
+            self.sex.choose(_sex_on_page(told))
+            self.side.choose(side)
+            self.limb.choose(limb)
+        self.code.set_text(told.code)
+        self.birth_year.set_value(told.birth_year)
+        self.height_cm.set_value(None if told.height_m is None else told.height_m * 100)
+        self.mass_kg.set_value(told.mass_kg)
+        self.device.set_text(told.device)
+        self.aids.choose(_aids_in(told))
+        for one, chips in self.ankles.items():
+            chips.choose(["none"] if one in draft.without_ankle else [])
+        self._follow()
+
+    def show_saved(self, words: str) -> None:
+        """Say in a few words whether what stands here is kept: "draft, saved"."""
+        self._saved.setText(words)
+
+    def show_code_taken(self, code: str) -> None:
+        """Say that `code` is another patient's, and offer to take that one; an empty code takes it back."""
+        self._taken_code = code
+        self.code.set_wrong(tr("{code} exists. Open it, or choose another code.").format(code=code) if code else "")
+        self._taken.show_code(code)
+        self._taken.setVisible(bool(code))
+
+    def show_last_visit(self, visit: LastVisit | None) -> None:
+        """Show the visit before this one; None where it is the first."""
+        self._last.setVisible(visit is not None)
+        if visit is not None:
+            self._last.show_visit(visit)
+
+    def _build(self) -> None:
+        self._limb_box = _Captioned(self._look, self.limb, tr("What is it?"))
+        ankles = QWidget()
+        self._ankle_row = QBoxLayout(_ACROSS, ankles)
+        self._ankle_row.setContentsMargins(0, 0, 0, 0)
+        for chips in self.ankles.values():
+            self._ankle_row.addWidget(chips, 1)
+        self._ankle_box = _Captioned(
+            self._look, ankles, tr("Prosthetic foot"), tr("its angle is then called foot against shank")
+        )
+        sex = _Captioned(self._look, self.sex, tr("Sex"))
+        side = _Captioned(self._look, self.side, tr("Which side is it about?"))
+        aids = _Captioned(self._look, self.aids, tr("Aids and footwear"), tr("as many as apply"))
+        self._form = Card(self._look, padding=24, spacing=16)
+        self._rows = [
+            self._row(self.code, sex),
+            self._row(self.birth_year, self.height_cm, self.mass_kg),
+            self._row(side),
+            self._row(self._limb_box, self.device),
+            self._row(self._ankle_box),
+            self._row(aids),
+        ]
+        for number, row in enumerate(self._rows):
+            if number == 2:
+                self._form.column.addWidget(_Line(self._look))
+            self._form.column.addLayout(row)
+        self._form.column.addStretch(1)
+        self._beside = QWidget()
+        self._beside_column = QVBoxLayout(self._beside)
+        self._beside_column.setContentsMargins(0, 0, 0, 0)
+        for card, stretch in ((self._taken, 0), (self._band, 0), (self._last, 1)):
+            self._beside_column.addWidget(card, stretch)
+        self._beside_column.addStretch(0)
+        self._cards = QBoxLayout(_ACROSS)
+        self._cards.addWidget(self._form, 1)
+        self._cards.addWidget(self._beside)
+        self._words = QHBoxLayout()
+        self._words.addWidget(self._subtitle, 1)
+        self._words.addWidget(self._saved, 0, Qt.AlignmentFlag.AlignBottom)
+        content = QWidget()
+        self._column = QVBoxLayout(content)
+        self._column.addWidget(self._title)
+        self._column.addLayout(self._words)
+        self._column.addLayout(self._cards, 1)
+        self._column.addStretch(0)
+        self._scroll = QScrollArea()
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setWidget(content)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(self._scroll)
+
+    def _row(self, *widgets: QWidget) -> QBoxLayout:
+        row = QBoxLayout(_ACROSS)
+        for widget in widgets:
+            row.addWidget(widget, 1, Qt.AlignmentFlag.AlignTop)
+        return row
+
+    def _connect(self) -> None:
+        for line in (self.code, self.birth_year, self.height_cm, self.mass_kg, self.device):
+            line.edited.connect(self._on_edited)
+        for segmented in (self.sex, self.side, self.limb):
+            segmented.chosen.connect(self._on_edited)
+        for chips in (*self.ankles.values(), self.aids):
+            chips.turned.connect(self._on_edited)
+        self.code.committed.connect(self.code_committed)
+        self._taken.open.clicked.connect(self._on_open_clicked)
+        self._last.same.clicked.connect(self.same_set_up_pressed)
+
+    def _follow(self) -> None:
+        """Ask only what follows from what is said: no limb without a side, no ankle without a prosthesis."""
+        draft = self.draft
+        has_side = self.side.choice != "none"
+        self.limb.setEnabled(has_side)
+        self._limb_box.set_note("" if has_side else tr("choose a side first"))
+        asked = _prosthetic(draft.patient)
+        for side, chips in self.ankles.items():
+            chips.setVisible(side in asked)
+        self._ankle_box.setVisible(bool(asked))
+        self._band.judge(None if draft.patient.birth_year is None else self._year - draft.patient.birth_year)
+
+    def _fit(self) -> None:
+        """Set the fields of a row below one another where they would be too narrow."""
+        scale, px = self._look.theme.scale, self._look.theme.px
+        side = max(px(24), (self.width() - px(WIDEST)) // 2)
+        self._column.setContentsMargins(side, px(20), side, px(20))
+        room = self.width() / scale - 48 - (0 if self._is_compact else BAND_CARD_WIDTH + 16)
+        way = _ACROSS if room >= ONE_COLUMN_BELOW else _DOWN
+        for row in self._rows:
+            row.setDirection(way)
+        self._ankle_row.setDirection(way)
+
+    def _on_edited(self) -> None:
+        if self._taken_code and self.code.text.strip() != self._taken_code:
+            self.show_code_taken("")
+        self._follow()
+        self.edited.emit(self.draft)
+
+    def _on_open_clicked(self) -> None:
+        self.open_pressed.emit(self._taken_code)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        for card in (self._form, self._beside):
+            card.setMaximumHeight(ANY_SIZE if self._is_compact else px(HIGHEST_CARD))
+        self._column.setSpacing(px(4))
+        self._words.setContentsMargins(0, 0, 0, px(12))
+        self._words.setSpacing(px(16))
+        self._cards.setSpacing(px(16))
+        self._beside_column.setSpacing(px(16))
+        self._ankle_row.setSpacing(px(16))
+        for row in self._rows:
+            row.setSpacing(px(16))
+        self._beside.setMinimumWidth(0 if self._is_compact else px(BAND_CARD_WIDTH))
+        self._beside.setMaximumWidth(ANY_SIZE if self._is_compact else px(BAND_CARD_WIDTH))
+        self._fit()
+
+
+class _Captioned(QWidget):
+    """A control under its label, as a field has it, with a few words at the label's right."""
+
+    def __init__(self, look: Look, content: QWidget, caption: str, note: str = "") -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
+        self._note = Text(look, note, size=12, tone="ink2", wraps=True)
+        self._note.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignBottom)
+        self._above = QHBoxLayout()
+        self._above.addWidget(Text(look, caption, size=14, weight=MEDIUM))
+        self._above.addWidget(self._note, 1)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addLayout(self._above)
+        self._column.addWidget(content)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def set_note(self, note: str) -> None:
+        self._note.setText(note)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(6))
+        self._above.setSpacing(px(8))
+
+
+class _Line(QWidget):
+    """A hairline between who it is and what it is about."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self.update)
+
+    def sizeHint(self) -> QSize:
+        return QSize(0, 1)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.line))
+
+
+class _BandCard(Card):
+    """The group that the patient's curves will lie on, and whether the patient is like them."""
+
+    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+        super().__init__(look, padding=20, spacing=6)
+        group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
+            n=curves.n, speed=f"{curves.speed_m_s:.2f}"
+        )
+        self._mark = IconMark(look, Icon.INFO)
+        self._words = Text(look, size=14, wraps=True)
+        self._advice = QHBoxLayout()
+        self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        self._advice.addWidget(self._words, 1)
+        self.column.addWidget(Text(look, tr("Reference band"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(look, group, size=14, wraps=True))
+        self.column.addWidget(_BandDrawing(look, curves))
+        self.column.addLayout(self._advice)
+        look.changed.connect(self._on_spacing_changed)
+        self._on_spacing_changed()
+
+    def judge(self, age: int | None) -> None:
+        """Say whether a patient of `age` years is of the group's age."""
+        youngest, oldest = BAND_AGES
+        if age is None:
+            words = tr("Type the birth year to hear whether the band fits the age.")
+        elif age > oldest:
+            words = tr("Younger and faster than most patients of {age}. Read with care.").format(age=age)
+        elif age < youngest:
+            words = tr("Adults: children of {age} walk otherwise. Read with care.").format(age=age)
+        else:
+            words = tr("Of the patient's age. The speed still has to fit.")
+        self._words.setText(words)
+
+    def _on_spacing_changed(self) -> None:
+        self._advice.setSpacing(self._look.theme.px(10))
+
+
+class _BandDrawing(QWidget):
+    """The knee of the group over one stride: one and two standard deviations in two greys."""
+
+    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+        super().__init__()
+        self._look, self._curves = look, curves
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(self._title())
+        peak = int(curves.knee_mean_deg.argmax())
+        self.setAccessibleDescription(
+            tr("Peak {angle}° at {percent} % of the stride").format(
+                angle=f"{curves.knee_mean_deg[peak]:.0f}", percent=peak
+            )
+        )
+        look.changed.connect(self.updateGeometry)
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(200), px(DRAWING_HEIGHT))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        mean, sd = self._curves.knee_mean_deg, self._curves.knee_sd_deg
+        low, high = float((mean - 2 * sd).min()), float((mean + 2 * sd).max())
+        room = QRectF(0, px(4), self.width(), self.height() - px(8))
+
+        def at(percent: int, angle_deg: float) -> QPointF:
+            return QPointF(
+                room.left() + percent / (len(mean) - 1) * room.width(),
+                room.bottom() - (angle_deg - low) / (high - low) * room.height(),
+            )
+
+        painter.setPen(Qt.PenStyle.NoPen)
+        for width, colour in ((2, c.band_2sd), (1, c.band_1sd)):
+            edge = [at(i, mean[i] + width * sd[i]) for i in range(len(mean))]
+            edge += [at(i, mean[i] - width * sd[i]) for i in reversed(range(len(mean)))]
+            painter.setBrush(QColor(colour))
+            painter.drawPolygon(QPolygonF(edge))
+        painter.setPen(theme.pen(c.control, 1))
+        painter.drawLine(at(0, 0.0), at(len(mean) - 1, 0.0))
+        painter.setPen(QColor(c.ink2))
+        painter.setFont(theme.font(12))
+        painter.drawText(0, 0, self.width(), px(16), Qt.AlignmentFlag.AlignLeft, self._title())
+
+    def _title(self) -> str:
+        return tr("Knee, 1 and 2 SD")
+
+
+class _TakenCard(Card):
+    """The patient who has the code that was typed."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=20, spacing=12)
+        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self.open = Button(look, tr("Open this patient"), Kind.SECONDARY, Icon.FOLDER)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self.open)
+
+    def show_code(self, code: str) -> None:
+        self._title.setText(tr("{code} is in the library").format(code=code))
+        self.open.setAccessibleDescription(code)
+
+
+class _LastVisitCard(Card):
+    """What was worn and recorded last time, and the way to have the same again."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=20, spacing=10)
+        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self.same = Button(look, tr("Same set-up as last visit"), Kind.SECONDARY, Icon.REPEAT)
+        self._facts = QGridLayout()
+        self._facts.setColumnStretch(1, 1)
+        self._shown: list[Text] = []
+        self.column.addWidget(self._title)
+        self.column.addLayout(self._facts)
+        self.column.addStretch(1)
+        self.column.addWidget(self.same)
+        look.changed.connect(self._on_spacing_changed)
+        self._on_spacing_changed()
+
+    def show_visit(self, visit: LastVisit) -> None:
+        self._title.setText(visit.title)
+        for text in self._shown:
+            text.setParent(None)
+            text.deleteLater()
+        self._shown = []
+        for row, (label, value) in enumerate(visit.facts):
+            for column, text in enumerate(
+                (
+                    Text(self._look, label, size=14, tone="ink2"),
+                    Text(self._look, value, size=14, weight=MEDIUM, wraps=True),
+                )
+            ):
+                self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
+                self._shown.append(text)
+
+    def _on_spacing_changed(self) -> None:
+        px = self._look.theme.px
+        self._facts.setHorizontalSpacing(px(16))
+        self._facts.setVerticalSpacing(px(8))
+
+
+def _typed(line: NumberField, before: float | None) -> float | None:
+    """Give the number in a field; while it is half typed or out of range, the one from before."""
+    if not line.text.strip():
+        return None
+    return line.value if line.value is not None else before
+
+
+def _sex_on_page(patient: Patient) -> str:
+    return patient.sex if patient.sex in ("female", "male") else ""
+
+
+def _sides_on_page(patient: Patient) -> tuple[str, str]:
+    """Give the choices that show the patient's sides; where two are told, the prosthesis is the one it is about."""
+    if patient.prosthetic_side not in ("", "none"):
+        return patient.prosthetic_side, "prosthetic"
+    return patient.affected_side or "none", "affected"
+
+
+def _prosthetic(patient: Patient) -> tuple[Side, ...]:
+    return tuple(side for side in Side if patient.prosthetic_side in (side, "both"))
+
+
+def _aids_in(patient: Patient) -> tuple[str, ...]:
+    """Give the aids as the page's keys; an unknown one in its own words."""
+    known = {aid.lower(): aid for aid in AIDS}
+    told = [aid.strip() for aid in patient.aids.split(",") if aid.strip()]
+    named = [known.get(aid.lower(), aid) for aid in told]
+    return tuple(sorted(dict.fromkeys(named), key=lambda aid: AIDS.index(aid) if aid in AIDS else len(AIDS)))

@@ -1,0 +1,177 @@
+"""As many out of a few as apply: a word each, a check before those that do. Arrows move, the space bar turns."""
+
+from collections.abc import Iterable, Sequence
+
+from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.text import MEDIUM, SEMIBOLD
+
+HEIGHT = 44
+PADDING = 12
+CHECK = 16
+GAP = 8
+STEPS = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
+
+
+class Chips(QWidget):
+    """`options` are key and word of each; they wrap into as many lines as they need.
+
+    Parameters
+    ----------
+    rivals
+        Two keys that exclude each other: turning one on turns the other off.
+    """
+
+    turned = Signal()  # by the user
+
+    def __init__(
+        self, look: Look, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None
+    ) -> None:
+        super().__init__()
+        self._look, self._rivals = look, rivals
+        self._chips: dict[str, _Chip] = {}
+        self.setAccessibleName(name)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        for key, word in options:
+            self._add(key, word)
+        self._let_tab_reach(self.buttons[0])
+        look.changed.connect(self._arrange)
+
+    @property
+    def chosen(self) -> tuple[str, ...]:
+        """The keys that are on, in the order of reading."""
+        return tuple(key for key, chip in self._chips.items() if chip.isChecked())
+
+    @property
+    def buttons(self) -> list[QAbstractButton]:
+        return list(self._chips.values())
+
+    def choose(self, keys: Sequence[str]) -> None:
+        """Turn exactly these on; one that is not among the options becomes one, in its own word."""
+        for key in keys:
+            if key not in self._chips:
+                self._add(key, key)
+        for key, chip in self._chips.items():
+            chip.setChecked(key in keys)
+        self._arrange()
+
+    def sizeHint(self) -> QSize:
+        width = max(self.width(), self.minimumSizeHint().width())
+        return QSize(width, self._height_for(width))
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(max(chip.sizeHint().width() for chip in self._chips.values()), self._look.theme.px(HEIGHT))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._arrange()
+
+    def step(self, chip: "_Chip", by: int) -> None:
+        """Go on to the chip before or after, and round at the end."""
+        chips = list(self._chips.values())
+        to = chips[(chips.index(chip) + by) % len(chips)]
+        self._let_tab_reach(to)
+        to.setFocus(Qt.FocusReason.TabFocusReason)
+
+    def _add(self, key: str, word: str) -> None:
+        chip = _Chip(self._look, word, self)
+        chip.clicked.connect(self._on_clicked)
+        chip.show()
+        self._chips[key] = chip
+
+    def _let_tab_reach(self, chip: QAbstractButton) -> None:
+        """Let the group be one stop of the tabulator, where it was left."""
+        for other in self._chips.values():
+            other.setFocusPolicy(Qt.FocusPolicy.StrongFocus if other is chip else Qt.FocusPolicy.ClickFocus)
+
+    def _flow(self, width: int) -> list[QRect]:
+        """Where each chip lies in lines of `width`."""
+        gap, height = self._look.theme.px(GAP), self._look.theme.px(HEIGHT)
+        places: list[QRect] = []
+        x = y = 0
+        for chip in self._chips.values():
+            wanted = chip.sizeHint().width()
+            if x and x + wanted > width:
+                x, y = 0, y + height + gap
+            places.append(QRect(x, y, wanted, height))
+            x += wanted + gap
+        return places
+
+    def _height_for(self, width: int) -> int:
+        return self._flow(width)[-1].bottom() + 1
+
+    def _arrange(self) -> None:
+        for chip, place in zip(self._chips.values(), self._flow(self.width()), strict=True):
+            chip.setGeometry(place)
+        self.setFixedHeight(self._height_for(self.width()))  # layouts in a scroll area ask for no height of a width
+        self.updateGeometry()
+
+    def _on_clicked(self) -> None:
+        clicked = self.sender()
+        assert isinstance(clicked, _Chip)
+        self._let_tab_reach(clicked)
+        key = next(key for key, chip in self._chips.items() if chip is clicked)
+        if self._rivals and key in self._rivals and clicked.isChecked():
+            other = self._rivals[1] if key == self._rivals[0] else self._rivals[0]
+            self._chips[other].setChecked(False)
+        self._arrange()
+        self.turned.emit()
+
+
+class _Chip(QAbstractButton):
+    def __init__(self, look: Look, word: str, group: Chips) -> None:
+        super().__init__(group)
+        self._look, self._group = look, group
+        self.setText(word)
+        self.setAccessibleName(word)
+        self.setCheckable(True)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def sizeHint(self) -> QSize:
+        theme = self._look.theme
+        return QSize(self._word_width() + self._check_width() + 2 * theme.px(PADDING), theme.px(HEIGHT))
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        by = STEPS.get(Qt.Key(event.key()))
+        if by is None:
+            super().keyPressEvent(event)
+            return
+        self._group.step(self, by)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        painter.setPen(theme.pen(c.ink, 1.75) if self.isChecked() else theme.pen(c.control, 1.25))
+        painter.setBrush(QColor(c.surface))
+        painter.drawRoundedRect(box, radius, radius)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(box, radius, radius)
+        x = px(PADDING)
+        if self.isChecked():
+            side = px(CHECK)
+            paint_icon(painter, Icon.CHECK, QRectF(x, (self.height() - side) / 2, side, side), c.ink)
+        x += self._check_width()
+        painter.setPen(QColor(c.ink))
+        painter.setFont(theme.font(14, SEMIBOLD if self.isChecked() else MEDIUM))
+        painter.drawText(
+            QRect(x, 0, self._word_width(), self.height()),
+            Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
+            self.text(),
+        )
+
+    def _check_width(self) -> int:
+        return self._look.theme.px(CHECK + 4) if self.isChecked() else 0
+
+    def _word_width(self) -> int:
+        """As wide as the word is when chosen, so that only the check makes room for itself."""
+        return QFontMetrics(self._look.theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())

@@ -1,0 +1,155 @@
+"""The page of the patient: what is typed comes out as it is, and what is not typed stays as it was."""
+
+from datetime import date
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
+from pytestqt.qtbot import QtBot
+
+from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+from app.theme import Look
+from core.body import Side
+from core.samples import Patient
+
+KNOWN = Patient(
+    code="P-0147",
+    birth_year=1968,
+    sex="male",
+    height_m=1.785,
+    mass_kg=82.5,
+    device="Microprocessor knee",
+    aids="shoes, rollator",
+    prosthetic_side="left",
+    affected_side="right",
+)
+
+
+@pytest.fixture
+def page(qtbot: QtBot) -> PatientPage:
+    page = PatientPage(Look(), today=date(2026, 11, 21))
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    page.show()
+    return page
+
+
+@pytest.fixture
+def edits(page: PatientPage) -> list[PatientDraft]:
+    heard: list[PatientDraft] = []
+    page.edited.connect(heard.append)
+    return heard
+
+
+def type_into(line: QLineEdit, text: str) -> None:
+    line.selectAll()
+    QTest.keyClicks(line, text)
+
+
+def test_a_patient_comes_out_as_shown_and_showing_is_no_edit(page: PatientPage, edits: list[PatientDraft]) -> None:
+    draft = PatientDraft(KNOWN, frozenset({Side.LEFT}))
+    page.show_draft(draft)
+    assert page.draft == draft
+    assert edits == []
+
+
+def test_every_letter_is_told(page: PatientPage, edits: list[PatientDraft]) -> None:
+    page.focus()
+    type_into(page.code.line_edit, "P-1")
+    assert [draft.patient.code for draft in edits] == ["P", "P-", "P-1"]
+    assert edits[-1].patient == Patient(code="P-1")
+
+
+def test_a_number_half_typed_leaves_the_one_from_before(page: PatientPage) -> None:
+    page.show_draft(PatientDraft(KNOWN))
+    type_into(page.height_cm.line_edit, "17")
+    assert page.draft.patient.height_m == 1.785
+    type_into(page.height_cm.line_edit, "178,5")
+    assert page.draft.patient.height_m == 1.785
+    type_into(page.height_cm.line_edit, "180")
+    assert page.draft.patient.height_m == 1.8
+    page.height_cm.line_edit.selectAll()
+    QTest.keyClick(page.height_cm.line_edit, Qt.Key.Key_Delete)
+    assert page.draft.patient.height_m is None
+
+
+def test_a_prosthetic_side_is_asked_about_its_ankle(page: PatientPage, edits: list[PatientDraft]) -> None:
+    assert not page.limb.isEnabled()
+    assert not page.ankles[Side.RIGHT].isVisible()
+    page.side.segments[2].click()
+    page.limb.segments[1].click()
+    assert edits[-1].patient.prosthetic_side == "right"
+    assert page.ankles[Side.RIGHT].isVisible()
+    assert not page.ankles[Side.LEFT].isVisible()
+    page.ankles[Side.RIGHT].buttons[0].click()
+    assert edits[-1].without_ankle == {Side.RIGHT}
+    page.limb.segments[0].click()
+    assert edits[-1] == PatientDraft(Patient(affected_side="right", prosthetic_side="none"))
+
+
+def test_aids_are_chosen_by_arrows_and_space(page: PatientPage, edits: list[PatientDraft]) -> None:
+    page.show_draft(PatientDraft(KNOWN))
+    chips = page.aids.buttons
+    assert [chip.text() for chip in chips][-1] == "rollator"
+    chips[0].setFocus()
+    QTest.keyClick(chips[0], Qt.Key.Key_Right)
+    assert chips[1].hasFocus()
+    QTest.keyClick(chips[1], Qt.Key.Key_Space)
+    assert edits[-1].patient.aids == "barefoot, rollator", "shoes and barefoot exclude each other"
+    assert [chip.focusPolicy() for chip in chips].count(Qt.FocusPolicy.StrongFocus) == 1
+
+
+def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
+    opened: list[str] = []
+    page.open_pressed.connect(opened.append)
+    type_into(page.code.line_edit, "P-0147")
+    page.show_code_taken("P-0147")
+    assert "P-0147 exists. Open it, or choose another code." in page.code.line_edit.accessibleName()
+    button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Open this patient")
+    assert button.isVisible()
+    QTest.keyClick(button, Qt.Key.Key_Return)
+    assert opened == ["P-0147"]
+    type_into(page.code.line_edit, "P-0148")
+    assert not button.isVisible()
+    assert not page.code.is_wrong
+
+
+@pytest.mark.parametrize(
+    ("birth_year", "words"),
+    [
+        (None, "Type the birth year"),
+        (1968, "Younger and faster than most patients of 58."),
+        (2000, "Of the patient's age."),
+        (2016, "children of 10"),
+    ],
+)
+def test_the_band_says_whom_it_is_of(page: PatientPage, birth_year: int | None, words: str) -> None:
+    page.show_draft(PatientDraft(Patient(code="P-1", birth_year=birth_year)))
+    texts = [label.text() for label in page.findChildren(QLabel)]
+    assert any(words in text for text in texts)
+    assert any(text.startswith("24 young adults, barefoot") for text in texts)
+
+
+def test_the_last_visit_can_be_had_again(page: PatientPage, qtbot: QtBot) -> None:
+    button = next(one for one in page.findChildren(QAbstractButton) if one.text() == "Same set-up as last visit")
+    assert not button.isVisible()
+    page.show_last_visit(LastVisit("Last visit, 24 October 2026", (("Walks", "A, B"), ("Zero", "all 0°"))))
+    page.show_last_visit(LastVisit("Last visit, 1 November 2026", (("Walks", "C"),)))
+    assert button.isVisible()
+    with qtbot.waitSignal(page.same_set_up_pressed, timeout=1000):
+        QTest.keyClick(button, Qt.Key.Key_Space)
+
+
+def test_every_control_has_a_name_and_nothing_is_wider_than_the_page(page: PatientPage) -> None:
+    page.show_draft(PatientDraft(KNOWN))
+    for is_compact, size in ((False, (1064, 672)), (True, (736, 432))):
+        page.set_compact(is_compact)
+        page.resize(*size)
+        QTest.qWait(1)
+        for control in page.tab_order:
+            assert control.accessibleName(), control
+            if control.isVisible():
+                left = control.mapTo(page, control.rect().topLeft()).x()
+                assert left >= 0
+                assert left + control.width() <= page.width()
