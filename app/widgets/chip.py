@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import CHIP_RADIUS, Look, Theme
 from app.widgets.text import SEMIBOLD
+from app.wording import tr
 from core.body import Side
 
 CHIP = 20
@@ -29,6 +30,7 @@ def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> Non
         pen.setCapStyle(Qt.PenCapStyle.FlatCap)
         pen.setDashPattern([2.4, 1.4])
         painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
         half = pen.widthF() / 2
         painter.drawRoundedRect(rect.adjusted(half, half, -half, -half), radius, radius)
         painter.setPen(colour)
@@ -44,7 +46,7 @@ class Chip(QWidget):
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(f"{side} leg")
+        self.setAccessibleName(_leg_name(side))
         look.changed.connect(self._on_look_changed)
 
     def sizeHint(self) -> QSize:
@@ -69,7 +71,7 @@ class SideKey(QWidget):
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(f"{side} leg")
+        self.setAccessibleName(_leg_name(side))
         look.changed.connect(self._on_look_changed)
 
     def sizeHint(self) -> QSize:
@@ -92,3 +94,7 @@ class SideKey(QWidget):
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.update()
+
+
+def _leg_name(side: Side) -> str:
+    return tr("left leg") if side is Side.LEFT else tr("right leg")

@@ -9,6 +9,7 @@ from PySide6.QtGui import (
     QColor,
     QFont,
     QFontMetrics,
+    QHideEvent,
     QPainter,
     QPaintEvent,
     QPalette,
@@ -61,6 +62,7 @@ class Field(QWidget):
     ) -> None:
         super().__init__()
         self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
+        self._is_pending = False  # edited, not yet committed
         self._caption = Text(look, label, size=14, weight=MEDIUM)
         self._optional = Text(look, tr("optional"), size=12, tone="ink2")
         self._box = _Box(look, side, is_code)
@@ -123,6 +125,11 @@ class Field(QWidget):
         if sentence and is_news:
             QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self._box, sentence))
 
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        if self._is_pending:  # the page goes, or the window: nothing is lost
+            self._on_editing_finished()
+
     def _name(self) -> None:
         sides = {Side.LEFT: tr("Left"), Side.RIGHT: tr("Right"), None: ""}
         label = self._label
@@ -132,9 +139,11 @@ class Field(QWidget):
         self._box.setAccessibleName(", ".join(filter(None, [label, self._box.unit, state])))
 
     def _on_text_edited(self, text: str) -> None:
+        self._is_pending = True
         self.edited.emit(text)
 
     def _on_editing_finished(self) -> None:
+        self._is_pending = False
         self.committed.emit()
 
     def _on_look_changed(self) -> None:
@@ -238,7 +247,9 @@ class _Box(QLineEdit):
         return QSize(letters + margins.left() + margins.right(), self._look.theme.px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        hint = self.sizeHint()
+        letters = QFontMetrics(self.font()).horizontalAdvance("00")  # a longer text moves along under its frame
+        return QSize(hint.width() - letters, hint.height())
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change a number

@@ -33,6 +33,16 @@ class Text(QLabel):
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
+    def set_size(self, size: float) -> None:
+        if size != self._size:
+            self._size = size
+            self._on_look_changed()
+
+    def set_tone(self, tone: str) -> None:
+        if tone != self._tone:
+            self._tone = tone
+            self._on_look_changed()
+
     def _on_look_changed(self) -> None:
         theme = self._look.theme
         self.setFont(theme.font(self._size, self._weight, self._is_code))

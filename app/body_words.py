@@ -1,0 +1,19 @@
+"""What are parts of the body called where they stand on their own, and as the patient is spoken to?"""
+
+from app.wording import tr
+from core.body import Joint, Segment, Side
+
+
+def segment_name(segment: Segment) -> str:
+    """Name a segment beside the chip of its side: "Thigh"."""
+    return {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}[segment]
+
+
+def joint_name(joint: Joint) -> str:
+    """Name a joint beside the chip of its side: "Knee"."""
+    return tr("Knee") if joint.is_knee else tr("Ankle")
+
+
+def leg_name(side: Side) -> str:
+    """Name a leg inside a sentence: "the left leg"."""
+    return tr("the left leg") if side is Side.LEFT else tr("the right leg")

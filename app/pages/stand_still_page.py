@@ -1,0 +1,414 @@
+"""Does the patient stand still, and at which angles? A count read from six metres, and what the goniometer says."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from enum import Enum, auto
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.button import Button
+from app.widgets.card import Card
+from app.widgets.field import NumberField
+from app.widgets.icons import Icon
+from app.widgets.notice import Notice
+from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import name_of, tr
+from core.body import Joint, Side, Site
+from core.calibration.rest import MAX_SPREAD_RAD_S
+from core.live.standing import WANTED_S
+
+KNEE_DEG, ANKLE_DEG = (-60.0, 150.0), (-60.0, 60.0)  # what a goniometer can be laid along
+MOVED_FOR_S = 1.0  # who moved is named until the count has come this far again
+OFFERED_AFTER = 3  # restarts
+READING = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE)
+TITLE, LARGE_TITLE, COMPACT_TITLE = 60, 72, 40
+LARGE_FROM = 1500
+ZERO_WIDTH, COMPACT_ZERO_WIDTH = 328, 264
+BARS_WIDTH, LARGE_BARS_WIDTH, COMPACT_BARS_WIDTH = 268, 400, 240
+SCROLL_BAR = 12
+
+
+class StandPhase(Enum):
+    READY = auto()
+    COUNTING = auto()
+    DONE = auto()
+    SKIPPED = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class StandStillView:
+    """What the standing looks like now.
+
+    Attributes
+    ----------
+    movement_deg_s
+        Of the worn sensors: how far their angular rate spreads.
+    moved
+        Who made the count begin anew last.
+    silent
+        Who is not heard.
+    restarts
+        How often it began anew by itself.
+    """
+
+    phase: StandPhase = StandPhase.READY
+    still_s: float = 0.0
+    wanted_s: float = WANTED_S
+    movement_deg_s: Mapping[Site, float] = field(default_factory=dict)
+    limit_deg_s: float = math.degrees(MAX_SPREAD_RAD_S)
+    moved: tuple[Site, ...] = ()
+    silent: tuple[Site, ...] = ()
+    restarts: int = 0
+
+    @property
+    def tells_moved(self) -> bool:
+        is_waiting = self.phase in (StandPhase.READY, StandPhase.COUNTING)
+        return bool(self.moved) and is_waiting and self.still_s < MOVED_FOR_S
+
+
+class StandStillPage(QWidget):
+    """Words go L then R.
+
+    Signals
+    -------
+    zero_edited
+        Joint and degrees; None where nothing is in the field any more.
+    cannot_stand_pressed, can_stand_pressed
+        The patient cannot, or can after all.
+    """
+
+    zero_edited = Signal(object, object)
+    cannot_stand_pressed = Signal()
+    can_stand_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._view = StandStillView()
+        self._is_compact = False
+        self._count = Card(look, padding=24, spacing=4)
+        self._title = Text(look, size=TITLE, weight=SEMIBOLD)
+        self._how = Text(look, size=20, tone="ink2", wraps=True)
+        self._ring = CountRing(look)
+        self._heading = Text(look, tr("Movement now"), size=14, weight=MEDIUM)
+        self._limit = Text(look, size=14, tone="ink2")
+        self.bars = MovementBars(look)
+        self.verdict = Notice(look)
+        self._build_count()
+        self.zero = _ZeroCard(look)
+        self.zero.edited.connect(self.zero_edited)
+        self.zero.button.clicked.connect(self._on_button_clicked)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(self._count, 1)
+        self._row.addWidget(self.zero)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self._show()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return self.zero.tab_order
+
+    def focus(self) -> None:
+        """Give the focus to the first angle: the count itself is the bar's."""
+        next((one for one in self.tab_order if one.isEnabled()), self.zero.button).setFocus()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self.bars.set_compact(is_compact)
+        self.zero.set_compact(is_compact)
+        self._on_look_changed()
+
+    def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
+        """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
+        self.zero.show_zero(zero_deg)
+
+    def show_state(self, view: StandStillView) -> None:
+        """Show how the standing goes; only what changed is painted anew."""
+        if view != self._view:
+            self._view = view
+            self._show()
+
+    def _show(self) -> None:
+        view = self._view
+        self._title.setText(title(view))
+        self._how.setText(instruction(view))
+        self._ring.show_face(ring_face(view))
+        self._limit.setText(tr("limit {limit:.1f} °/s").format(limit=view.limit_deg_s))
+        moved = view.moved if view.tells_moved else ()
+        self.bars.show_movement(view.movement_deg_s, view.limit_deg_s, moved, view.silent)
+        icon, what, then, is_caution = verdict(view)
+        self.verdict.tell(icon, what, then, is_caution)
+        self.zero.show_standing(view)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _build_count(self) -> None:
+        self._above = QHBoxLayout()
+        self._above.addWidget(self._heading, 1)
+        self._above.addWidget(self._limit)
+        self._side = QVBoxLayout()
+        self._side.addStretch(1)
+        self._side.addLayout(self._above)
+        self._side.addWidget(self.bars)
+        self._side.addWidget(self.verdict)
+        self._side.addStretch(1)
+        self._middle = QHBoxLayout()
+        self._middle.addWidget(self._ring, 1)
+        self._middle.addLayout(self._side)
+        column = self._count.column
+        column.addWidget(self._title)
+        column.addWidget(self._how)
+        column.addLayout(self._middle, 1)
+        self._count.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+
+    def _on_button_clicked(self) -> None:
+        (self.can_stand_pressed if self._view.phase is StandPhase.SKIPPED else self.cannot_stand_pressed).emit()
+
+    def _fit(self) -> None:
+        is_large = not self._is_compact and self.width() >= self._look.theme.px(LARGE_FROM)
+        self._title.set_size(COMPACT_TITLE if self._is_compact else LARGE_TITLE if is_large else TITLE)
+        self._how.set_size(16 if self._is_compact else 24 if is_large else 20)
+        bars_width = COMPACT_BARS_WIDTH if self._is_compact else LARGE_BARS_WIDTH if is_large else BARS_WIDTH
+        for one in (self.bars, self.verdict):
+            one.setFixedWidth(self._look.theme.px(bars_width))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        across, down = (16, 12) if self._is_compact else (24, 20)
+        self._row.setContentsMargins(px(across), px(down), px(across), px(down))
+        self._row.setSpacing(px(12 if self._is_compact else 16))
+        self._middle.setSpacing(px(12 if self._is_compact else 24))
+        self._side.setSpacing(px(8))
+        self._above.setContentsMargins(px(INSET), 0, px(INSET), 0)
+        if self._is_compact:
+            self._count.column.setContentsMargins(px(16), px(10), px(16), px(10))
+            self.zero.column.setContentsMargins(px(16), px(12), px(16), px(12))
+        else:
+            self._count.column.setContentsMargins(px(24), px(18), px(24), px(18))
+            self.zero.column.setContentsMargins(px(20), px(16), px(20), px(20))
+        width = px(COMPACT_ZERO_WIDTH if self._is_compact else ZERO_WIDTH)
+        self.zero.setFixedWidth(max(width, self.zero.least_width))
+        self._fit()
+
+
+class _ZeroCard(Card):
+    """The angles at which the patient stands, and the way round the standing. The fields scroll where they must."""
+
+    edited = Signal(object, object)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=20, spacing=12)
+        self._look = look
+        self._is_compact = False
+        self._view = StandStillView()
+        self._worn: frozenset[Joint] = frozenset(Joint)
+        self._headings: list[QHBoxLayout] = []
+        self.fields: dict[Joint, NumberField] = {}
+        self._inside = QWidget()
+        self._column = QVBoxLayout(self._inside)
+        self._column.addWidget(Text(look, tr("Zero angle"), size=20, weight=SEMIBOLD))
+        explained = tr("0° if the joint is straight now. Type the goniometer value for a contracture.")
+        self._column.addWidget(Text(look, explained, size=14, tone="ink2", wraps=True))
+        self._grid = QGridLayout()
+        self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
+        self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
+        self._column.addLayout(self._grid)
+        self._why = Text(look, size=14, tone="ink2", wraps=True)
+        self._column.addWidget(self._why)
+        self._column.addStretch(1)
+        self._scroll = QScrollArea()
+        self._scroll.setWidget(self._inside)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.note = Notice(look, size=14)
+        self.button = Button(look, tr("Patient cannot stand still"))
+        self.column.addWidget(self._scroll, 1)
+        self.column.addWidget(self.note)
+        self.column.addWidget(self.button)
+        look.changed.connect(self._on_theme_changed)
+        self._on_theme_changed()
+        self._show()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [*(self.fields[joint].line_edit for joint in READING), self.button]
+
+    @property
+    def why(self) -> str:
+        """Why a field cannot be typed into; empty where all can."""
+        return self._why.text()
+
+    @property
+    def least_width(self) -> int:
+        """What the fields, the button and their margins take at least."""
+        margins, bar = self.column.contentsMargins(), self._look.theme.px(SCROLL_BAR)
+        inside = max(self._inside.minimumSizeHint().width() + bar, self.button.sizeHint().width())
+        return inside + margins.left() + margins.right()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self._on_theme_changed()
+        self._show()
+
+    def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
+        self._worn = frozenset(zero_deg)
+        for joint, one in self.fields.items():
+            one.set_value(zero_deg.get(joint))
+        self._show()
+
+    def show_standing(self, view: StandStillView) -> None:
+        is_same = (view.phase, view.restarts) == (self._view.phase, self._view.restarts)
+        self._view = view
+        if not is_same:
+            self._show()
+
+    def _show(self) -> None:
+        is_skipped = self._view.phase is StandPhase.SKIPPED
+        for joint, one in self.fields.items():
+            one.setEnabled(joint in self._worn and not is_skipped)
+        missing = [joint for joint in READING if joint not in self._worn]
+        why = tr("Without standing there is no zero to set.") if is_skipped else _no_field(missing)
+        self._why.setText(why)
+        self._why.setVisible(bool(why))
+        self.button.setText(tr("Stand still after all") if is_skipped else tr("Patient cannot stand still"))
+        self.button.setAccessibleName(self.button.text())
+        icon, what, then, is_caution = way_round(self._view, self._is_compact)
+        self.note.tell(icon, what, then, is_caution)
+
+    def _add_joint(self, name: str, sign: str, label: str, range_deg: tuple[float, float], is_knee: bool) -> None:
+        row = self._grid.rowCount()
+        heading = QHBoxLayout()
+        self._headings.append(heading)
+        heading.addWidget(Text(self._look, name, size=14, weight=MEDIUM), 1)
+        heading.addWidget(Text(self._look, sign, size=12, tone="ink2"), 0, Qt.AlignmentFlag.AlignBottom)
+        self._grid.addLayout(heading, row, 0, 1, 2)
+        for column, side in enumerate((Side.LEFT, Side.RIGHT)):
+            joint = next(joint for joint in Joint if joint.side is side and joint.is_knee == is_knee)
+            low, high = range_deg
+            one = _ZeroField(self._look, joint, label, low, high)
+            one.told.connect(self.edited)
+            self.fields[joint] = one
+            self._grid.addWidget(one, row + 1, column, Qt.AlignmentFlag.AlignTop)
+
+    def _on_theme_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(px(8))
+        for heading in self._headings:
+            heading.setContentsMargins(0, px(8), 0, 0)
+        self._grid.setHorizontalSpacing(px(12))
+        self._grid.setVerticalSpacing(px(6))
+
+
+class _ZeroField(NumberField):
+    """One joint's angle; tells the joint with it."""
+
+    told = Signal(object, object)
+
+    def __init__(self, look: Look, joint: Joint, label: str, low: float, high: float) -> None:
+        super().__init__(look, label, low=low, high=high, decimals=1, unit="°", side=joint.side, has_label=False)
+        self._joint = joint
+        self.committed.connect(self._on_committed)
+
+    def _on_committed(self) -> None:
+        if not self.is_wrong:
+            self.told.emit(self._joint, self.value)
+
+
+def title(view: StandStillView) -> str:
+    """Say in two words what is asked for."""
+    return tr("Range only") if view.phase is StandPhase.SKIPPED else tr("Stand still")
+
+
+def instruction(view: StandStillView) -> str:
+    """Say how, or what came of it."""
+    if view.phase is StandPhase.SKIPPED:
+        return tr("The patient cannot stand: angles will be given as range only, without absolute values.")
+    if view.phase is StandPhase.DONE:
+        return tr("{still:.1f} s still. Bias and zero are known.").format(still=view.still_s)
+    return tr("Both feet flat, looking ahead. Holding a rail is fine.")
+
+
+def ring_face(view: StandStillView) -> RingFace:
+    """Choose what the ring shows."""
+    if view.phase is StandPhase.SKIPPED:
+        return RingFace(word=tr("skipped"), is_dotted=True)
+    if view.phase is StandPhase.DONE:
+        return RingFace(share=1.0, icon=Icon.CHECK)
+    if view.phase is StandPhase.READY:
+        return RingFace(figure=f"{math.ceil(view.wanted_s)}", word=tr("starts"), key=tr("Space"))
+    left_s = max(1, math.ceil(view.wanted_s - view.still_s - 1e-9))
+    share = round(min(view.still_s / view.wanted_s, 1.0) * STEPS) / STEPS
+    return RingFace(share, f"{left_s}", word=tr("second") if left_s == 1 else tr("seconds"))
+
+
+def verdict(view: StandStillView) -> tuple[Icon | None, str, str, bool]:
+    """Say whether all are still: icon, what is so, what follows, and whether it needs a look."""
+    if view.phase is StandPhase.SKIPPED or not view.movement_deg_s:
+        return None, "", "", False
+    if view.phase is StandPhase.DONE:
+        return Icon.CHECK, _all_still(len(view.movement_deg_s)), tr("Goes on by itself."), False
+    if view.silent:
+        is_one = len(view.silent) == 1
+        what = (tr("{sites} is silent") if is_one else tr("{sites} are silent")).format(sites=_names(view.silent))
+        return Icon.SILENT, what, tr("The count waits. Switch the sensor off and on."), True
+    if view.tells_moved:
+        is_one = len(view.moved) == 1
+        what = (tr("{sites} moves") if is_one else tr("{sites} move")).format(sites=_names(view.moved))
+        return Icon.WAVE, what, _moved(view), True
+    then = tr("Movement restarts the count.")
+    return Icon.CHECK, _all_still(len(view.movement_deg_s)), then, False
+
+
+def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, str, str, bool]:
+    """Say what follows without the standing; after some restarts offer to go on so."""
+    if view.phase is StandPhase.SKIPPED:
+        return Icon.INFO, "", tr("The report prints that no zero was set."), False
+    if view.restarts >= OFFERED_AFTER and view.phase is not StandPhase.DONE:
+        what = tr("The count began again {count} times.").format(count=view.restarts)
+        if is_short:
+            return Icon.WARNING, what, tr("Without it angles are given as range only."), True
+        then = tr("If the patient cannot stand, angles will be given as range only, without absolute values.")
+        return Icon.WARNING, what, then, True
+    range_only = tr("Without this step angles are given as range only.")
+    then = range_only if is_short else " ".join([tr("The report prints how zero was set."), range_only])
+    return Icon.INFO, "", then, False
+
+
+def _moved(view: StandStillView) -> str:
+    sides = {site.side for site in view.moved}
+    what = tr("Both legs moved.") if len(sides) > 1 else _leg_moved(next(iter(sides)))
+    return f"{what} {tr('The count starts again by itself.')}" if view.phase is StandPhase.COUNTING else what
+
+
+def _leg_moved(side: Side) -> str:
+    return tr("The left leg moved.") if side is Side.LEFT else tr("The right leg moved.")
+
+
+def _all_still(count: int) -> str:
+    words = (tr("It is still"), tr("Both are still"), tr("All three are still"), tr("All four are still"))
+    return (*words, tr("All five are still"), tr("All six are still"))[count - 1]
+
+
+def _names(sites: Sequence[Site]) -> str:
+    names = [name_of(site) for site in sites]
+    if len(names) > 2:  # more cannot be read in the time
+        return tr("{count} sensors").format(count=len(names))
+    return tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]
+
+
+def _no_field(joints: Sequence[Joint]) -> str:
+    if not joints:
+        return ""
+    names = ", ".join(name_of(joint) for joint in joints)
+    return tr("Not worn on both sides of the joint: {joints}.").format(joints=names)

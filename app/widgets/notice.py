@@ -1,0 +1,75 @@
+"""What is so and what follows, beside what it is about, after an icon. Yellow where it needs a look."""
+
+from PySide6.QtCore import QRectF
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.text import SEMIBOLD, Text
+
+ICON = 22
+PADDING = 10
+
+
+class Notice(QWidget):
+    """Keeps its place while it has nothing to say, unless it is hidden."""
+
+    def __init__(self, look: Look, size: float = 18) -> None:
+        super().__init__()
+        self._look = look
+        self._icon: Icon | None = None
+        self._is_caution = False
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
+        self._what = Text(look, size=size, weight=SEMIBOLD, wraps=True)
+        self._then = Text(look, size=14, tone="ink2", wraps=True)
+        self._words = QVBoxLayout()
+        self._words.addWidget(self._what)
+        self._words.addWidget(self._then)
+        self._row = QHBoxLayout(self)
+        self._row.addLayout(self._words, 1)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def text(self) -> str:
+        return " ".join(filter(None, [self._what.text(), self._then.text()]))
+
+    def tell(self, icon: Icon | None, what: str, then: str = "", is_caution: bool = False) -> None:
+        """Show it; who cannot see it is told whenever the first line changes."""
+        if (icon, what, then, is_caution) == (self._icon, self._what.text(), self._then.text(), self._is_caution):
+            return
+        is_news = what != self._what.text()
+        self._icon, self._is_caution = icon, is_caution
+        self._what.setText(what)
+        self._what.setVisible(bool(what))
+        self._then.setText(then)
+        self._then.setVisible(bool(then))
+        self._then.set_tone("caution_ink" if is_caution else "ink2")
+        self._what.set_tone("caution_ink" if is_caution else "ink")
+        self.setAccessibleName(self.text)
+        if is_news and self.isVisible():
+            QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, self.text))
+        self.update()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self._is_caution:
+            painter.setPen(theme.pen(c.caution_edge, 1))
+            painter.setBrush(QColor(c.caution))
+            radius = CONTROL_RADIUS * theme.scale
+            painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+        if self._icon is not None:
+            first = self._what if self._what.text() else self._then
+            middle = first.y() + first.fontMetrics().height() / 2
+            mark = QRectF(px(PADDING), middle - px(ICON) / 2, px(ICON), px(ICON))
+            paint_icon(painter, self._icon, mark, c.caution_ink if self._is_caution else c.ink)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(PADDING + ICON + 8), px(PADDING), px(PADDING), px(PADDING))
+        self._words.setSpacing(px(2))
+        self.update()

@@ -1,0 +1,188 @@
+"""Standing still on the page: the count, who moved, what follows without it, and the angles typed beside it."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QPaintEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.stand_still_page import (
+    StandPhase,
+    StandStillPage,
+    StandStillView,
+    instruction,
+    ring_face,
+    verdict,
+    way_round,
+)
+from app.theme import Look, load_fonts
+from app.widgets.icons import Icon
+from app.widgets.stillness import MovementBars
+from core.body import Joint, Site
+
+STILL = dict.fromkeys(Site, 0.4)
+
+
+def counting(still_s: float = 1.2, **more: object) -> StandStillView:
+    return StandStillView(StandPhase.COUNTING, still_s, movement_deg_s=STILL, **more)  # type: ignore[arg-type]
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def page(qtbot: QtBot, look: Look) -> StandStillPage:
+    page = StandStillPage(look)
+    page.show_zero(dict.fromkeys(Joint, 0.0))
+    qtbot.addWidget(page)
+    page.resize(1064, 600)
+    with qtbot.waitActive(page):
+        page.show()
+        page.activateWindow()
+    return page
+
+
+@pytest.mark.parametrize(
+    ("still_s", "figure"), [(0.0, "3"), (0.9, "3"), (1.0, "2"), (1.9, "2"), (2.5, "1"), (3.0, "1")]
+)
+def test_the_ring_counts_the_seconds_that_are_left(still_s: float, figure: str) -> None:
+    face = ring_face(counting(still_s))
+    assert face.figure == figure
+    assert face.share == pytest.approx(still_s / 3, abs=1e-3)
+
+
+def test_before_the_count_the_ring_says_which_key_starts_it() -> None:
+    face = ring_face(StandStillView(movement_deg_s=STILL))
+    assert (face.share, face.key, face.word) == (0.0, "Space", "starts")
+
+
+def test_the_ring_closes_with_a_check_mark() -> None:
+    face = ring_face(StandStillView(StandPhase.DONE, 3.0, movement_deg_s=STILL))
+    assert (face.share, face.icon) == (1.0, Icon.CHECK)
+
+
+def test_who_moved_is_named_until_a_second_is_still_again() -> None:
+    moved = (Site.LEFT_THIGH,)
+    _, what, then, is_caution = verdict(counting(0.2, moved=moved))
+    assert what == "L thigh moves"
+    assert then == "The left leg moved. The count starts again by itself."
+    assert is_caution
+    assert verdict(counting(1.1, moved=moved))[1] == "All six are still"
+
+
+def test_both_legs_and_many_sensors_are_said_in_a_few_words() -> None:
+    _, what, then, _ = verdict(counting(0.0, moved=(Site.LEFT_THIGH, Site.RIGHT_FOOT)))
+    assert what == "L thigh and R foot move"
+    assert then.startswith("Both legs moved.")
+    assert verdict(counting(0.0, moved=tuple(Site)))[1] == "6 sensors move"
+
+
+def test_a_silent_sensor_comes_before_one_that_moves() -> None:
+    _, what, then, is_caution = verdict(counting(0.0, moved=(Site.LEFT_THIGH,), silent=(Site.RIGHT_FOOT,)))
+    assert what == "R foot is silent"
+    assert then == "The count waits. Switch the sensor off and on."
+    assert is_caution
+
+
+def test_fewer_sensors_are_counted_as_they_are() -> None:
+    four = {site: 0.2 for site in Site if site.segment != "foot"}
+    assert verdict(StandStillView(movement_deg_s=four))[1] == "All four are still"
+
+
+def test_going_on_without_is_offered_after_three_restarts() -> None:
+    assert not way_round(counting(restarts=2))[3]
+    _, what, then, is_caution = way_round(counting(restarts=3))
+    assert what == "The count began again 3 times."
+    assert then == "If the patient cannot stand, angles will be given as range only, without absolute values."
+    assert is_caution
+
+
+def test_without_standing_the_page_says_what_is_lost_and_the_way_back(qtbot: QtBot, page: StandStillPage) -> None:
+    with qtbot.waitSignal(page.cannot_stand_pressed):
+        page.zero.button.click()
+    skipped = StandStillView(StandPhase.SKIPPED, movement_deg_s=STILL)
+    page.show_state(skipped)
+    assert instruction(skipped) == (
+        "The patient cannot stand: angles will be given as range only, without absolute values."
+    )
+    assert not any(field.isEnabled() for field in page.zero.fields.values())
+    with qtbot.waitSignal(page.can_stand_pressed):
+        page.zero.button.click()
+
+
+def test_an_angle_is_told_with_its_joint_when_it_is_left(qtbot: QtBot, page: StandStillPage) -> None:
+    knee = page.zero.fields[Joint.LEFT_KNEE].line_edit
+    page.focus()
+    assert knee.hasFocus()
+    knee.selectAll()
+    QTest.keyClicks(knee, "15")
+    with qtbot.waitSignal(page.zero_edited) as edited:
+        QTest.keyClick(knee, Qt.Key.Key_Tab)
+    assert edited.args == [Joint.LEFT_KNEE, 15.0]
+    assert page.zero.fields[Joint.RIGHT_KNEE].line_edit.hasFocus()  # L then R
+
+
+def test_an_emptied_angle_is_told_as_none_and_a_wrong_one_not_at_all(qtbot: QtBot, page: StandStillPage) -> None:
+    ankle = page.zero.fields[Joint.RIGHT_ANKLE].line_edit
+    ankle.selectAll()
+    QTest.keyClicks(ankle, "61")
+    with qtbot.assertNotEmitted(page.zero_edited):
+        QTest.keyClick(ankle, Qt.Key.Key_Return)
+    assert "\N{MINUS SIGN}60 to 60°" in ankle.accessibleName()
+    ankle.clear()
+    with qtbot.waitSignal(page.zero_edited) as edited:
+        QTest.keyClick(ankle, Qt.Key.Key_Return)
+    assert edited.args == [Joint.RIGHT_ANKLE, None]
+
+
+def test_an_angle_being_typed_is_told_when_the_page_goes(qtbot: QtBot, page: StandStillPage) -> None:
+    knee = page.zero.fields[Joint.LEFT_KNEE].line_edit
+    knee.setFocus()
+    knee.selectAll()
+    QTest.keyClicks(knee, "12")
+    with qtbot.waitSignal(page.zero_edited) as edited:
+        page.hide()
+    assert edited.args == [Joint.LEFT_KNEE, 12.0]
+
+
+def test_a_joint_without_its_sensors_has_no_angle_and_says_so(page: StandStillPage) -> None:
+    page.show_zero({joint: 0.0 for joint in Joint if joint is not Joint.RIGHT_ANKLE})
+    assert [joint for joint, field in page.zero.fields.items() if not field.isEnabled()] == [Joint.RIGHT_ANKLE]
+    assert page.zero.fields[Joint.RIGHT_ANKLE].text == ""
+    assert "right ankle" in page.zero.why
+
+
+def test_only_the_row_whose_figure_changed_is_painted(
+    qtbot: QtBot, look: Look, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    painted: list[int] = []
+    paint = MovementBars.paintEvent
+
+    def noting(bars: MovementBars, event: QPaintEvent) -> None:
+        painted.append(event.rect().height())
+        paint(bars, event)
+
+    monkeypatch.setattr(MovementBars, "paintEvent", noting)
+    bars = MovementBars(look)
+    qtbot.addWidget(bars)
+    bars.resize(268, 192)
+    with qtbot.waitExposed(bars):
+        bars.show()
+    bars.show_movement(STILL, 3.4, (), ())
+    qtbot.waitUntil(lambda: bool(painted))
+    QApplication.processEvents()
+    painted.clear()
+    bars.show_movement(STILL | {Site.LEFT_FOOT: 0.9}, 3.4, (), ())
+    QApplication.processEvents()
+    bars.show_movement(STILL | {Site.LEFT_FOOT: 0.9}, 3.4, (), ())
+    QApplication.processEvents()
+    assert painted == [32]
