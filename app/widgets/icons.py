@@ -43,6 +43,8 @@ class Icon(StrEnum):
     DELETE = "delete"
     LOCK = "lock"
     PRINT = "print"
+    LIGHT = "light"
+    GRIP = "grip"
 
 
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
@@ -280,6 +282,26 @@ def _print(painter: QPainter, _ink: QColor) -> None:
     painter.drawRect(QRectF(7, 13.5, 10, 7))
 
 
+def _light(painter: QPainter, _ink: QColor) -> None:
+    """A bulb: the sensor's own light is meant, which is lit to find it."""
+    path = QPainterPath(QPointF(9.2, 16.5))
+    path.cubicTo(QPointF(9.2, 14), QPointF(5.5, 13), QPointF(5.5, 8.8))
+    path.cubicTo(QPointF(5.5, 5.1), QPointF(8.4, 2.5), QPointF(12, 2.5))
+    path.cubicTo(QPointF(15.6, 2.5), QPointF(18.5, 5.1), QPointF(18.5, 8.8))
+    path.cubicTo(QPointF(18.5, 13), QPointF(14.8, 14), QPointF(14.8, 16.5))
+    path.closeSubpath()
+    painter.drawPath(path)
+    _lines(painter, (9.8, 20.5), (14.2, 20.5))
+
+
+def _grip(painter: QPainter, ink: QColor) -> None:
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(QBrush(ink))
+    for x in (8.5, 15.5):
+        for y in (5.5, 12, 18.5):
+            painter.drawEllipse(QPointF(x, y), 1.7, 1.7)
+
+
 _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.FOLDER: _folder,
     Icon.PLAY: _play,
@@ -312,4 +334,6 @@ _DRAWINGS: dict[Icon, Callable[[QPainter, QColor], None]] = {
     Icon.DELETE: _delete,
     Icon.LOCK: _lock,
     Icon.PRINT: _print,
+    Icon.LIGHT: _light,
+    Icon.GRIP: _grip,
 }
