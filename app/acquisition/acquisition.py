@@ -31,7 +31,7 @@ class Acquisition:
     """
 
     def __init__(self, sources: Sequence[LiveSource], now_ns: Callable[[], int] = host_time_ns) -> None:
-        self._now_ns, self._begin_ns = now_ns, now_ns()
+        self.now_ns, self._begin_ns = now_ns, now_ns()
         self._readers = [Reader(source, now_ns) for source in sources]
         self._preview = Preview(self._readers)
         self._writer: JournalWriter | None = None
@@ -44,7 +44,7 @@ class Acquisition:
         SourceRefusedError
             One of them does not open, or two have a sensor of the same name; all are closed again.
         """
-        self._begin_ns = self._now_ns()
+        self._begin_ns = self.now_ns()
         try:
             for reader in self._readers:
                 reader.open(self._begin_ns)
@@ -76,7 +76,7 @@ class Acquisition:
 
     @property
     def now_s(self) -> float:
-        return (self._now_ns() - self._begin_ns) / 1e9
+        return (self.now_ns() - self._begin_ns) / 1e9
 
     @property
     def trouble(self) -> Exception | None:

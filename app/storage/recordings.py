@@ -32,6 +32,10 @@ class Recordings:
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
 
+    def new_id(self) -> UUID:
+        """For a recording whose row may come later than its journal."""
+        return uuid7()
+
     def start(
         self, session_id: UUID, told: Recording, is_simulated: bool, recording_id: UUID | None = None
     ) -> StoredRecording:
@@ -103,6 +107,21 @@ class Recordings:
             session.flush()
             note(self._desk, session, Action.EDIT, about("recording", row.id), state=state.value)
             return stored_recording(row)
+
+    def withdraw(self, recording_id: UUID) -> None:
+        """Take back a recording that did not begin, so that its name is free again.
+
+        Raises
+        ------
+        LibraryError
+            There is no such recording, or it has journals.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = _existing(session, recording_id)
+            if row.journals:
+                raise LibraryError("This recording has begun", "Stop it, and do not keep it")
+            session.delete(row)
+            note(self._desk, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def discard(self, recording_id: UUID) -> None:
         """Forget a recording's keys, once those in its files are destroyed: nothing opens it any more.

@@ -1,0 +1,163 @@
+"""How does a recording get into the library, whatever the database is doing, and out of its journal again?
+
+Its row comes first, where the database answers within a second. Where it does not, the journal is begun all the same:
+the row follows, at the latest on stop; if the program ends before that, the journal is found at the next start.
+"""
+
+import logging
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from uuid import UUID
+
+from app.acquisition.acquisition import Acquisition
+from app.library_commands import DECODERS
+from app.storage.exchange import recording_with_samples
+from app.storage.journal.disk import ROOM, Room, Trouble
+from app.storage.journal.writer import JournalSummary, JournalWriter, State
+from app.storage.opened import OpenedLibrary
+from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
+from app.storage.stored import LibraryBusyError, LibraryError, RecordingState, StoredJournal, StoredRecording
+from core.samples import Recording
+
+ROW_WAIT_S = 1.0
+
+_log = logging.getLogger(__name__)
+
+
+class Recorder:
+    """One recording, from its beginning to what its journal holds. Not for the screen's thread, `mark` aside.
+
+    Attributes
+    ----------
+    summary
+        What was kept; None while it is recorded.
+    """
+
+    def __init__(self, acquisition: Acquisition, writer: JournalWriter, entry: "_Entry") -> None:
+        self._acquisition, self._writer, self._entry = acquisition, writer, entry
+        self.id = writer.header.recording_id
+        self.summary: JournalSummary | None = None
+
+    @classmethod
+    def begin(
+        cls,
+        opened: OpenedLibrary,
+        acquisition: Acquisition,
+        session_id: UUID,
+        told: Recording,
+        on_trouble: Callable[[Trouble], None] | None = None,
+        *,
+        room: Room = ROOM,
+    ) -> "Recorder":
+        """Record from now on, worn as the session's latest placement says.
+
+        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words.
+
+        Raises
+        ------
+        JournalRefusedError
+            There is too little room.
+        LibraryError
+            There is no such session, it has a recording of this name, or one of the two is simulated.
+        OSError
+            The folder of the recordings cannot be written.
+        """
+        entry = _Entry(opened, session_id, told, acquisition.is_simulated)
+        entry.start()
+        try:
+            writer = JournalWriter.create(
+                opened.recordings,
+                entry.id,
+                opened.data_key,
+                room=room,
+                on_trouble=on_trouble,
+                now_ns=acquisition.now_ns,
+            )
+        except BaseException:
+            entry.withdraw()
+            raise
+        acquisition.record(writer)
+        entry.add(writer)
+        return cls(acquisition, writer, entry)
+
+    def mark(self, text: str) -> None:
+        """Note in the journal what happens now."""
+        self._writer.mark(text)
+
+    def stop(self, opened: OpenedLibrary) -> tuple[StoredRecording, Recording]:
+        """Stop, see that the library knows of it, and read what the journal holds. May be tried again.
+
+        Raises
+        ------
+        LibraryError
+            The database does not answer, or refuses the recording. Its journal is kept, and found at the next start.
+        JournalRefusedError, OSError
+            The journal cannot be read.
+        """
+        if self.summary is None:
+            self.summary = self._acquisition.stop_recording()
+        stored = self._entry.close(opened, self.summary, self._writer.header.segment)
+        recording, _ = recording_with_samples(opened, stored, DECODERS)
+        return stored, recording
+
+
+class _Entry:
+    """A recording's row, written by a thread of its own: the recording waits a second for it, and no longer."""
+
+    def __init__(self, opened: OpenedLibrary, session_id: UUID, told: Recording, is_simulated: bool) -> None:
+        self._recordings = opened.library.recordings
+        self._session_id, self._told, self._is_simulated = session_id, told, is_simulated
+        self.id = self._recordings.new_id()
+        self._thread = ThreadPoolExecutor(1, "recording's row")
+        self._steps: list[Future[object]] = []
+
+    def start(self) -> None:
+        """Enter the row.
+
+        Raises
+        ------
+        LibraryError
+            The library refuses it, rather than being busy.
+        """
+        self._do(self._recordings.start, self._session_id, self._told, self._is_simulated, self.id)
+        try:
+            self._steps[0].result(ROW_WAIT_S)
+        except (TimeoutError, LibraryBusyError):
+            _log.warning("the library does not answer: the recording begins without its row")
+        except BaseException:
+            self._thread.shutdown()
+            raise
+
+    def add(self, writer: JournalWriter) -> None:
+        """Enter the journal, once the row is there."""
+        header = writer.header
+        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key or None)
+        self._do(self._recordings.add_journal, self.id, journal)
+
+    def withdraw(self) -> None:
+        """Take the row back, of a recording that did not begin."""
+        self._do(self._recordings.withdraw, self.id)
+        self._thread.shutdown(wait=False)
+
+    def close(self, opened: OpenedLibrary, summary: JournalSummary, segment: int) -> StoredRecording:
+        """Close the row; where it or the journal is not as it should be, in the way that interrupted ones are."""
+        self._thread.shutdown()
+        is_entered = all(step.exception() is None for step in self._steps)
+        if is_entered and summary.state is State.CLOSED:
+            return opened.library.recordings.close(self.id, RecordingState.CLOSED, {segment: summary.sha256})
+        interrupted = self._find(opened)
+        if interrupted is None:
+            raise LibraryError("This recording is not in the library any more", "Reload the session")
+        if interrupted.is_orphan:
+            return adopt(opened, interrupted, self._session_id, self._told, _nobody).stored
+        return recover(opened, interrupted, _nobody).stored
+
+    def _find(self, opened: OpenedLibrary) -> Interrupted | None:
+        return next((one for one in find_interrupted(opened) if one.recording_id == self.id), None)
+
+    def _do(self, call: Callable[..., object], *arguments: object) -> None:
+        self._steps.append(self._thread.submit(call, *arguments))
+
+
+def _nobody(_share: float, _what: str) -> None:
+    """Report to nobody: it takes a moment."""
