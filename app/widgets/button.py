@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording import tr
 
 HEIGHT = 48
 ICON = 22
@@ -39,7 +40,7 @@ class Button(QAbstractButton):
         self._look, self._kind, self._icon, self._key, self._height = look, kind, icon, key, height
         self.setText(text)
         self.setAccessibleName(text)
-        self.setAccessibleDescription(f"Key {key}" if key else "")
+        self.setAccessibleDescription(tr("Key {key}").format(key=key) if key else "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
@@ -97,9 +98,11 @@ class Button(QAbstractButton):
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
         painter.setPen(Qt.PenStyle.NoPen)
         ink = QColor(c.ink if self.isEnabled() else c.disabled)
-        if self._kind is Kind.PRIMARY:
+        if self._kind is Kind.PRIMARY and self.isEnabled():
             painter.setBrush(QColor(c.inv))
             ink = QColor(c.inv_ink)
+        elif self._kind is Kind.PRIMARY:
+            painter.setBrush(QColor(c.track))
         elif self._kind is Kind.SECONDARY:
             painter.setBrush(QColor(c.surface))
             painter.setPen(theme.pen(c.control, 1.25))

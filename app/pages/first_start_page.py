@@ -1,0 +1,191 @@
+"""The first start: whose library is it, what opens it, and what opens it when that is forgotten?
+
+All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
+"""
+
+from collections.abc import Callable
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
+
+from app.pages.entry import EntryPage
+from app.pages.passphrase_strength import strength_in_words
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.field import Field
+from app.widgets.icons import Icon
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
+
+LONGEST_CODE = 12
+GROUPS = 3  # of the recovery key in a line
+
+
+class FirstStartPage(EntryPage):
+    """`is_same_key` compares the recovery key as it was typed back with the one that was shown."""
+
+    made = Signal(str, str, str)  # code, name, passphrase
+    print_wished = Signal(str)  # the recovery key
+    save_wished = Signal(str)
+    done = Signal()  # the recovery key was typed back
+    demonstration_wished = Signal()
+
+    def __init__(self, look: Look, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
+        super().__init__(look)
+        self._shortest, self._is_same_key, self._key = shortest, is_same_key, ""
+        self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(
+            look,
+            tr("Patients and recordings are kept on this computer only, encrypted. What you choose here opens them."),
+            tone="ink2",
+            wraps=True,
+        )
+        self.code = Field(look, tr("Your code, for example your initials"), is_code=True)
+        self.name = Field(look, tr("Your name, as it stands on reports"))
+        self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
+        self._strength = Text(look, tone="ink2", wraps=True)
+        self.again = Field(look, tr("Passphrase again"), is_secret=True)
+        self.make = Button(look, tr("Make the library"), Kind.PRIMARY, None, tr("Enter"))
+        self.demonstration = Button(look, tr("Look at the demonstration first"), Kind.QUIET, Icon.PLAY, height=44)
+        self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
+        self._key_lead = Text(
+            look,
+            tr(
+                "It opens the library when the passphrase is forgotten; nothing else does, and nobody has a copy. It "
+                "is shown this once: print it or write it down, and keep it away from this computer."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
+        self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
+        self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
+        self.go = Button(look, tr("Go on"), Kind.PRIMARY, None, tr("Enter"))
+        self._build()
+        self._connect()
+        self._show()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        fields = [self.code, self.name, self.passphrase, self.again]
+        first = [*(field.line_edit for field in fields), self.make, self.demonstration]
+        return [*first, self.print, self.save, self.typed.line_edit, self.go]
+
+    def show_recovery_key(self, key: str) -> None:
+        """Show the key, once, and forget the passphrase."""
+        self._key = key
+        groups = key.split("-")
+        lines = [groups[k : k + GROUPS] for k in range(0, len(groups), GROUPS)]
+        self._key_words.setText("\n".join("   ".join(line) for line in lines))
+        for field in (self.passphrase, self.again, self.typed):
+            field.set_text("")
+        self._show()
+        self.focus()
+
+    def show_busy(self, is_busy: bool) -> None:
+        """Say that the library is being made."""
+        self.make.setEnabled(not is_busy)
+        self.make.setText(tr("Making the library") if is_busy else tr("Make the library"))
+        self.make.updateGeometry()
+
+    def refuse(self, sentence: str) -> None:
+        """Say why no library was made."""
+        self.show_busy(False)
+        self.code.set_wrong(sentence)
+        self.code.setFocus()
+
+    def focus(self) -> None:
+        (self.print if self._key else self.code).setFocus()
+
+    def _build(self) -> None:
+        self._first = Card(self._look, padding=24, spacing=16)
+        for part in (self.code, self.name, self.passphrase, self._strength, self.again, self.make):
+            self._first.column.addWidget(part)
+        self._demonstration_row = QHBoxLayout()
+        self._demonstration_row.addWidget(self.demonstration)
+        self._demonstration_row.addStretch(1)
+        self._second = Card(self._look, padding=24, spacing=16)
+        self._keep_row = QBoxLayout(QBoxLayout.Direction.LeftToRight)
+        self._keep_row.addWidget(self.print, 1)
+        self._keep_row.addWidget(self.save, 1)
+        self._second.column.addWidget(self._key_words)
+        self._second.column.addLayout(self._keep_row)
+        self._second.column.addWidget(self.typed)
+        self._second.column.addWidget(self.go)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self._lead)
+        self.column.addWidget(self._first)
+        self.column.addLayout(self._demonstration_row)
+        self.column.addWidget(self._key_title)
+        self.column.addWidget(self._key_lead)
+        self.column.addWidget(self._second)
+
+    def _connect(self) -> None:
+        self.make.clicked.connect(self._on_make)
+        self.demonstration.clicked.connect(self.demonstration_wished)
+        self.print.clicked.connect(self._on_print)
+        self.save.clicked.connect(self._on_save)
+        self.go.clicked.connect(self._on_go)
+        self.typed.line_edit.returnPressed.connect(self._on_go)
+        self.typed.edited.connect(self._on_typed)
+        for field in (self.code, self.name, self.passphrase, self.again):
+            field.edited.connect(self._on_edited)
+            field.line_edit.returnPressed.connect(self._on_make)
+        self._look.changed.connect(self._on_look_changed)
+
+    def _show(self) -> None:
+        has_key = bool(self._key)
+        for part in (self._title, self._lead, self._first, self.demonstration):
+            part.setVisible(not has_key)
+        for part in (self._key_title, self._key_lead, self._second):
+            part.setVisible(has_key)
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+
+    def _on_edited(self, _text: str) -> None:
+        for field in (self.code, self.name, self.passphrase, self.again):
+            field.set_wrong("")
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+
+    def _on_make(self) -> None:
+        code = self.code.text.strip()
+        wrong: list[tuple[Field, str]] = []
+        if not code.isalnum() or len(code) > LONGEST_CODE:
+            wrong.append((self.code, tr("Type 1 to {most} letters and figures.").format(most=LONGEST_CODE)))
+        if not self.name.text.strip():
+            wrong.append((self.name, tr("Type your name.")))
+        if len(self.passphrase.text.strip()) < self._shortest:
+            short = tr("{shortest} letters or more are needed. Take a few words.").format(shortest=self._shortest)
+            wrong.append((self.passphrase, short))
+        elif self.passphrase.text != self.again.text:
+            wrong.append((self.again, tr("The two are not the same. Type the second one again.")))
+        for field, sentence in wrong:
+            field.set_wrong(sentence)
+        if wrong:
+            wrong[0][0].setFocus()
+        elif self.make.isEnabled():
+            self.made.emit(code, self.name.text.strip(), self.passphrase.text)
+
+    def _on_print(self) -> None:
+        self.print_wished.emit(self._key)
+
+    def _on_save(self) -> None:
+        self.save_wished.emit(self._key)
+
+    def _on_typed(self, _text: str) -> None:
+        self.typed.set_wrong("")
+
+    def _on_go(self) -> None:
+        if not self._is_same_key(self.typed.text, self._key):
+            self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
+            self.typed.setFocus()
+            return
+        self._key = ""
+        self._key_words.setText("")
+        self.typed.set_text("")
+        self.done.emit()
+
+    def _on_look_changed(self) -> None:
+        self._keep_row.setSpacing(self._look.theme.px(12))

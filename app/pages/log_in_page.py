@@ -1,0 +1,266 @@
+"""Who are you? The passphrase of a library, at the start and when nobody was here for a while.
+
+As a cover it stands alone in the window and shows nothing of a patient, and whether a recording goes on.
+"""
+
+import math
+from collections.abc import Sequence
+
+from PySide6.QtCore import QTimer, Signal
+from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
+
+from app.pages.entry import EntryPage
+from app.pages.passphrase_strength import strength_in_words
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.field import Field
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.toggle import Toggle
+from app.wording import tr
+
+SECOND_MS = 1000
+
+
+class LogInPage(EntryPage):
+    opened = Signal(str, str, bool)  # operator, passphrase, whether this computer is to remember it
+    recovered = Signal(str, str, str)  # operator, recovery key, new passphrase
+    remembered = Signal(str)  # operator, whom this computer remembers
+    left = Signal()  # another operator, from the cover
+    demonstration_wished = Signal()
+
+    def __init__(self, look: Look, shortest: int) -> None:
+        super().__init__(look)
+        self._shortest, self._left_s = shortest, 0.0
+        self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False
+        self._remembered: tuple[str, ...] = ()
+        self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)
+        self._recording = QWidget()
+        self._recording_words = Text(look, tr("Recording goes on"), size=20, weight=SEMIBOLD, wraps=True)
+        self.operator_label = Text(look, tr("Operator"), weight=MEDIUM)
+        self.operator = Choice(look, tr("Operator"))
+        self.recovery_key = Field(look, tr("Recovery key"), is_code=True)
+        self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
+        self.new_passphrase = Field(look, tr("New passphrase"), is_secret=True)
+        self.again = Field(look, tr("New passphrase again"), is_secret=True)
+        self._strength = Text(look, tone="ink2", wraps=True)
+        self.remember = Toggle(look, tr("Remember on this computer"), "", is_on=False)
+        self.go = Button(look, tr("Open"), Kind.PRIMARY, None, tr("Enter"))
+        self.use_remembered = Button(look, tr("Open with this computer's keyring"), Kind.SECONDARY)
+        self.use_recovery = Button(look, tr("Use the recovery key"), Kind.QUIET, height=44)
+        self.leave = Button(look, tr("Another operator"), Kind.QUIET, height=44)
+        self.demonstration = Button(look, tr("Open demonstration"), Kind.QUIET, Icon.PLAY, height=44)
+        self._second = QTimer(self)
+        self._second.setInterval(SECOND_MS)
+        self._build()
+        self._connect()
+        self._show()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [
+            self.operator,
+            self.recovery_key.line_edit,
+            self.passphrase.line_edit,
+            self.new_passphrase.line_edit,
+            self.again.line_edit,
+            self.remember,
+            self.go,
+            self.use_remembered,
+            self.use_recovery,
+            self.leave,
+            self.demonstration,
+        ]
+
+    @property
+    def _fields(self) -> list[Field]:
+        return [self.recovery_key, self.passphrase, self.new_passphrase, self.again]
+
+    @property
+    def code(self) -> str:
+        return str(self.operator.currentData() or "")
+
+    def show_operators(
+        self, codes: Sequence[str], remembered: Sequence[str] = (), latest: str = "", *, can_remember: bool = False
+    ) -> None:
+        """Show who may log in, and whom this computer remembers."""
+        self._remembered, self._can_remember = tuple(remembered), can_remember
+        self.operator.clear()
+        for code in codes:
+            self.operator.addItem(code, code)
+        self.operator.setCurrentIndex(max(self.operator.findData(latest), 0))
+        self._is_cover = self._is_recovering = False
+        self._show()
+
+    def show_cover(self, code: str, is_recording: bool) -> None:
+        """Cover the window until the passphrase of the operator who is logged in is typed."""
+        self.show_operators((code,))
+        self._is_cover = True
+        self.forget_typed()
+        self.show_recording(is_recording)
+
+    def show_recording(self, is_recording: bool) -> None:
+        self._is_recording = is_recording
+        self._show()
+
+    def show_busy(self, is_busy: bool) -> None:
+        """Say that the passphrase is being tried; that takes a moment on purpose."""
+        self._is_busy = is_busy
+        self._show()
+
+    def refuse(self, sentence: str, left_s: float = 0.0) -> None:
+        """Say why it does not open, and for how long no other try is taken."""
+        self._left_s = left_s
+        field = self.recovery_key if self._is_recovering else self.passphrase
+        field.set_wrong(sentence)
+        self._is_busy = False
+        if left_s > 0:
+            self._second.start()
+        self._show()
+        self.focus()
+        self.passphrase.line_edit.selectAll()
+
+    def forget_typed(self) -> None:
+        """Keep nothing of what was typed."""
+        for field in self._fields:
+            field.set_text("")
+            field.set_wrong("")
+        self._second.stop()
+        self._left_s, self._is_busy = 0.0, False
+        self._show()
+
+    def focus(self) -> None:
+        (self.recovery_key if self._is_recovering else self.passphrase).setFocus()
+
+    def _build(self) -> None:
+        row = QHBoxLayout(self._recording)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(IconMark(self._look, Icon.RECORDING, 24))
+        row.addWidget(self._recording_words, 1)
+        self._card = Card(self._look, padding=24, spacing=16)
+        who = QVBoxLayout()
+        who.addWidget(self.operator_label)
+        who.addWidget(self.operator)
+        self._who = who
+        self._card.column.addLayout(who)
+        self._card.column.addWidget(self.recovery_key)
+        self._card.column.addWidget(self.passphrase)
+        self._card.column.addWidget(self.new_passphrase)
+        self._card.column.addWidget(self._strength)
+        self._card.column.addWidget(self.again)
+        self._card.column.addWidget(self.remember)
+        self._card.column.addWidget(self.go)
+        self._card.column.addWidget(self.use_remembered)
+        self._quiet = QVBoxLayout()
+        for button in (self.use_recovery, self.leave, self.demonstration):
+            line = QHBoxLayout()
+            line.addWidget(button)
+            line.addStretch(1)
+            self._quiet.addLayout(line)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self._recording)
+        self.column.addWidget(self._card)
+        self.column.addLayout(self._quiet)
+
+    def _connect(self) -> None:
+        self.go.clicked.connect(self._on_go)
+        for field in self._fields:
+            field.line_edit.returnPressed.connect(self._on_go)
+            field.edited.connect(self._on_edited)
+        self.use_remembered.clicked.connect(self._on_remembered)
+        self.use_recovery.clicked.connect(self._on_use_recovery)
+        self.leave.clicked.connect(self.left)
+        self.demonstration.clicked.connect(self.demonstration_wished)
+        self.operator.currentIndexChanged.connect(self._on_operator_changed)
+        self._second.timeout.connect(self._on_second)
+        self._look.changed.connect(self._on_look_changed)
+
+    def _show(self) -> None:
+        is_recovering = self._is_recovering
+        if self._is_cover:
+            self._title.setText(tr("Locked, because nobody worked here for five minutes"))
+        else:
+            self._title.setText(tr("A new passphrase") if is_recovering else tr("Log in"))
+        self._recording.setVisible(self._is_cover and self._is_recording)
+        has_choice = self.operator.count() > 1 or self._is_cover
+        self.operator_label.setVisible(has_choice)
+        self.operator.setVisible(has_choice)
+        self.operator.setEnabled(self.operator.count() > 1)
+        self.recovery_key.setVisible(is_recovering)
+        self.passphrase.setVisible(not is_recovering)
+        self.new_passphrase.setVisible(is_recovering)
+        self._strength.setVisible(is_recovering)
+        self.again.setVisible(is_recovering)
+        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest))
+        is_remembered = self.code in self._remembered
+        self.remember.setVisible(self._can_remember and not is_recovering and not is_remembered and not self._is_cover)
+        self.use_remembered.setVisible(is_remembered and not is_recovering and not self._is_cover)
+        self.use_recovery.setText(tr("Use the passphrase") if is_recovering else tr("Use the recovery key"))
+        self.use_recovery.setVisible(not self._is_cover)
+        self.demonstration.setVisible(not self._is_cover)
+        self.leave.setVisible(self._is_cover and not self._is_recording)
+        self._show_go()
+
+    def _show_go(self) -> None:
+        self.go.setEnabled(not self._is_busy and self._left_s <= 0)
+        words = tr("Open")
+        if self._is_cover:
+            words = tr("Go on")
+        if self._is_recovering:
+            words = tr("Set the passphrase and open")
+        if self._is_busy:
+            words = tr("Opening")
+        if self._left_s > 0:
+            words = tr("Next try in {seconds} s").format(seconds=math.ceil(self._left_s))
+        self.go.setText(words)
+        self.go.setAccessibleName(words)
+        self.go.updateGeometry()
+        self.go.update()
+
+    def _on_go(self) -> None:
+        if not self.go.isEnabled():
+            return
+        if not self._is_recovering:
+            if not self.passphrase.text:
+                self.passphrase.set_wrong(tr("Type the passphrase."))
+                return
+            self.opened.emit(
+                self.code, self.passphrase.text, not self.remember.isHidden() and self.remember.isChecked()
+            )
+            return
+        if len(self.new_passphrase.text.strip()) < self._shortest:
+            self.new_passphrase.set_wrong(strength_in_words(self.new_passphrase.text or "-", self._shortest))
+        elif self.new_passphrase.text != self.again.text:
+            self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+        else:
+            self.recovered.emit(self.code, self.recovery_key.text, self.new_passphrase.text)
+
+    def _on_edited(self, _text: str) -> None:
+        for field in self._fields:
+            field.set_wrong("")
+        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest))
+
+    def _on_remembered(self) -> None:
+        self.remembered.emit(self.code)
+
+    def _on_use_recovery(self) -> None:
+        self._is_recovering = not self._is_recovering
+        self.forget_typed()
+        self.focus()
+
+    def _on_operator_changed(self, _index: int) -> None:
+        self._show()
+
+    def _on_second(self) -> None:
+        self._left_s = max(0.0, self._left_s - SECOND_MS / 1000)
+        if self._left_s == 0:
+            self._second.stop()
+        self._show_go()
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._who.setSpacing(px(6))
+        self._quiet.setSpacing(px(4))
