@@ -459,7 +459,8 @@ class _Row(QAbstractButton):
         return width - px(13) - round(self._cap().width()) - px(8) if self._key else width
 
     def _title_font(self) -> QFont:
-        return self._look.theme.font(15, SEMIBOLD if self.is_current else MEDIUM)
+        size = 15 if self._is_step and self._row.icon is None else 14
+        return self._look.theme.font(size, SEMIBOLD if self.is_current else MEDIUM)
 
     def _heights(self) -> tuple[int, int]:
         """Give the heights of title and note in the lines they take."""

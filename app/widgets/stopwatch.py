@@ -1,0 +1,106 @@
+"""How long has this session taken? The time since it began, and a line that grows to the target; never an alarm."""
+
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.theme import Look
+from app.widgets.action_bar import clock_time
+from app.widgets.painted_text import RIGHT, PaintedText
+from app.widgets.text import SEMIBOLD
+from app.wording import tr
+
+TARGET_S = 300  # from the first sensor to the first stride
+LINE = 96
+THICK = 5
+
+
+class Stopwatch(QWidget):
+    """Passive: it shows what it is told."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_compact, self._elapsed_s = look, False, 0
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self._on_look_changed)
+        self.show_elapsed(0.0)
+
+    def show_elapsed(self, elapsed_s: float) -> None:
+        if self.accessibleName() and int(elapsed_s) == self._elapsed_s:
+            return
+        self._elapsed_s = int(max(elapsed_s, 0.0))
+        self.setAccessibleName(f"{clock_time(self._elapsed_s)}, {self._words()}")
+        self.update()
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Leave the line away; its words stay."""
+        self._is_compact = is_compact
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        words, time = self._columns()
+        return QSize(words + px(16) + time, px(40))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def painted_texts(self) -> list[PaintedText]:
+        """Give what is painted now, each in its box."""
+        theme = self._look.theme
+        words, time = self._columns()
+        height = self.height() if self._is_compact else theme.px(18)
+        top = 0 if self._is_compact else (self.height() - theme.px(18 + 6 + THICK)) / 2
+        return [
+            PaintedText(self._words(), QRectF(0, top, words, height), theme.font(12), "ink2", RIGHT),
+            PaintedText(
+                clock_time(self._elapsed_s),
+                QRectF(self.width() - time, 0, time, self.height()),
+                theme.font(self._time_size(), SEMIBOLD),
+                align=RIGHT,
+            ),
+        ]
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        texts = self.painted_texts()
+        for text in texts:
+            text.paint(painter, c)
+        if self._is_compact:
+            return
+        words = texts[0].box
+        line = QRectF(words.right() - px(LINE), words.bottom() + px(4), px(LINE), px(THICK))
+        painter.setPen(Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(c.track))
+        painter.drawRoundedRect(line, line.height() / 2, line.height() / 2)
+        share = min(self._elapsed_s / TARGET_S, 1.0)
+        line.setWidth(max(share * line.width(), line.height()))
+        painter.setBrush(QColor(c.ink))
+        painter.drawRoundedRect(line, line.height() / 2, line.height() / 2)
+
+    def _words(self) -> str:
+        minutes = TARGET_S // 60
+        if self._elapsed_s > TARGET_S:
+            return tr("{minutes} min target passed").format(minutes=minutes)
+        return tr("of {minutes} min target").format(minutes=minutes)
+
+    def _time_size(self) -> int:
+        return 22 if self._is_compact else 26
+
+    def _columns(self) -> tuple[int, int]:
+        """Give the widths of words and time, from all they may say: the header must not shift."""
+        theme = self._look.theme
+        minutes = TARGET_S // 60
+        small = QFontMetrics(theme.font(12))
+        said = [tr("{minutes} min target passed"), tr("of {minutes} min target")]
+        widest = max(small.horizontalAdvance(words.format(minutes=minutes)) for words in said)
+        large = QFontMetrics(theme.font(self._time_size(), SEMIBOLD))
+        time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock_time(self._elapsed_s)))
+        return max(widest + theme.px(2), theme.px(LINE)), time + theme.px(2)
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()

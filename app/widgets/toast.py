@@ -1,0 +1,111 @@
+"""What was just done and can be undone. It goes by itself, but not while somebody reaches for it."""
+
+from PySide6.QtCore import QEvent, QRectF, QTimer, Signal
+from PySide6.QtGui import (
+    QAccessible,
+    QAccessibleAnnouncementEvent,
+    QColor,
+    QEnterEvent,
+    QHideEvent,
+    QPainter,
+    QPaintEvent,
+)
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.action_bar import Verb, VerbButton
+from app.widgets.button import Kind
+from app.widgets.text import Text
+from app.wording import tr
+
+WIDTH = 320
+HEIGHT = 56
+STAYS_MS = 6000
+
+
+class Toast(QWidget):
+    """Hidden until it has something to offer. The shell places it and knows its key."""
+
+    undone = Signal()
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+        self._text = Text(look, tone="inv_ink", wraps=True)
+        self.button = VerbButton(look, self)
+        self._clock = QTimer(self)
+        self._clock.setSingleShot(True)
+        self._clock.setInterval(STAYS_MS)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(self._text, 1)
+        self._row.addWidget(self.button)
+        self._clock.timeout.connect(self._on_timeout)
+        self.button.clicked.connect(self.undo)
+        look.changed.connect(self._on_look_changed)
+        self.hide()
+        self._on_look_changed()
+
+    @property
+    def text(self) -> str:
+        return self._text.text()
+
+    def offer(self, what: str) -> None:
+        """Say what was done; what was said before can no longer be undone from here."""
+        self._text.setText(what)
+        self.button.show_verb(Verb(tr("Undo"), tr("Ctrl Z")), Kind.QUIET, is_inverse=True)
+        self.setAccessibleName(what)
+        self._fit()
+        self.show()
+        self.raise_()
+        if not self.underMouse():
+            self._clock.start()
+        words = tr("{what} Ctrl Z takes it back.").format(what=what)
+        QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, words))
+
+    def undo(self) -> None:
+        """Ask for what is offered to be taken back, if it still is."""
+        if self.isVisible():
+            self.hide()
+            self.undone.emit()
+
+    def enterEvent(self, event: QEnterEvent) -> None:
+        super().enterEvent(event)
+        self._clock.stop()
+
+    def leaveEvent(self, event: QEvent) -> None:
+        super().leaveEvent(event)
+        if self.isVisible():
+            self._clock.start()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        self._clock.stop()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.surface, 1))  # so that it stands out on the inverse bar too
+        painter.setBrush(QColor(theme.colours.inv))
+        radius = CONTROL_RADIUS * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+
+    def _on_timeout(self) -> None:
+        if self.button.hasFocus():
+            self._clock.start()  # who has come to it by Tab is about to press it
+        else:
+            self.hide()
+
+    def _fit(self) -> None:
+        px = self._look.theme.px
+        width = max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32))
+        room = width - self.button.sizeHint().width() - px(16 + 12 + 4)
+        self.setFixedSize(width, max(px(HEIGHT), self._text.heightForWidth(room) + px(16)))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(16), px(4), px(4), px(4))
+        self._row.setSpacing(px(12))
+        self._fit()
+        self.update()
