@@ -74,6 +74,10 @@ class IconMark(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         look.changed.connect(self._on_look_changed)
 
+    def set_icon(self, icon: Icon) -> None:
+        self._icon = icon
+        self.update()
+
     def sizeHint(self) -> QSize:
         side = self._look.theme.px(self._size)
         return QSize(side, side)
