@@ -1,6 +1,5 @@
 """What can sensors be heard through? The simulated patient and stored sessions; ports come with their drivers."""
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -8,7 +7,7 @@ from app.wizard.worn_sensors import SourceChoice
 from app.wording import tr
 
 if TYPE_CHECKING:
-    from devices.live import LiveSource
+    from app.acquisition.acquisition import Acquisition
 
 DEMONSTRATION = "demonstration"
 
@@ -21,16 +20,18 @@ def choices() -> tuple[SourceChoice, ...]:
 def replay_of(folder: Path) -> SourceChoice:
     """A session folder, played as if it were measured now."""
 
-    def make() -> "Sequence[LiveSource]":
+    def make() -> "Acquisition":
+        from app.acquisition.acquisition import Acquisition
         from devices.files.session_folder import read_session
         from devices.replay import ReplaySource
 
-        return [ReplaySource(read_session(folder))]
+        return Acquisition([ReplaySource(read_session(folder), name=folder.name)])
 
     return SourceChoice(f"replay {folder}", tr("Replay of {name}").format(name=folder.name), make, is_simulated=True)
 
 
-def _demonstration() -> "Sequence[LiveSource]":
+def _demonstration() -> "Acquisition":
+    from app.acquisition.acquisition import Acquisition
     from devices.replay import demonstration
 
-    return [demonstration()]
+    return Acquisition([demonstration()])

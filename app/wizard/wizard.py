@@ -1,5 +1,6 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -313,7 +314,7 @@ _STRIP = {
 }
 
 
-def _tile(site: Site, sensor: str | None, status: "dict[str, SensorStatus]") -> SensorTile:
+def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]") -> SensorTile:
     if sensor is None or sensor not in status:
         return SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
     heard = status[sensor]

@@ -2,7 +2,7 @@
 
 import logging
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -16,21 +16,20 @@ from devices.live import SourceRefusedError
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition, SensorStatus
     from app.storage.stored import PlacedSensor
-    from devices.live import LiveSource
 
 _log = logging.getLogger(__name__)
 
 
 @dataclass(frozen=True, slots=True)
 class SourceChoice:
-    """Something that sensors can be heard through. `make` may take a second: it is called beside the screen.
+    """Something that sensors can be heard through. `make` may take seconds: it is called beside the screen.
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
     """
 
     key: str
     name: str
-    make: Callable[[], "Sequence[LiveSource]"]
+    make: Callable[[], "Acquisition"]
     is_simulated: bool = False
 
 
@@ -171,10 +170,8 @@ class WornSensors(QObject):
 
 def _opening(choice: SourceChoice) -> Work:
     def work(report: Report) -> object:
-        from app.acquisition.acquisition import Acquisition
-
         report(0.0, choice.name)
-        acquisition = Acquisition(choice.make())
+        acquisition = choice.make()
         acquisition.start()
         try:
             report(1.0, choice.name)  # raises where nobody waits any more

@@ -1,0 +1,143 @@
+from dataclasses import replace
+
+import numpy as np
+from pytestqt.qtbot import QtBot
+
+from app.wizard.takes import Take
+from app.wizard.visit import Visit
+from app.workers.library_desk import LibraryDesk
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.samples import Patient, RecordingKind
+from tests.app.wizard.conftest import SPEED
+
+
+def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    visit.patient.edit(Patient(code="DEMO-7", birth_year=1970))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    with qtbot.waitSignal(visit.changed):
+        visit.begin_session()
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        visit.sensors.search(visit.choices[0])
+    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
+    visit.sensors.assign_all(worn)
+    with qtbot.waitSignal(visit.changed):
+        visit.place_sensors()
+
+
+def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> Take:
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    acquisition.ask(kind)
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        visit.takes.begin(acquisition, kind, condition)
+    qtbot.wait(round(seconds / SPEED * 1000))
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000) as ended:
+        visit.takes.stop()
+    take = ended.args[0]
+    assert isinstance(take, Take)
+    return take
+
+
+def test_whole_session_is_evaluated_and_stored(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+) -> None:
+    begin(qtbot, visit, worn)
+    record(qtbot, visit, RecordingKind.STANDING, 4.0)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+        record(qtbot, visit, RecordingKind.FREE_MOTION, 14.0)
+    assert set(visit.evaluation.calibration) == set(Joint)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+        walk = record(qtbot, visit, RecordingKind.WALKING, 18.0, "barefoot")
+    assert walk.told.condition == "barefoot"
+    assert not walk.is_decided
+    assert visit.evaluation.strides("walk 1")[Side.LEFT] >= 10
+    assert visit.is_simulated
+
+    stored = visit.session
+    assert stored is not None
+    again = Visit(desk, [])
+    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
+        again.resume(stored.id)
+    assert [take.told.name for take in again.takes.every] == ["standing", "free motion", "walk 1"]
+    assert set(again.rests) == set(worn)
+    one, other = visit.evaluation.analysis, again.evaluation.analysis
+    assert one is not None
+    assert other is not None
+    for before, after in zip(one.recordings, other.recordings, strict=True):
+        for joint in before.joints:
+            np.testing.assert_array_equal(before.joints[joint].angle_rad, after.joints[joint].angle_rad)
+    assert again.evaluation.session is not None
+    assert analyse(again.evaluation.session).findings == other.findings
+    again.finish()
+
+
+def test_discarded_walk_is_not_evaluated_and_comes_back(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    begin(qtbot, visit, worn)
+    walk = record(qtbot, visit, RecordingKind.WALKING, 6.0)
+    with qtbot.waitSignal(visit.takes.changed):
+        visit.takes.keep(walk, is_kept=False)
+    qtbot.waitUntil(lambda: not visit.takes.walks[0].told.is_kept)
+    assert visit.takes.recordings() == ()
+    visit.takes.keep(visit.takes.walks[0], is_kept=True)
+    qtbot.waitUntil(lambda: visit.takes.walks[0].told.is_kept)
+    assert [recording.name for recording in visit.takes.recordings()] == ["walk 1"]
+
+
+def test_code_of_another_patient_is_told(qtbot: QtBot, visit: Visit) -> None:
+    visit.patient.edit(Patient(code="DEMO-1"))
+    with qtbot.waitSignal(visit.patient.code_taken) as told:
+        visit.patient.commit()
+    assert told.args == ["DEMO-1"]
+
+
+def test_patient_is_saved_as_typed(qtbot: QtBot, visit: Visit) -> None:
+    visit.patient.edit(Patient(code="DEMO-8"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    visit.patient.edit(replace(visit.patient.told, height_m=1.7))
+    visit.patient.edit(replace(visit.patient.told, mass_kg=70.0))
+    qtbot.waitUntil(lambda: visit.patient.is_saved)
+    assert visit.patient.stored is not None
+    assert visit.patient.stored.told == Patient(code="DEMO-8", height_m=1.7, mass_kg=70.0)
+
+
+def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    begin(qtbot, visit, worn)
+    visit.set_zero(Joint.LEFT_KNEE, 0.1)
+    visit.set_zero(Joint.LEFT_KNEE, 0.2)
+    visit.set_zero(Joint.RIGHT_KNEE, 0.3)
+    wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
+    assert visit.told.zero_rad == wanted
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.told.zero_rad == wanted)
+
+
+def test_one_sensor_at_one_site(visit: Visit) -> None:
+    sensors = visit.sensors
+    sensors.assign("a", Site.LEFT_THIGH)
+    sensors.assign("b", Site.LEFT_SHANK)
+    sensors.assign("a", Site.LEFT_SHANK)
+    assert sensors.site_of == {"a": Site.LEFT_SHANK, "b": Site.LEFT_THIGH}
+    sensors.assign("c", Site.LEFT_SHANK)
+    assert sensors.site_of == {"c": Site.LEFT_SHANK, "b": Site.LEFT_THIGH}
+
+
+def test_closing_in_mid_walk_loses_nothing(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+) -> None:
+    begin(qtbot, visit, worn)
+    acquisition, session = visit.sensors.acquisition, visit.session
+    assert acquisition is not None
+    assert session is not None
+    with qtbot.waitSignal(visit.takes.begun):
+        visit.takes.begin(acquisition, RecordingKind.WALKING)
+    qtbot.wait(500)
+    visit.close()
+    again = Visit(desk, [])
+    with qtbot.waitSignal(again.resumed, timeout=10_000):
+        again.resume(session.id)
+    (walk,) = again.takes.walks
+    assert walk.recording is not None
+    assert all(np.ptp(block.time_s) > 0.8 * 0.5 * SPEED for block in walk.recording.imu.values())
+    again.finish()
