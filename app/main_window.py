@@ -41,9 +41,10 @@ from app.widgets.header import Header
 from app.widgets.icons import Icon
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
-from app.wording import place
+from app.wording import later, place, side_name, tr
 from app.workers.background import Background, Work
 from app.workers.opening import opening_demonstration, opening_folder
+from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
@@ -60,8 +61,14 @@ NARROW_BELOW = 800
 BAR = 72
 DROP_EDGE = 2.5
 
-STOPPED = ("The analysis was stopped.", "Nothing was changed; open the session again to go on.")
-ENDED_EARLY = ("The analysis ended before it was done.", "The folder is unchanged; the log holds the details.")
+STOPPED = (
+    later("The analysis was stopped."),
+    later("Nothing was changed; open the session again to go on."),
+)
+ENDED_EARLY = (
+    later("The analysis ended before it was done."),
+    later("The folder is unchanged; the log holds the details."),
+)
 
 
 class MainWindow(QWidget):
@@ -99,18 +106,18 @@ class MainWindow(QWidget):
 
     def open_folder(self, folder: Path) -> None:
         """Read and analyse a session folder in the background, and show what comes of it."""
-        self._begin(opening_folder(folder), f"Analysing {folder.name}")
+        self._begin(opening_folder(folder), tr("Analysing {folder}").format(folder=folder.name))
 
     def open_demonstration(self) -> None:
         """Let the simulated patient walk, in the background, and show what comes of it."""
-        self._begin(opening_demonstration(), "Analysing the demonstration")
+        self._begin(opening_demonstration(), tr("Analysing the demonstration"))
 
     def stop(self) -> None:
         """End what is running, and go back to what was there before."""
         if self._background.is_busy:
             self._background.stop()
             self._show_page(self._results or self.empty)
-            self.banner.tell(*STOPPED)
+            self.banner.tell(*map(tr, STOPPED))
 
     def closeEvent(self, event: QCloseEvent) -> None:
         self._background.stop()
@@ -175,7 +182,7 @@ class MainWindow(QWidget):
         for keys, slot in (
             (QKeySequence.StandardKey.Open, self._on_open_folder),
             ("Ctrl+D", self.open_demonstration),
-            ("Esc", self.stop),
+            (Qt.Key.Key_Escape, self.stop),
             ("Ctrl++", self._on_larger),
             ("Ctrl+=", self._on_larger),
             ("Ctrl+-", self._on_smaller),
@@ -216,7 +223,7 @@ class MainWindow(QWidget):
         if len(paths) == 1 and paths[0].name == "session.toml":
             paths = [paths[0].parent]
         if len(paths) != 1 or not paths[0].is_dir():
-            self.banner.tell("This is not one folder.", "Drop the folder that holds session.toml.")
+            self.banner.tell(tr("This is not one folder."), tr("Drop the folder that holds session.toml."))
             return
         self.open_folder(paths[0])
 
@@ -225,7 +232,7 @@ class MainWindow(QWidget):
         self.update()
 
     def _on_open_folder(self) -> None:
-        self._dialog = QFileDialog(self, "Open a session folder")
+        self._dialog = QFileDialog(self, tr("Open a session folder"))
         self._dialog.setFileMode(QFileDialog.FileMode.Directory)
         self._dialog.setOption(QFileDialog.Option.ShowDirsOnly)
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
@@ -250,7 +257,9 @@ class MainWindow(QWidget):
                 self.setTabOrder(before, after)
         session = opened.session
         self._results.show_analysis(opened.analysis)
-        self.header.show_session(session.patient.code or "No code", _in_words(session.patient), session.is_simulated)
+        self.header.show_session(
+            session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
+        )
         self._show_page(self._results)
 
     def _on_failed(self, error: Exception) -> None:
@@ -259,7 +268,7 @@ class MainWindow(QWidget):
             self.banner.tell(f"{error.where}: {error.what}.", f"{error.remedy}.")
         else:
             _log.error("the analysis ended early", exc_info=error)
-            self.banner.tell(*ENDED_EARLY)
+            self.banner.tell(*map(tr, ENDED_EARLY))
 
     def _on_larger(self) -> None:
         self._look.grow(1)
@@ -296,9 +305,9 @@ class _ActionBar(QWidget):
         super().__init__()
         self._look, self._is_narrow = look, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.open_folder = Button(look, "Open a session folder", Kind.SECONDARY, Icon.FOLDER, "Ctrl O")
-        self.open_demonstration = Button(look, "Open the demonstration", Kind.QUIET, Icon.PLAY, "Ctrl D")
-        self._purpose = Text(look, "Research use. Not a medical device.", size=12, tone="ink2", wraps=True)
+        self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
+        self._purpose = Text(look, tr("Research use. Not a medical device."), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.open_folder)
@@ -333,10 +342,15 @@ def _in_words(patient: "Patient") -> str:
     person = ", ".join(filter(None, [str(patient.birth_year or ""), patient.sex]))
     side = ""
     if patient.prosthetic_side and patient.prosthetic_side != "none":
-        side = f"{patient.prosthetic_side} prosthetic"
+        side = tr("{side} prosthetic").format(side=_side_in_words(patient.prosthetic_side))
     elif patient.affected_side and patient.affected_side != "none":
-        side = f"{patient.affected_side} affected"
+        side = tr("{side} affected").format(side=_side_in_words(patient.affected_side))
     return " · ".join(filter(None, [person, side, patient.device]))
+
+
+def _side_in_words(side: str) -> str:
+    """Name a side as a session's file does, which also knows "both"."""
+    return side_name(Side(side)) if side in set(Side) else tr("both")
 
 
 def open_window(argv: list[str]) -> int:

@@ -9,9 +9,10 @@ To add a finding's message, add its key to `SENTENCES`: the figures in braces ar
 
 import gettext
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Finding
 
 DOMAIN = "gaitwright"
@@ -278,8 +279,7 @@ def sentence(finding: Finding) -> str:
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
         figures = ", ".join(f"{name} {value}" for name, value in known.items())
         said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
-    text = f"{place(finding.where)}: {said}" if finding.where not in ("", WHOLE_SESSION) else said
-    return text[0].upper() + text[1:]
+    return capitalised(f"{place(finding.where)}: {said}" if finding.where not in ("", WHOLE_SESSION) else said)
 
 
 def name_of(part: Site | Joint) -> str:
@@ -299,12 +299,29 @@ def name_of(part: Site | Joint) -> str:
     return names[part]
 
 
+def side_name(side: Side) -> str:
+    """Name a side inside a sentence: "left"."""
+    return tr("left") if side is Side.LEFT else tr("right")
+
+
 def place(where: str) -> str:
     """Put a finding's `where` into words, the part of the body before the recording: "L thigh and L shank, walk 1"."""
     names = [name for name in where.split(", ") if name]
     parts = [name_of(part) for name in names if (part := _part(name)) is not None]
     others = [name for name in names if _part(name) is None]
-    return ", ".join(filter(None, [_joined(parts), *others]))
+    return ", ".join(filter(None, [joined(parts), *others]))
+
+
+def capitalised(text: str) -> str:
+    """Begin as a sentence begins; the rest keeps its letters, as a sensor's name must."""
+    return text[:1].upper() + text[1:]
+
+
+def joined(names: Sequence[str]) -> str:
+    """Put names into a row as a sentence has them: "L thigh, L shank and R foot"."""
+    if len(names) < 2:
+        return "".join(names)
+    return tr("{first} and {last}").format(first=", ".join(names[:-1]), last=names[-1])
 
 
 def _is_known(value: float | int | str) -> bool:
@@ -324,9 +341,3 @@ def _part(name: str) -> Site | Joint | None:
     if name in set(Site):
         return Site(name)
     return Joint(name) if name in set(Joint) else None
-
-
-def _joined(names: list[str]) -> str:
-    if len(names) < 2:
-        return "".join(names)
-    return tr("{first} and {last}").format(first=", ".join(names[:-1]), last=names[-1])

@@ -4,6 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from app.wording import capitalised, name_of, tr
+from core.body import Joint, Side, ankle_of, knee_of
 from core.samples import FloatArray
 
 KNEE_DEG = (-10.0, 80.0)
@@ -24,3 +26,30 @@ def range_for(fixed_deg: tuple[float, float], curves: Iterable[FloatArray]) -> t
 
 def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
     return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")
+
+
+def joint_of(side: Side, is_knee: bool) -> Joint:
+    return knee_of(side) if is_knee else ankle_of(side)
+
+
+def part_in_words(side: Side, is_knee: bool) -> str:
+    """Name a joint where a sentence begins: "Left knee"."""
+    return capitalised(name_of(joint_of(side, is_knee)))
+
+
+def title_in_words(is_knee: bool) -> str:
+    return tr("Knee") if is_knee else tr("Ankle")
+
+
+def sign_in_words(is_knee: bool) -> str:
+    return tr("flexion + (°)") if is_knee else tr("dorsiflexion + (°)")
+
+
+def nothing_in_words(is_knee: bool) -> str:
+    return tr("No knee angles.") if is_knee else tr("No ankle angles.")
+
+
+def range_in_words(range_deg: tuple[float, float]) -> str:
+    """Say that an axis is not the one that everybody else's curves are read on."""
+    lowest, highest = (degrees_in_words(end, 0) for end in range_deg)
+    return tr("Axis widened: {lowest} to {highest}.").format(lowest=lowest, highest=highest)

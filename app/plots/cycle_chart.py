@@ -12,13 +12,25 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.plots.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, degrees_in_words, range_for
+from app.plots.axes import (
+    ANKLE_DEG,
+    AXIS_WIDTH,
+    KNEE_DEG,
+    degrees_in_words,
+    nothing_in_words,
+    part_in_words,
+    range_for,
+    range_in_words,
+    sign_in_words,
+    title_in_words,
+)
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_ZERO, SideCycle, is_mean_enough, is_spread_enough
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import joined, later, tr
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.norms import ReferenceCurves
@@ -34,11 +46,11 @@ TICK_PERCENT = 20
 MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 1.0, 1.5
 STRIDE_ALPHA = 0.7
 DOUBTS = {
-    NO_ZERO: "no zero. Range and shape hold, height does not.",
-    MAY_BE_MIRRORED: "sign unsure. The curve may be upside down.",
+    NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
+    MAY_BE_MIRRORED: later("{sides}: sign unsure. The curve may be upside down."),
 }
 SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
-SIMULATED = "SIMULATED"
+SIMULATED = later("SIMULATED")
 PERCENT = np.arange(POINTS, dtype=np.float64)
 
 
@@ -59,8 +71,8 @@ class CycleCharts(QWidget):
         knee, ankle = CycleChart(look, KNEE_DEG), CycleChart(look, ANKLE_DEG)
         knee.band = Band(reference.knee_mean_deg, reference.knee_sd_deg)
         ankle.band = Band(reference.ankle_mean_deg, reference.ankle_sd_deg)
-        self.knee = CycleFrame(look, "Knee", "flexion + (°)", knee)
-        self.ankle = CycleFrame(look, "Ankle", "dorsiflexion + (°)", ankle)
+        self.knee = CycleFrame(look, knee, is_knee=True)
+        self.ankle = CycleFrame(look, ankle, is_knee=False)
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
         self._box.setContentsMargins(0, 0, 0, 0)
         for frame in self.frames:
@@ -102,8 +114,8 @@ class CycleCharts(QWidget):
 class CycleFrame(Card):
     """A chart with its title, its sign in words, the key to its curves and what must be known to read them."""
 
-    def __init__(self, look: Look, name: str, sign: str, chart: "CycleChart") -> None:
-        self._name = name
+    def __init__(self, look: Look, chart: "CycleChart", is_knee: bool) -> None:
+        self._is_knee = is_knee
         self.chart = chart
         self._keys = {side: SideKey(look, side) for side in Side}
         self._mark = IconMark(look, Icon.WARNING, size=18)
@@ -112,8 +124,8 @@ class CycleFrame(Card):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QHBoxLayout()
         head.setSpacing(8)
-        head.addWidget(Text(look, name, size=16, weight=SEMIBOLD))
-        head.addWidget(Text(look, sign, size=12, tone="ink2"))
+        head.addWidget(Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD))
+        head.addWidget(Text(look, sign_in_words(is_knee), size=12, tone="ink2"))
         head.addStretch(1)
         for side in Side:
             head.addWidget(self._keys[side])
@@ -136,39 +148,48 @@ class CycleFrame(Card):
         self._note.setText(" ".join(self._notes(cycles, doubts)))
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
-        self.chart.setAccessibleName(f"{self._name} over one stride")
+        self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self._is_knee)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def in_words(self) -> str:
         """Say each side's mean curve, for who cannot see it."""
-        said = ["Simulated."] if self.chart.is_simulated else []
+        said = [tr("Simulated.")] if self.chart.is_simulated else []
         for side, cycle in self.chart.cycles.items():
-            part = f"{side.capitalize()} {self._name.lower()}"
+            part = part_in_words(side, self._is_knee)
             if not cycle.mean.n:
-                said.append(f"{part} has no usable stride.")
+                said.append(tr("{part} has no usable stride.").format(part=part))
                 continue
             lowest, highest = np.min(cycle.mean.mean), np.max(cycle.mean.mean)
+            told = tr(
+                "{part}, mean of {count}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %, "
+                "toe-off at {toe_off_percent:.0f} %."
+            )
             said.append(
-                f"{part}, mean of {cycle.mean.n}: {degrees_in_words(lowest)} at {np.argmin(cycle.mean.mean)} % to "
-                f"{degrees_in_words(highest)} at {np.argmax(cycle.mean.mean)} %, toe-off at "
-                f"{cycle.toe_off_percent:.0f} %."
+                told.format(
+                    part=part,
+                    count=cycle.mean.n,
+                    lowest=degrees_in_words(lowest),
+                    lowest_percent=np.argmin(cycle.mean.mean),
+                    highest=degrees_in_words(highest),
+                    highest_percent=np.argmax(cycle.mean.mean),
+                    toe_off_percent=cycle.toe_off_percent,
+                )
             )
         said += [self.note] if self.note else []
-        return " ".join(said) or f"No {self._name.lower()} angles."
+        return " ".join(said) or nothing_in_words(self._is_knee)
 
     def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
         notes = []
         for why, what in DOUBTS.items():
             sides = [LETTERS[side] for side in doubts if doubts[side] == why]
-            notes += [f"{' and '.join(sides)}: {what}"] if sides else []
+            notes += [tr(what).format(sides=joined(sides))] if sides else []
         if not cycles:
-            notes.append(f"No {self._name.lower()} angles.")
+            notes.append(nothing_in_words(self._is_knee))
         empty = [LETTERS[side] for side, cycle in cycles.items() if not cycle.mean.n]
         if empty:
-            notes.append(f"{' and '.join(empty)}: no usable stride.")
+            notes.append(tr("{sides}: no usable stride.").format(sides=joined(empty)))
         if self.chart.is_widened:
-            lowest, highest = self.chart.range_deg
-            notes.append(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}.")
+            notes.append(range_in_words(self.chart.range_deg))
         return notes
 
 
@@ -212,9 +233,10 @@ class CycleChart(QWidget):
     def toe_off_labels(self) -> dict[Side, str]:
         """Name each toe-off: the word at the earlier line, which has the room at its left."""
         found = self._toe_offs()
+        labels = [tr("toe-off {side} {percent:.0f} %"), "{side} {percent:.0f} %"]
         return {
-            side: f"{'toe-off ' if i == 0 else ''}{LETTERS[side]} {percent:.0f} %"
-            for i, (side, percent) in enumerate(found)
+            side: label.format(side=LETTERS[side], percent=percent)
+            for label, (side, percent) in zip(labels, found, strict=False)
         }
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -321,10 +343,10 @@ class CycleChart(QWidget):
         metrics = QFontMetrics(theme.font(12, SEMIBOLD))
         labels, lines, least = self.toe_off_labels(), self._toe_offs(), 0.0
         if self.is_simulated:
-            least = metrics.horizontalAdvance(SIMULATED) + theme.px(8)
+            least = metrics.horizontalAdvance(tr(SIMULATED)) + theme.px(8)
             painter.setPen(QColor(theme.colours.ink))
             room = QRectF(0, 0, self.width(), area.top())
-            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, SIMULATED)
+            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, tr(SIMULATED))
         for i, (side, percent) in enumerate(lines):
             x = self.at(percent, 0).x()
             painter.setPen(theme.side_pen(side, TOE_OFF_PX))

@@ -8,19 +8,30 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.plots.angle_chart import AngleChart, Curve
-from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
+from app.plots.axes import (
+    ANKLE_DEG,
+    KNEE_DEG,
+    degrees_in_words,
+    joint_of,
+    nothing_in_words,
+    part_in_words,
+    range_in_words,
+    sign_in_words,
+    title_in_words,
+)
 from app.plots.phase_lanes import PhaseFrame
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from core.body import Joint, Side, ankle_of, knee_of
+from app.wording import later, name_of, tr
+from core.body import Joint, Side
 from core.results import SideGait
 from core.samples import FloatArray, IntArray
 
 ZOOM = 0.6  # what one press of + leaves of the time in sight
-NO_VALUE = "no value"
+NO_VALUE = later("no value")
 NO_GAIT: Mapping[Side, SideGait] = {}
 
 
@@ -38,10 +49,8 @@ class JointCharts(QWidget):
         self._time_s: FloatArray = np.zeros(0)
         self._cursor_s: float | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.knee = ChartFrame(
-            look, "Knee", "flexion + (°)", AngleChart(look, *KNEE_DEG, has_times=False), tells_time=True
-        )
-        self.ankle = ChartFrame(look, "Ankle", "dorsiflexion + (°)", AngleChart(look, *ANKLE_DEG))
+        self.knee = ChartFrame(look, AngleChart(look, *KNEE_DEG, has_times=False), is_knee=True)
+        self.ankle = ChartFrame(look, AngleChart(look, *ANKLE_DEG), is_knee=False)
         self._frames = (self.knee, self.ankle)
         self.phases = PhaseFrame(look)
         self._event_rows: IntArray = np.zeros(0, dtype=np.int64)
@@ -86,7 +95,7 @@ class JointCharts(QWidget):
         self.phases.show_gait(time_s, gait, is_simulated)
         rows = [row for lane in self.phases.lanes.lanes.values() for row in lane.event_rows]
         self._event_rows = np.unique(np.array(rows, dtype=np.int64))
-        self.setAccessibleName(f"Knee and ankle angles of {name}")
+        self.setAccessibleName(tr("Knee and ankle angles of {recording}").format(recording=name))
         for frame in self._frames:
             frame.set_simulated(is_simulated)
             frame.chart.show_curves(time_s, {})
@@ -95,8 +104,9 @@ class JointCharts(QWidget):
 
     def show_joints(self, curves: Mapping[Joint, Curve]) -> None:
         """Draw the joints' curves, all on the time of `show_recording`; the stretch in sight stays."""
-        for frame, joint_of in ((self.knee, knee_of), (self.ankle, ankle_of)):
-            frame.show_curves(self._time_s, {side: curves[joint_of(side)] for side in Side if joint_of(side) in curves})
+        for frame in self._frames:
+            joints = {side: joint_of(side, frame.is_knee) for side in Side}
+            frame.show_curves(self._time_s, {side: curves[joint] for side, joint in joints.items() if joint in curves})
         told = [*(frame.in_words() for frame in self._frames), self.phases.in_words()]
         self.setAccessibleDescription(" ".join(filter(None, told)))
         self._read_at(self._cursor_s)
@@ -201,8 +211,10 @@ class JointCharts(QWidget):
         first, last = self.visible_s
         self.phases.lanes.see(first, last)
         length = self.knee.chart.whole_s[1] - self.knee.chart.whole_s[0]
-        shown = f"{first:.1f} to {last:.1f} s of {length:.1f} s".replace("-", "\N{MINUS SIGN}")
-        self.view_changed.emit(self.is_whole, f"Whole recording, {length:.1f} s" if self.is_whole else shown)
+        said = tr("Whole recording, {whole} s") if self.is_whole else tr("{first} to {last} s of {whole} s")
+        shown = {"first": first, "last": last, "whole": length}
+        times = {name: f"{time_s:.1f}".replace("-", "\N{MINUS SIGN}") for name, time_s in shown.items()}
+        self.view_changed.emit(self.is_whole, said.format_map(times))
 
     def _on_look_changed(self) -> None:
         self._column.setSpacing(self._look.theme.px(12))
@@ -211,13 +223,13 @@ class JointCharts(QWidget):
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what stands at the reading line."""
 
-    def __init__(self, look: Look, name: str, sign: str, chart: AngleChart, tells_time: bool = False) -> None:
-        self._name = name
+    def __init__(self, look: Look, chart: AngleChart, is_knee: bool) -> None:
+        self.is_knee = is_knee
         self.chart = chart
         self._is_narrow = False
-        self._title = Text(look, name, size=16, weight=SEMIBOLD)
-        self._sign = Text(look, sign, size=12, tone="ink2")
-        self._simulated = Text(look, "SIMULATED", size=12, weight=SEMIBOLD)
+        self._title = Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD)
+        self._sign = Text(look, sign_in_words(is_knee), size=12, tone="ink2")
+        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._moment = Text(look, size=14, tone="ink2")
         self._keys = {side: SideKey(look, side) for side in Side}
         self._values = {side: Text(look, size=15, weight=SEMIBOLD, tone=f"{side}_text") for side in Side}
@@ -245,7 +257,7 @@ class ChartFrame(Card):
         self._place()
         self.column.addLayout(head)
         self.column.addWidget(chart, 1)
-        self._moment.setVisible(tells_time)
+        self._moment.setVisible(is_knee)  # once is enough, and the knee stands on top
         self._set_widened()
         self._on_look_changed()
 
@@ -263,7 +275,7 @@ class ChartFrame(Card):
             for widget in (self._keys[side], self._values[side]):
                 widget.setVisible(side in curves)
         self._set_widened()
-        self.chart.setAccessibleName(f"{self._name} over time")
+        self.chart.setAccessibleName(tr("{joint} over time").format(joint=title_in_words(self.is_knee)))
         self.chart.setAccessibleDescription(self.in_words())
 
     def read(self, row: int | None, time_s: float | None) -> None:
@@ -277,20 +289,23 @@ class ChartFrame(Card):
 
     def reading_in_words(self) -> str:
         return " ".join(
-            f"{side} {self._name.lower()} {self._values[side].text()}." for side in Side if side in self.chart.curves
+            f"{name_of(joint_of(side, self.is_knee))} {self._values[side].text()}."
+            for side in Side
+            if side in self.chart.curves
         )
 
     def in_words(self) -> str:
         """Say each leg's range, for who cannot see the curves."""
         said = []
         for side, curve in self.chart.curves.items():
-            part = f"{side.capitalize()} {self._name.lower()}"
+            part = part_in_words(side, self.is_knee)
             if np.isfinite(curve.angle_deg).any():
-                lowest, highest = np.nanmin(curve.angle_deg), np.nanmax(curve.angle_deg)
-                said.append(f"{part} from {degrees_in_words(lowest)} to {degrees_in_words(highest)}.")
+                lowest, highest = (degrees_in_words(find(curve.angle_deg)) for find in (np.nanmin, np.nanmax))
+                told = tr("{part} from {lowest} to {highest}.")
+                said.append(told.format(part=part, lowest=lowest, highest=highest))
             else:
-                said.append(f"{part} has no values.")
-        return " ".join(said) or f"No {self._name.lower()} angles."
+                said.append(tr("{part} has no values.").format(part=part))
+        return " ".join(said) or nothing_in_words(self.is_knee)
 
     def _place(self) -> None:
         for part in self._head:
@@ -310,8 +325,7 @@ class ChartFrame(Card):
             label.setMinimumWidth(label.fontMetrics().horizontalAdvance(widest) if label.text() else 0)
 
     def _set_widened(self) -> None:
-        lowest, highest = self.chart.range_deg
-        self._wide.setText(f"Axis widened: {degrees_in_words(lowest, 0)} to {degrees_in_words(highest, 0)}")
+        self._wide.setText(range_in_words(self.chart.range_deg).removesuffix("."))
         self._wide.setVisible(self.chart.is_widened)
         self._wide_mark.setVisible(self.chart.is_widened)
         self._place()
@@ -324,7 +338,7 @@ class ChartFrame(Card):
 def _reading(curve: Curve, row: int) -> str:
     angle = curve.angle_deg[row]
     if not np.isfinite(angle):
-        return NO_VALUE
+        return tr(NO_VALUE)
     said = degrees_in_words(angle)
     if curve.sd_deg is not None and np.isfinite(curve.sd_deg[row]):
         said += f" ± {2 * curve.sd_deg[row]:.1f}°"

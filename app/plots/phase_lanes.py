@@ -17,6 +17,7 @@ from app.theme import Look, Theme
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, Chip, paint_chip
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import joined, later, tr, tr_n
 from core.body import Side
 from core.gait.phases import PHASES, Phase
 from core.results import SideGait
@@ -26,22 +27,22 @@ LANE, BETWEEN = 26, 8
 GAP_PX = 1.5  # of surface between two phases
 HATCH_PX = 4.5
 LEAST_PHASE_PX = 5.0  # on the average in sight; narrower, nobody can tell them apart
-ZOOM_IN = "Zoom in to see the phases"
+ZOOM_IN = later("Zoom in to see the phases")
 WHEEL_ZOOM = 1.02 ** (-1 / 8)  # per unit of the wheel, as the curves do
 
 PHASE_WORDS = {
-    Phase.UNKNOWN: "not known",
-    Phase.LOADING: "loading",
-    Phase.FOOT_FLAT: "foot flat",
-    Phase.PRE_SWING: "pre-swing",
-    Phase.SWING: "swing",
+    Phase.UNKNOWN: later("not known"),
+    Phase.LOADING: later("loading"),
+    Phase.FOOT_FLAT: later("foot flat"),
+    Phase.PRE_SWING: later("pre-swing"),
+    Phase.SWING: later("swing"),
 }
-EVENT_WORDS = {"initial_contact": "initial contact", "toe_off": "toe-off"}  # the borders of swing
+EVENT_WORDS = {"initial_contact": later("initial contact"), "toe_off": later("toe-off")}  # the borders of swing
 LEGEND = (
-    (Phase.LOADING, "Loading"),
-    (Phase.FOOT_FLAT, "Foot flat"),
-    (Phase.PRE_SWING, "Pre-swing"),
-    (Phase.SWING, "Swing"),
+    (Phase.LOADING, later("Loading")),
+    (Phase.FOOT_FLAT, later("Foot flat")),
+    (Phase.PRE_SWING, later("Pre-swing")),
+    (Phase.SWING, later("Swing")),
 )
 
 
@@ -73,7 +74,7 @@ class Lane:
     def in_words(self, row: int) -> str:
         """Name the event at a sample, or else its phase."""
         event = self.event_rows.get(row)
-        return EVENT_WORDS[event] if event is not None else PHASE_WORDS[PHASES[self.phase[row]]]
+        return tr(EVENT_WORDS[event] if event is not None else PHASE_WORDS[PHASES[self.phase[row]]])
 
 
 class PhaseFrame(Card):
@@ -81,7 +82,7 @@ class PhaseFrame(Card):
 
     def __init__(self, look: Look) -> None:
         self.lanes = PhaseLanes(look)
-        self._simulated = Text(look, "SIMULATED", size=12, weight=SEMIBOLD)
+        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._chips = {side: Chip(look, side) for side in Side}
         self._readings = {side: Text(look, size=14, weight=MEDIUM, tone=f"{side}_text") for side in Side}
         self._title, self._legend, self._reading = QHBoxLayout(), QHBoxLayout(), QHBoxLayout()
@@ -90,9 +91,9 @@ class PhaseFrame(Card):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         for phase, word in LEGEND:
             self._legend.addWidget(Swatch(look, phase))
-            self._legend.addWidget(Text(look, word, size=12, tone="ink2"))
+            self._legend.addWidget(Text(look, tr(word), size=12, tone="ink2"))
         self._legend.addStretch(1)
-        self._title.addWidget(Text(look, "Gait phases", size=14, weight=SEMIBOLD))
+        self._title.addWidget(Text(look, tr("Gait phases"), size=14, weight=SEMIBOLD))
         self._title.addWidget(self._simulated)
         self._reading.addStretch(1)
         for side in Side:
@@ -123,7 +124,7 @@ class PhaseFrame(Card):
         for side in Side:
             self._chips[side].hide()
             self._readings[side].setVisible(side in gait)
-        self.lanes.setAccessibleName("Gait phases over time")
+        self.lanes.setAccessibleName(tr("Gait phases over time"))
         self.lanes.setAccessibleDescription(self.in_words())
         self.setVisible(bool(gait))
 
@@ -136,27 +137,33 @@ class PhaseFrame(Card):
         self.lanes.set_cursor(time_s)
 
     def reading_in_words(self) -> str:
-        return " ".join(f"{side} foot {self._readings[side].text()}." for side in self.lanes.lanes)
+        return " ".join(f"{_foot_name(side)}: {self._readings[side].text()}." for side in self.lanes.lanes)
 
     def in_words(self) -> str:
         """Say how often each foot landed and left, for who cannot see the lanes."""
         said = []
         for side, lane in self.lanes.lanes.items():
             events = list(lane.event_rows.values())
-            counts = [f"{events.count(event)} {word}s" for event, word in EVENT_WORDS.items()]
             known = lane.run_phase != PHASES.index(Phase.UNKNOWN)
-            part = f"{side.capitalize()} foot"
+            part = _foot_name(side)
             if known.any():
                 first, last = lane.start_s[known][0], lane.end_s[known][-1]
-                said.append(f"{part}: {' and '.join(counts)}, phases from {first:.1f} to {last:.1f} s.")
+                contacts, toe_offs = (events.count(event) for event in EVENT_WORDS)
+                counts = [
+                    tr_n("{count} initial contact", "{count} initial contacts", contacts).format(count=contacts),
+                    tr_n("{count} toe-off", "{count} toe-offs", toe_offs).format(count=toe_offs),
+                ]
+                told = tr("{part}: {events}, phases from {first:.1f} to {last:.1f} s.")
+                said.append(told.format(part=part, events=joined(counts), first=first, last=last))
             else:
-                said.append(f"{part}: phases not known.")
+                said.append(tr("{part}: phases not known.").format(part=part))
         return " ".join(said)
 
     def _reserve_room(self) -> None:
         for side, label in self._readings.items():
             widest = max(
-                label.fontMetrics().horizontalAdvance(word) for word in (*PHASE_WORDS.values(), *EVENT_WORDS.values())
+                label.fontMetrics().horizontalAdvance(tr(word))
+                for word in (*PHASE_WORDS.values(), *EVENT_WORDS.values())
             )
             label.setMinimumWidth(widest if side in self.lanes.lanes else 0)
 
@@ -283,8 +290,8 @@ class PhaseLanes(QWidget):
             painter.fillRect(box, QColor(theme.colours.sunken))
             seen = box.intersected(area)
             painter.setPen(QColor(theme.colours.ink2))
-            if painter.fontMetrics().horizontalAdvance(ZOOM_IN) + theme.px(16) < seen.width():
-                painter.drawText(seen, Qt.AlignmentFlag.AlignCenter, ZOOM_IN)
+            if painter.fontMetrics().horizontalAdvance(tr(ZOOM_IN)) + theme.px(16) < seen.width():
+                painter.drawText(seen, Qt.AlignmentFlag.AlignCenter, tr(ZOOM_IN))
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()
@@ -329,6 +336,10 @@ def paint_phase(painter: QPainter, phase: Phase, box: QRectF, full: QColor, pale
         case Phase.SWING:
             height = 1.5 * theme.scale
             painter.fillRect(QRectF(box.left(), box.bottom() - height, box.width(), height), full)
+
+
+def _foot_name(side: Side) -> str:
+    return tr("Left foot") if side is Side.LEFT else tr("Right foot")
 
 
 def _nearest(time_s: FloatArray, at_s: FloatArray) -> IntArray:

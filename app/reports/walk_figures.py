@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.reports.gait_csv import parameter, used_cycles
-from app.wording import NAMES, tr
+from app.wording import NAMES, joined, later, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
@@ -46,18 +46,18 @@ class SideCycle:
 
 
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
-    ("at_initial_contact_deg", "At initial contact", None),
-    ("loading_peak_deg", "Loading peak", "knee_loading_peak"),
-    ("stance_minimum_deg", "Stance minimum", "knee_stance_minimum"),
-    ("swing_peak_deg", "Swing peak", "knee_swing_peak"),
-    ("swing_peak_percent", "Swing peak at, %", None),
-    ("range_deg", "Range", None),
-    ("stance_dorsiflexion_deg", "Stance dorsiflexion", "ankle_stance_dorsiflexion"),
-    ("push_off_plantarflexion_deg", "Push-off plantarflexion", "ankle_push_off_plantarflexion"),
-    ("swing_dorsiflexion_deg", "Swing dorsiflexion", "ankle_swing_dorsiflexion"),
+    ("at_initial_contact_deg", later("At initial contact"), None),
+    ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),
+    ("stance_minimum_deg", later("Stance minimum"), "knee_stance_minimum"),
+    ("swing_peak_deg", later("Swing peak"), "knee_swing_peak"),
+    ("swing_peak_percent", later("Swing peak at, %"), None),
+    ("range_deg", later("Range"), None),
+    ("stance_dorsiflexion_deg", later("Stance dorsiflexion"), "ankle_stance_dorsiflexion"),
+    ("push_off_plantarflexion_deg", later("Push-off plantarflexion"), "ankle_push_off_plantarflexion"),
+    ("swing_dorsiflexion_deg", later("Swing dorsiflexion"), "ankle_swing_dorsiflexion"),
 )
 KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
-NO_ZERO, MAY_BE_MIRRORED = "no zero", "sign unsure"
+NO_ZERO, MAY_BE_MIRRORED = later("no zero"), later("sign unsure")
 HOLD_FOR = {NO_ZERO: ("swing_peak_percent", "range_deg"), MAY_BE_MIRRORED: ("range_deg",)}  # what holds all the same
 
 
@@ -77,14 +77,16 @@ def strides_in_words(side: Side, gait: SideGait) -> str:
     """How many strides stand behind the averages, and why the others do not."""
     used = strides_used(gait)
     left_out = Counter(tr(NAMES["reason"][reason]) for reason in gait.strides.reason if reason is not Reason.USED)
-    said = f"{side[0].upper()}: {used} {'stride' if used == 1 else 'strides'} used"
-    if len(left_out) == 1:
-        ((words, count),) = left_out.items()
-        said += f", {count} left out ({words})"
-    elif left_out:
-        reasons = ", ".join(f"{count} {words}" for words, count in left_out.most_common())
-        said += f", {left_out.total()} left out ({reasons})"
-    return said + "."
+    letter = side[0].upper()
+    if not left_out:
+        return tr_n("{side}: {used} stride used.", "{side}: {used} strides used.", used).format(side=letter, used=used)
+    reasons = [f"{count} {words}" for words, count in left_out.most_common()] if len(left_out) > 1 else list(left_out)
+    said = tr_n(
+        "{side}: {used} stride used, {out} left out ({reasons}).",
+        "{side}: {used} strides used, {out} left out ({reasons}).",
+        used,
+    )
+    return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
 
 
 def few_strides_in_words(recording: RecordingAnalysis) -> str:
@@ -94,11 +96,11 @@ def few_strides_in_words(recording: RecordingAnalysis) -> str:
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     said = []
     if without_mean:
-        said.append(
-            f"{' and '.join(without_mean)}: under {MIN_STRIDES_FOR_MEAN} strides, so the mean is shown in grey."
-        )
+        grey = tr("{sides}: under {count} strides, so the mean is shown in grey.")
+        said.append(grey.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
     if without_spread:
-        said.append(f"{' and '.join(without_spread)}: under {MIN_STRIDES_FOR_SD} strides, so without spread.")
+        bare = tr("{sides}: under {count} strides, so without spread.")
+        said.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
     return " ".join(said)
 
 
@@ -135,7 +137,7 @@ def peak_figures(
             sides = {side: _mean(recording.gait[side], f"{kind}_{column}") for side in joints if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = _band_of_peak(reference, kind, column, window)
-            figures.append(Figure(name, unit, decimals, sides, band=band, unknown=unknown))
+            figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown))
         found[kind] = tuple(figures)
     return found
 
@@ -163,13 +165,13 @@ def time_distance_figures(
 
     return (
         # the class is chosen by speed, so its speed would be no comparison
-        Figure("Walking speed", "m/s", 2, {}, both=feet.speed_m_s),
-        Figure("Cadence", "steps/min", 0, {}, both=feet.cadence_steps_min, band=band("cadence")),
-        Figure("Stride time", "s", 2, each("stride_time_s")),
+        Figure(tr("Walking speed"), "m/s", 2, {}, both=feet.speed_m_s),
+        Figure(tr("Cadence"), tr("steps/min"), 0, {}, both=feet.cadence_steps_min, band=band("cadence")),
+        Figure(tr("Stride time"), "s", 2, each("stride_time_s")),
         # a subject's stride is the two steps of which the group's step length is the mean
-        Figure("Stride length", "m", 2, each("stride_length_m"), band=band("step_length", 2.0)),
-        Figure("Stance", "%", 1, each("stance_percent"), band=band("stance")),
-        Figure("Double support", "%", 1, {}, both=feet.double_support_percent, band=band("double_support_total")),
+        Figure(tr("Stride length"), "m", 2, each("stride_length_m"), band=band("step_length", 2.0)),
+        Figure(tr("Stance"), "%", 1, each("stance_percent"), band=band("stance")),
+        Figure(tr("Double support"), "%", 1, {}, both=feet.double_support_percent, band=band("double_support_total")),
     ), group
 
 

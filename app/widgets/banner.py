@@ -7,6 +7,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import Button, Kind
 from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
 
 HEIGHT = 64
 MARK = 28
@@ -24,7 +25,7 @@ class Banner(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._what = Text(look, size=14, weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._next = Text(look, size=14, tone="caution_ink", wraps=True)
-        self._dismiss = Button(look, "Dismiss", Kind.QUIET, height=44)
+        self._dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addStretch(1)

@@ -23,13 +23,21 @@ from app.widgets.card import Card
 from app.widgets.figures_table import FiguresTable
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import later, tr
 from core.body import Joint, Side
 from core.norms import ReferenceCurves, ReferenceValues
 from core.results import JointCalibration, RecordingAnalysis
 
-SLOWER = "Slower than the band: slower walking lowers knee peaks."
-FASTER = "Faster than the band: faster walking raises knee peaks."
-NO_SPEED = "This walk: speed not known, for it needs a foot sensor and usable strides."
+# whose bands the program brings along, as the core names them
+GROUPS = (
+    later("young adults, barefoot, treadmill"),
+    later("42 adults, 24 young and 18 older, barefoot, overground"),
+)
+SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
+KIND_WORDS = {"knee": later("Knee"), "ankle": later("Ankle")}
+SLOWER = later("Slower than the band: slower walking lowers knee peaks.")
+FASTER = later("Faster than the band: faster walking raises knee peaks.")
+NO_SPEED = later("This walk: speed not known, for it needs a foot sensor and usable strides.")
 
 
 class CyclePage(QWidget):
@@ -45,10 +53,10 @@ class CyclePage(QWidget):
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.charts, 1)
         column.addWidget(self.note)
-        self.peaks = FiguresCard(look, "Peaks and ranges", "mean ± SD (°)")
+        self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
         self.peaks_note = BandNote(look)
         self.peaks.column.addWidget(self.peaks_note)
-        self.time_distance = FiguresCard(look, "Time and distance", "mean ± SD")
+        self.time_distance = FiguresCard(look, tr("Time and distance"), tr("mean ± SD"))
         for card in (self.peaks, self.time_distance):
             card.column.addStretch(1)
 
@@ -72,7 +80,7 @@ class CyclePage(QWidget):
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
         rows: list[str | Figure] = []
         for kind, figures in peak_figures(recording, calibrated, self._reference).items():
-            rows += [kind.capitalize(), *figures]
+            rows += [tr(KIND_WORDS[kind]), *figures]
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
         self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))
         feet = both_sides(recording)
@@ -127,14 +135,15 @@ class BandNote(QWidget):
         return f"{self._source.text()} {self._speed.text()}"
 
     def show_band(self, band: ReferenceCurves, speed_m_s: float) -> None:
-        sds = "inner 1 SD, outer 2 SD".replace(" SD", "\N{NO-BREAK SPACE}SD")
-        whose = f"Band: {band.n} {band.group}, {band.speed_m_s:.2f} m/s; {sds}."
-        self._source.setText(f"{whose} {_authors(band.source)}.")
+        sds = tr("inner 1 SD, outer 2 SD").replace(" SD", "\N{NO-BREAK SPACE}SD")
+        whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s; {sds}.")
+        said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, sds=sds)
+        self._source.setText(f"{said} {_authors(band.source)}.")
         is_known = bool(np.isfinite(speed_m_s))
-        words = [f"This walk: {speed_m_s:.2f} m/s."] if is_known else [NO_SPEED]
+        words = [tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)]
         is_other = is_known and not band.fits(speed_m_s)
         if is_other:
-            words.append(SLOWER if speed_m_s < band.speed_m_s else FASTER)
+            words.append(tr(SLOWER if speed_m_s < band.speed_m_s else FASTER))
         self._mark.setVisible(is_other)
         self._speed.setText(" ".join(words))
 
@@ -142,8 +151,14 @@ class BandNote(QWidget):
 def _group_in_words(group: ReferenceValues | None) -> str:
     """Whose figures stand in the column of the band."""
     if group is None:
-        return f"No band: it is chosen by walking speed. {NO_SPEED}"
-    said = f"Band: {group.n} of {group.group}; {group.speed_class} speed, {group.speed_m_s:.2f} m/s."
+        return " ".join([tr("No band: it is chosen by walking speed."), tr(NO_SPEED)])
+    told = tr("Band: {count} of {group}; {speed_class} speed, {speed_m_s:.2f} m/s.")
+    said = told.format(
+        count=group.n,
+        group=tr(group.group),
+        speed_class=tr(SPEED_WORDS[group.speed_class]),
+        speed_m_s=group.speed_m_s,
+    )
     return f"{said} {_authors(group.source)}."
 
 

@@ -19,7 +19,7 @@ from app.theme import Look
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD
-from app.wording import name_of
+from app.wording import later, name_of, tr
 from core.body import Joint, Side
 from core.results import AxisSource, JointCalibration, ZeroKind
 
@@ -31,11 +31,11 @@ MARGIN_WANTED = 1.3  # the same as in the findings: below it another answer fits
 SHORTEST_LAG_S = 0.0005
 
 AXIS_FROM = {
-    AxisSource.FREE_MOTION: "free motion",
-    AxisSource.WALKING: "walking",
-    AxisSource.POOLED: "free motion, walking",
-    AxisSource.HINGE: "true hinge",
-    AxisSource.REFINED: "rigid limb",
+    AxisSource.FREE_MOTION: later("free motion"),
+    AxisSource.WALKING: later("walking"),
+    AxisSource.POOLED: later("free motion, walking"),
+    AxisSource.HINGE: later("true hinge"),
+    AxisSource.REFINED: later("rigid limb"),
 }
 
 
@@ -52,50 +52,54 @@ Index = QModelIndex | QPersistentModelIndex
 
 
 def _axis_from(found: JointCalibration) -> Cell:
-    return Cell(AXIS_FROM[found.axis_source], found.axis_source is AxisSource.WALKING)
+    return Cell(tr(AXIS_FROM[found.axis_source]), found.axis_source is AxisSource.WALKING)
 
 
 def _axis_certainty(found: JointCalibration) -> Cell:
     if found.axis_sd_rad is None or not math.isfinite(found.axis_sd_rad):
-        return Cell("unknown", needs_look=True)
+        return Cell(tr("unknown"), needs_look=True)
     return Cell(f"± {math.degrees(found.axis_sd_rad):.1f}°")
 
 
 def _margin(found: JointCalibration) -> Cell:
     if found.sign_margin is None:
-        return Cell("unknown", needs_look=True)
+        return Cell(tr("unknown"), needs_look=True)
     if not math.isfinite(found.sign_margin) or found.sign_margin >= 100:
-        return Cell("over 100")
+        return Cell(tr("over 100"))
     return Cell(f"{found.sign_margin:.1f}", found.sign_margin < MARGIN_WANTED)
 
 
 def _direction(found: JointCalibration) -> Cell:
-    return Cell("sure") if found.is_sign_certain else Cell("uncertain", needs_look=True)
+    return Cell(tr("sure")) if found.is_sign_certain else Cell(tr("uncertain"), needs_look=True)
 
 
 def _lag(found: JointCalibration) -> Cell:
     if abs(found.lag_s) < SHORTEST_LAG_S:
-        return Cell("none")
+        return Cell(tr("none"))
     return Cell(f"{found.lag_s * 1000:+.0f} ms".replace("-", "\N{MINUS SIGN}"))
 
 
 def _zero(found: JointCalibration) -> Cell:
     match found.zero:
         case ZeroKind.STANDING:
-            return Cell("standing")
+            return Cell(tr("standing"))
         case ZeroKind.GONIOMETER:
-            return Cell(f"{math.degrees(found.offset_rad):.1f}° standing".replace("-", "\N{MINUS SIGN}"))
+            return Cell(tr("{angle} standing").format(angle=_degrees(found.offset_rad)))
         case _:
-            return Cell("none", needs_look=True)
+            return Cell(tr("none"), needs_look=True)
+
+
+def _degrees(angle_rad: float) -> str:
+    return f"{math.degrees(angle_rad):.1f}°".replace("-", "\N{MINUS SIGN}")
 
 
 ROWS: tuple[tuple[str, str, Callable[[JointCalibration], Cell]], ...] = (
-    ("Axis from", "Which recording showed how the joint turns.", _axis_from),
-    ("Axis certainty", "One standard deviation of the direction of the joint axis.", _axis_certainty),
-    ("Margin", f"How much worse the next best answer fits. Under {MARGIN_WANTED} is doubt.", _margin),
-    ("Direction", "Whether flexion is told from extension.", _direction),
-    ("Clock lag", "What was added to the farther sensor's clock.", _lag),
-    ("Zero", "What reads zero, or the goniometer's value in standing.", _zero),
+    (later("Axis from"), later("Which recording showed how the joint turns."), _axis_from),
+    (later("Axis certainty"), later("One standard deviation of the direction of the joint axis."), _axis_certainty),
+    (later("Margin"), later("How much worse the next best answer fits. Under {wanted} is doubt."), _margin),
+    (later("Direction"), later("Whether flexion is told from extension."), _direction),
+    (later("Clock lag"), later("What was added to the farther sensor's clock."), _lag),
+    (later("Zero"), later("What reads zero, or the goniometer's value in standing."), _zero),
 )
 
 
@@ -126,15 +130,16 @@ class FactsModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.DisplayRole:
             return cell.text
         if role == Qt.ItemDataRole.ToolTipRole:
-            return row[1]
+            return tr(row[1]).format(wanted=MARGIN_WANTED)
         if role == Qt.ItemDataRole.AccessibleTextRole:
-            return f"{name_of(joint)}, {row[0]}: {cell.text}" + (", look at it" if cell.needs_look else "")
+            said = f"{name_of(joint)}, {tr(row[0])}: {cell.text}"
+            return tr("{cell}, look at it").format(cell=said) if cell.needs_look else said
         return None
 
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> object:
         if role != Qt.ItemDataRole.DisplayRole:
             return None
-        return name_of(self.joints[section]) if orientation == Qt.Orientation.Horizontal else ROWS[section][0]
+        return name_of(self.joints[section]) if orientation == Qt.Orientation.Horizontal else tr(ROWS[section][0])
 
 
 class FactsTable(QTableView):
@@ -148,7 +153,7 @@ class FactsTable(QTableView):
         self.setHorizontalHeader(_JointHeader(look, self))
         self.setVerticalHeader(_QuestionHeader(look, self))
         self.setItemDelegate(_CellDelegate(look, self))
-        self.setAccessibleName("How each joint was found")
+        self.setAccessibleName(tr("How each joint was found"))
         self.setShowGrid(False)
         self.setFrameShape(QTableView.Shape.NoFrame)
         self.setCornerButtonEnabled(False)
@@ -184,7 +189,7 @@ class FactsTable(QTableView):
         head = ["", *(name_of(joint) for joint in self.facts.joints)]
         model = self.facts
         rows = [
-            [ROWS[row][0], *(model.cell(model.index(row, column)).text for column in range(model.columnCount()))]
+            [tr(ROWS[row][0]), *(model.cell(model.index(row, column)).text for column in range(model.columnCount()))]
             for row in range(model.rowCount())
         ]
         return "\n".join("\t".join(cells) for cells in [head, *rows])
@@ -194,7 +199,7 @@ class FactsTable(QTableView):
         self.setFont(self._look.theme.font(14))
         self.horizontalHeader().setFixedHeight(px(HEAD))
         metrics = QFontMetrics(self._look.theme.font(14))
-        questions = max(metrics.horizontalAdvance(title) for title, _, _ in ROWS)
+        questions = max(metrics.horizontalAdvance(tr(title)) for title, _, _ in ROWS)
         self.verticalHeader().setFixedWidth(questions + px(PADDING))
         delegate, option = self.itemDelegate(), QStyleOptionViewItem()
         for row in range(self.facts.rowCount()):
@@ -306,7 +311,7 @@ class _JointHeader(QHeaderView):
         return model.joints[section]
 
     def _word(self, section: int) -> str:
-        return "Knee" if self._joint(section).is_knee else "Ankle"
+        return tr("Knee") if self._joint(section).is_knee else tr("Ankle")
 
     def _side(self, section: int) -> Side:
         return self._joint(section).side

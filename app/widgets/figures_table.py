@@ -18,6 +18,7 @@ from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
 from app.theme import Look
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import SEMIBOLD
+from app.wording import capitalised, later, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
@@ -26,7 +27,7 @@ PADDING = 6
 NAME, LEFT, RIGHT, BAND = range(4)
 COLUMNS = 4
 SIDE_OF = {LEFT: Side.LEFT, RIGHT: Side.RIGHT}
-BAND_HEAD = "band 1 SD"
+BAND_HEAD = later("band 1 SD")
 MINUS = "\N{MINUS SIGN}"
 Index = QModelIndex | QPersistentModelIndex
 
@@ -57,7 +58,7 @@ class FiguresModel(QAbstractTableModel):
             return (_number(row.both, row.decimals), "") if column == LEFT else ("", "")
         side = SIDE_OF[column]
         if side in row.unknown:
-            return "", row.unknown[side]
+            return "", tr(row.unknown[side])
         return _mean(row.sides.get(side), row.decimals)
 
     def is_grey(self, index: Index) -> bool:
@@ -84,12 +85,12 @@ class FiguresModel(QAbstractTableModel):
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> object:
         if role != Qt.ItemDataRole.DisplayRole or orientation != Qt.Orientation.Horizontal:
             return None
-        return ("", self._strides(Side.LEFT), self._strides(Side.RIGHT), BAND_HEAD)[section]
+        return ("", self._strides(Side.LEFT), self._strides(Side.RIGHT), tr(BAND_HEAD))[section]
 
     def _strides(self, side: Side) -> str:
         if side not in self.strides:
             return ""
-        return f"{self.strides[side]} {'stride' if self.strides[side] == 1 else 'strides'}"
+        return tr_n("{count} stride", "{count} strides", self.strides[side]).format(count=self.strides[side])
 
     def _in_words(self, index: Index, words: str) -> str:
         """Say a cell with its row, its side and its unit, for who hears one cell at a time."""
@@ -97,11 +98,11 @@ class FiguresModel(QAbstractTableModel):
         if isinstance(row, str) or column == NAME:
             return words
         heading = next((above for above in reversed(self.rows[: index.row()]) if isinstance(above, str)), "")
-        both = "both sides" if row.both is not None else ""
-        who = "reference band" if column == BAND else both or str(SIDE_OF[column])
+        both = tr("both sides") if row.both is not None else ""
+        who = tr("reference band") if column == BAND else both or side_name(SIDE_OF[column])
         name = " ".join(filter(None, [heading, row.name[0].lower() + row.name[1:]]))
-        said = f"{words} {row.unit}" if words else "no value"
-        return f"{name[0].upper()}{name[1:]}, {who}: {said}"
+        said = f"{words} {row.unit}" if words else tr("no value")
+        return f"{capitalised(name)}, {who}: {said}"
 
 
 class FiguresTable(QTableView):
@@ -160,7 +161,7 @@ class FiguresTable(QTableView):
         """Give the table as tab-separated lines."""
         model = self.figures
         head = ["", f"L, {model.headerData(LEFT, Qt.Orientation.Horizontal)}"]
-        head += [f"R, {model.headerData(RIGHT, Qt.Orientation.Horizontal)}", BAND_HEAD]
+        head += [f"R, {model.headerData(RIGHT, Qt.Orientation.Horizontal)}", tr(BAND_HEAD)]
         rows = [[str(model.data(model.index(row, k))) for k in range(COLUMNS)] for row in range(model.rowCount())]
         return "\n".join("\t".join(cells) for cells in [head, *rows])
 
@@ -303,7 +304,7 @@ def _model(index: Index) -> FiguresModel:
 
 def _mean(value: MeanAndSd | None, decimals: int) -> tuple[str, str]:
     if value is None or not math.isfinite(value.mean):
-        return "", "none"
+        return "", tr("none")
     spread = f"± {value.sd:.{decimals}f}" if is_spread_enough(value.n) else ""
     return _number(value.mean, decimals), spread
 
@@ -312,10 +313,10 @@ def _range(figure: Figure) -> str:
     assert figure.band is not None
     decimals = figure.decimals if figure.decimals > 1 else 0
     low, high = (_number(value, decimals) for value in figure.band)
-    return f"{low} to {high}"
+    return tr("{low} to {high}").format(low=low, high=high)
 
 
 def _number(value: float, decimals: int) -> str:
     if not math.isfinite(value):
-        return "none"
+        return tr("none")
     return f"{value:.{decimals}f}".replace("-", MINUS) if round(value, decimals) else f"{0:.{decimals}f}"

@@ -8,12 +8,17 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 from app.theme import Look
 from app.widgets.icons import SEVERITY_ICONS, Icon, IconMark
 from app.widgets.text import SEMIBOLD, Text
-from app.wording import sentence
+from app.wording import later, sentence, tr
 from core.findings import Finding, Severity
 
 ORDER = (Severity.GRAVE, Severity.WARNING, Severity.INFO)
 LEAST_SIZE = (320, 96)  # the rest is scrolled
-NOTHING = "Nothing stands out."
+SEVERITY_WORDS = {
+    Severity.GRAVE: later("grave"),
+    Severity.WARNING: later("warning"),
+    Severity.INFO: later("info"),
+}
+NOTHING = later("Nothing stands out.")
 
 
 class FindingsList(QScrollArea):
@@ -24,7 +29,7 @@ class FindingsList(QScrollArea):
         self.setFrameShape(QFrame.Shape.NoFrame)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # so that the keys can scroll it
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setAccessibleName("Findings")
+        self.setAccessibleName(tr("Findings"))
 
     def show_findings(self, findings: Sequence[Finding]) -> None:
         page = QWidget()
@@ -36,10 +41,10 @@ class FindingsList(QScrollArea):
                 FindingRow(self._look, SEVERITY_ICONS[finding.severity], finding.severity, sentence(finding))
             )
         if not findings:
-            column.addWidget(FindingRow(self._look, Icon.CHECK, Severity.INFO, NOTHING))
+            column.addWidget(FindingRow(self._look, Icon.CHECK, Severity.INFO, tr(NOTHING)))
         column.addStretch(1)
         self.setWidget(page)
-        self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or NOTHING)
+        self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or tr(NOTHING))
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -55,7 +60,7 @@ class FindingRow(QWidget):
     def __init__(self, look: Look, icon: Icon, severity: Severity, text: str) -> None:
         super().__init__()
         what, then = _in_two(text)
-        self.setAccessibleName(f"{severity}: {text}")
+        self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(look.theme.px(12))

@@ -20,6 +20,7 @@ from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
+from app.wording import later, tr
 from core.body import Joint
 from core.results import Analysis, JointAngle, JointCalibration, RecordingAnalysis
 from core.samples import RecordingKind
@@ -27,20 +28,20 @@ from core.samples import RecordingKind
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
 MEAN, WHOLE, FIGURES, FACTS = "mean", "whole", "figures", "facts"  # the views; the last two only where room is short
-WALK = "Whole walk"
+WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 COMPACT_BELOW = (1272, 720)  # what the charts and both tables of a mean cycle need side by side
 NARROW_BELOW = 940  # what both tables need without the charts
 TWO_CHARTS_FROM = 680
 
 HINTS = {
-    RESULT: "Pale: certainty, ± 2 SD.",
-    PUBLISHED: "Equation 15 of the paper, on the same joint axes. No certainty is known for it.",
-    ORIENTATION: "Equation 10 of the paper, from orientations with magnetometer. No certainty is known for it.",
-    BOTH: "Bold: the result, pale its certainty of ± 2 SD. Thin: the published method.",
+    RESULT: later("Pale: certainty, ± 2 SD."),
+    PUBLISHED: later("Equation 15 of the paper, on the same joint axes. No certainty is known for it."),
+    ORIENTATION: later("Equation 10 of the paper, from orientations with magnetometer. No certainty is known for it."),
+    BOTH: later("Bold: the result, pale its certainty of ± 2 SD. Thin: the published method."),
 }
-KEYS = "Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read."
-EVENT_KEYS = "[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off."
+KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read.")
+EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
 
 
 class ResultPage(QWidget):
@@ -54,26 +55,31 @@ class ResultPage(QWidget):
         self._wanted = MEAN  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
             look,
-            "View",
-            [(MEAN, "Mean cycle", ""), (WHOLE, WALK, ""), (FIGURES, "Figures", ""), (FACTS, "Findings", "")],
-        )
-        self.recordings = Choice(look, "Recording")
-        self.methods = Segmented(
-            look,
-            "Method",
+            tr("View"),
             [
-                (RESULT, "Result", "relative orientation"),
-                (PUBLISHED, "Published", "equation 15"),
-                (ORIENTATION, "Orientation", "equation 10"),
-                (BOTH, "Both", "result and published"),
+                (MEAN, tr("Mean cycle"), ""),
+                (WHOLE, tr(WALK), ""),
+                (FIGURES, tr("Figures"), ""),
+                (FACTS, tr("Findings"), ""),
             ],
         )
-        self.single_strides = Toggle(look, "Single strides", "S", is_on=False)
-        self.band = Toggle(look, "Band", "B", is_on=True)
+        self.recordings = Choice(look, tr("Recording"))
+        self.methods = Segmented(
+            look,
+            tr("Method"),
+            [
+                (RESULT, tr("Result"), tr("relative orientation")),
+                (PUBLISHED, tr("Published"), tr("equation 15")),
+                (ORIENTATION, tr("Orientation"), tr("equation 10")),
+                (BOTH, tr("Both"), tr("result and published")),
+            ],
+        )
+        self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
+        self.band = Toggle(look, tr("Band"), "B", is_on=True)
         self.cycles = CyclePage(look)
         self.charts = JointCharts(look)
         self.shown = Text(look, size=14, tone="ink2")
-        self.whole = Button(look, "Whole recording", Kind.QUIET, Icon.WHOLE, "Home", height=44)
+        self.whole = Button(look, tr("Whole recording"), Kind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(look, size=12, tone="ink2", wraps=True)
         self.facts = FactsTable(look)
         self.findings = FindingsList(look)
@@ -148,11 +154,11 @@ class ResultPage(QWidget):
         self._right = QVBoxLayout(self._beside)
         self._right.setContentsMargins(0, 0, 0, 0)
         self._joints = Card(self._look)
-        self._joints.column.addWidget(Text(self._look, "Joints", size=16, weight=SEMIBOLD))
+        self._joints.column.addWidget(Text(self._look, tr("Joints"), size=16, weight=SEMIBOLD))
         self._joints.column.addWidget(self.facts)
         self._joints.column.addStretch(1)
         self._noticed = Card(self._look)
-        self._noticed.column.addWidget(Text(self._look, "Findings", size=16, weight=SEMIBOLD))
+        self._noticed.column.addWidget(Text(self._look, tr("Findings"), size=16, weight=SEMIBOLD))
         self._noticed.column.addWidget(self.findings, 1)
         self._right.addWidget(self.cycles.time_distance)
         self._right.addWidget(self._joints)
@@ -220,9 +226,9 @@ class ResultPage(QWidget):
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_strides = recording is not None and any(len(gait.strides) for gait in recording.gait.values())
         self.view.blockSignals(True)
-        self.view.set_word(WHOLE, WALK if is_walk else "Whole recording")
+        self.view.set_word(WHOLE, tr(WALK if is_walk else RECORDING))
         self.view.set_offered(MEAN, is_walk)
-        self.view.set_reason(MEAN, "" if has_strides else "no strides")
+        self.view.set_reason(MEAN, "" if has_strides else tr("no strides"))
         self.view.set_offered(FIGURES, self._is_compact and has_strides)
         self.view.set_offered(FACTS, self._is_compact)
         if self.view.choice in (MEAN, WHOLE):
@@ -260,12 +266,12 @@ class ResultPage(QWidget):
         recording = self.recording
         self.charts.setEnabled(recording is not None)
         if recording is None or self._analysis is None:
-            self.charts.show_recording("no recording", np.zeros(0), is_simulated=False)
+            self.charts.show_recording(tr("no recording"), np.zeros(0), is_simulated=False)
             self.facts.show_joints({})
             self._offer()
             return
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
-        self.methods.set_reason(ORIENTATION, "" if has_orientation else "no magnetometer")
+        self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
         calibrated, is_simulated = _in_force(self._analysis, recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
         self.cycles.show_walk(recording, calibrated, is_simulated)
@@ -280,7 +286,9 @@ class ResultPage(QWidget):
         method = self.methods.choice
         curves = {joint: curve for joint, angle in recording.joints.items() if (curve := _curve(angle, method))}
         self.charts.show_joints(curves)
-        self.hint.setText(" ".join(filter(None, [HINTS[method], KEYS, EVENT_KEYS if recording.gait else ""])))
+        self.hint.setText(
+            " ".join(filter(None, [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]))
+        )
 
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)

@@ -7,8 +7,9 @@ from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
+from app.wording import later, tr
 
-SENTENCE = "No session is open."
+SENTENCE = later("No session is open.")
 
 
 class EmptyPage(QWidget):
@@ -17,10 +18,10 @@ class EmptyPage(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self.open_folder = Button(look, "Open a session folder", Kind.PRIMARY, Icon.FOLDER, "Ctrl O")
-        self.open_demonstration = Button(look, "Open the demonstration", Kind.SECONDARY, Icon.PLAY, "Ctrl D")
-        self._sentence = Text(look, SENTENCE, size=26, weight=SEMIBOLD)
-        self._hint = Text(look, "A session folder can also be dropped here.", tone="ink2")
+        self.open_folder = Button(look, tr("Open a session folder"), Kind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.SECONDARY, Icon.PLAY, tr("Ctrl D"))
+        self._sentence = Text(look, tr(SENTENCE), size=26, weight=SEMIBOLD)
+        self._hint = Text(look, tr("A session folder can also be dropped here."), tone="ink2")
         self._row = QHBoxLayout()
         self._row.addStretch(1)
         self._row.addWidget(self.open_folder)
@@ -61,8 +62,8 @@ class WorkingPage(QWidget):
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setRange(0, 1000)
-        self._line.setAccessibleName("Progress")
-        self.stop = Button(look, "Stop", Kind.SECONDARY, Icon.STOP, "Esc")
+        self._line.setAccessibleName(tr("Progress"))
+        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP, tr("Esc"))
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._title)

@@ -176,7 +176,7 @@ class LibraryDesk(QObject):
 
             data_key = open_remembered(_slots(folder), code)
             if data_key is None:
-                raise KeyRefusedError("This computer does not remember the passphrase any more", "Type it")
+                raise KeyRefusedError(tr("This computer does not remember the passphrase any more"), tr("Type it"))
             return _logged_in(folder, data_key, code), ""
 
         self._open(opening)

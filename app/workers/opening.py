@@ -8,6 +8,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.wording import tr
 from app.workers.background import Report, Work
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ def opening_folder(folder: Path) -> Work:
     """Give the work that reads and analyses a session folder. It raises `FileRefusedError` as the reader does."""
 
     def work(report: Report) -> Opened:
-        report(0.0, f"reading {folder.name}")
+        report(0.0, tr("reading {folder}").format(folder=folder.name))
         from devices.files.session_folder import read_session
 
         return _analysed(read_session(folder), report)
@@ -41,7 +42,7 @@ def opening_demonstration() -> Work:
     """Give the work that lets the simulated patient walk and analyses it."""
 
     def work(report: Report) -> Opened:
-        report(0.0, "simulating a patient")
+        report(0.0, tr("simulating a patient"))
         from devices.walker import DEMONSTRATION, simulate
 
         return _analysed(simulate(DEMONSTRATION).session, report)
@@ -52,9 +53,9 @@ def opening_demonstration() -> Work:
 def _analysed(session: "Session", report: Report) -> Opened:
     from core.analysis import analyse
 
-    report(READING_SHARE / 2, "preparing the curves")
+    report(READING_SHARE / 2, tr("preparing the curves"))
     import_module("app.widgets.result_page")  # the page itself is made later, on the thread of the screen
-    report(READING_SHARE, "looking at the samples")
+    report(READING_SHARE, tr("looking at the samples"))
     analysis = analyse(session, progress=lambda share, what: report(READING_SHARE + (1 - READING_SHARE) * share, what))
     report(1.0, "")
     return Opened(session, analysis)

@@ -106,9 +106,9 @@ def test_lanes_stand_on_the_time_of_the_curves(charts: JointCharts) -> None:
 
 def test_the_reading_line_names_phase_and_event(charts: JointCharts) -> None:
     charts._read_at(1.86)
-    assert charts.phases.reading_in_words() == "left foot foot flat. right foot swing."
+    assert charts.phases.reading_in_words() == "Left foot: foot flat. Right foot: swing."
     charts._read_at(1.2)
-    assert charts.phases.reading_in_words() == "left foot toe-off. right foot not known."
+    assert charts.phases.reading_in_words() == "Left foot: toe-off. Right foot: not known."
     charts._read_at(1.6)
     assert charts.phases._readings[Side.LEFT].text() == "initial contact"
 
