@@ -112,7 +112,7 @@ class ReplaySource:
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
         self._read_to_s = self._opened_s = 0.0
-        self._is_open = self._is_away = False
+        self.is_open = self._is_away = False
         self._silenced: frozenset[str] = frozenset()
         self._shaken_s: dict[str, float] = {}
 
@@ -129,12 +129,12 @@ class ReplaySource:
                 self._opened_s = now_s
                 self._clips = [self._clip(self._idle, now_s)]
             self._read_to_s = now_s
-            self._is_open = True
+            self.is_open = True
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         self._sleep(POLL_S)
         with self._lock:
-            if self._is_away or not self._is_open:
+            if self._is_away or not self.is_open:
                 raise SourceLostError("the simulated sensors went away")
             now_s = self._now_s()
             from_s = max(self._read_to_s, now_s - BUFFER_S)
@@ -147,7 +147,7 @@ class ReplaySource:
 
     def close(self) -> None:
         with self._lock:
-            self._is_open = False
+            self.is_open = False
 
     def told(self) -> Mapping[str, SensorTold]:
         return self._told

@@ -12,6 +12,7 @@ from devices.source import SensorCounts
 KEPT_S = 30.0
 MOST_RATE_HZ = 400.0  # of a sensor that does not tell its rate
 HEARD_S, MOVEMENT_S = 2.0, 1.0
+ROUNDING_S = 1e-6
 ON_ITS_WAY_S = 0.25  # so much later than measured a sample may come before anything is missed
 
 
@@ -63,10 +64,10 @@ class HeardSensor:
         last_s = self.ring.last_s
         step_s = np.diff(time_s, prepend=last_s)
         if not (step_s > 0).all():  # neither of NaN
-            is_new = self._count_unusual(time_s, last_s)
-            kept_s = time_s[is_new]
-            self._count(np.diff(kept_s, prepend=last_s))
-            self.ring.add(kept_s, block.gyr_rad_s[is_new], block.acc_m_s2[is_new])
+            is_new = _is_later(time_s, last_s)
+            self._count(np.diff(time_s[is_new], prepend=last_s))
+            self._count_others(time_s, is_new)
+            self.ring.add(time_s[is_new], block.gyr_rad_s[is_new], block.acc_m_s2[is_new])
             return
         self._count(step_s)
         self.ring.add(time_s, block.gyr_rad_s, block.acc_m_s2)
@@ -85,7 +86,7 @@ class HeardSensor:
     def _heard_hz(self, now_s: float) -> float:
         last_s = self.ring.last_s
         end_s = last_s if now_s - last_s < ON_ITS_WAY_S else now_s
-        return (len(self.ring.since(end_s - HEARD_S)) - (end_s == last_s)) / HEARD_S
+        return len(self.ring.since(end_s - HEARD_S + ROUNDING_S)) / HEARD_S
 
     def _movement_rad_s(self, now_s: float) -> float:
         rate = self.ring.since(now_s - MOVEMENT_S).gyr_rad_s
@@ -102,18 +103,22 @@ class HeardSensor:
             missing = np.round(steps[np.isfinite(steps)]) - 1.0
             self._lost += int(missing[missing > 0].sum())
 
-    def _count_unusual(self, time_s: FloatArray, last_s: float) -> BoolArray:
-        """Which samples (n,) are later than all before them; the others are counted."""
+    def _count_others(self, time_s: FloatArray, is_new: BoolArray) -> None:
+        """Count samples that are not later than all before them."""
         is_timed = np.isfinite(time_s)
         self._damaged += int(np.count_nonzero(~is_timed))
-        newest_s = np.fmax.accumulate(np.concatenate([[last_s], time_s]))
-        is_new: BoolArray = is_timed & (time_s > newest_s[:-1])
         known_s = np.concatenate([self.ring.since(-np.inf).time_s, time_s[is_new]])
         for stamp_s in time_s[is_timed & ~is_new]:
             if (known_s == stamp_s).any():
                 self._doubled += 1
-            else:  # it was taken for lost
+            else:
                 self._late += 1
                 self._received += 1
-                self._lost = max(self._lost - 1, 0)
-        return is_new
+                self._lost = max(self._lost - 1, 0)  # it was taken for lost
+
+
+def _is_later(time_s: FloatArray, last_s: float) -> BoolArray:
+    """Which samples (n,) are later than `last_s` and all before them."""
+    newest_s = np.fmax.accumulate(np.concatenate([[last_s], time_s]))
+    later: BoolArray = time_s > newest_s[:-1]  # of NaN never
+    return later
