@@ -88,7 +88,7 @@ class LiveEvent:
 
 @dataclass(frozen=True, slots=True)
 class PhaseChange:
-    """The sample at `told_s` put the foot into another phase, in which it has been since `since_s`."""
+    """The sample at `told_s` put the foot into a phase, or told an event: it has been in this phase since `since_s`."""
 
     phase: Phase
     since_s: float
@@ -162,13 +162,13 @@ class LiveEvents:
             step_s = now_s - self._time_s
             if not math.isfinite(sum(gyr) + sum(acc)) or step_s <= 0.0:
                 continue
-            last_s, last_phase = self._time_s, self._phase
+            last_s, last_phase, told = self._time_s, self._phase, len(self._told)
             self._time_s, self._step_s = now_s, step_s
             if step_s <= MAX_REPORTED_GAP_S:
                 self._take(gyr, acc)
             else:  # so does the first sample of all, whose step is NaN
                 self._forget_the_step()
-            if self._phase is not last_phase:
+            if self._phase is not last_phase or len(self._told) > told:
                 since_s = last_s if self._phase is Phase.UNKNOWN else self._since_s(now_s)
                 self._changes.append(PhaseChange(self._phase, since_s, now_s))
         return self._told
