@@ -1,0 +1,112 @@
+"""Which sensors make up which leg, looked for once a second while the patient moves?
+
+A look takes some 0.1 s of the estimator's thread, in pieces of NumPy that let the screen in between; while nobody moves
+there is none.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from app.acquisition.motion_memory import KEPT_S, MotionMemory, tracks_of
+from core.live.sensors import LiveSensor
+from core.pair import MOVING_WINDOW_S, moving_mean
+from core.placement.chains import LIFTED_RAD_S, USUAL_SITES, Chain, Chains, find_chains
+from core.samples import FloatArray, ImuBlock
+from core.tracks import nominal_step_s
+
+LOOK_S = 1.0
+SURE_AFTER = 2  # looks that say the same
+
+
+class ChainSearch:
+    """Chains of the sensors that are heard, from the last KEPT_S; who was lifted first is remembered from the start on.
+
+    Attributes
+    ----------
+    chains
+        What the last look found; None before, and where it found nothing.
+    is_sure
+        Whether the last looks were certain of the same legs.
+    """
+
+    def __init__(
+        self,
+        names: Iterable[str],
+        sensors: Mapping[str, LiveSensor] | None = None,
+        standing: Mapping[str, FloatArray] | None = None,
+    ) -> None:
+        self.chains: Chains | None = None
+        self._memory = MotionMemory(names)
+        self._sensors, self._standing = sensors or {}, standing or {}
+        self._lifted_at_s: dict[str, float] = {}
+        self._next_look_s: float | None = None
+        self._alike = 0
+
+    @property
+    def is_sure(self) -> bool:
+        return self._alike >= SURE_AFTER
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples, and look as often as they allow."""
+        self._memory.feed(blocks)
+        if self._next_look_s is None:
+            first_s = min((block.time_s[0] for block in blocks.values() if len(block)), default=None)
+            if first_s is None:
+                return
+            self._next_look_s = LOOK_S * (np.floor(first_s / LOOK_S) + 1)
+        while self._memory.has_passed(self._next_look_s):
+            self._look(self._next_look_s)
+            self._next_look_s += LOOK_S
+            self._memory.forget_before(self._next_look_s - KEPT_S)
+
+    def _look(self, at_s: float) -> None:
+        speeds = self._note_lifts(at_s)
+        if max(speeds.values(), default=0.0) < LIFTED_RAD_S:
+            return
+        blocks = {k: v for k, v in self._memory.between(at_s - KEPT_S, at_s).items() if k in speeds}
+        found = find_chains(tracks_of(blocks, self._sensors), self._standing) if len(blocks) in USUAL_SITES else None
+        before, self.chains = self.chains, found and self._in_order(found)
+        if found is None or not found.is_certain:
+            self._alike = 0
+        else:
+            self._alike = self._alike + 1 if before is not None and _legs(before) == _legs(found) else 1
+
+    def _note_lifts(self, at_s: float) -> dict[str, float]:
+        """Mean speed over the last look's time of each sensor that is heard; who was lifted in it is noted."""
+        half_s = 0.5 * MOVING_WINDOW_S
+        speeds = {}
+        for name, block in self._memory.between(at_s - LOOK_S - 2 * half_s, at_s).items():
+            speed, is_last = np.linalg.norm(block.gyr_rad_s, axis=1), block.time_s >= at_s - LOOK_S
+            known = np.isfinite(speed)
+            if not (known & is_last).any() or np.count_nonzero(known) < 2:
+                continue
+            speeds[name] = float(np.mean(speed[known & is_last]))
+            time_s = block.time_s[known]
+            mean = moving_mean(speed[known], max(1, round(MOVING_WINDOW_S / nominal_step_s(time_s))))
+            is_whole = (time_s >= at_s - LOOK_S - half_s) & (time_s < at_s - half_s)
+            lifted = np.flatnonzero((mean > LIFTED_RAD_S) & is_whole)
+            if len(lifted):
+                self._lifted_at_s.setdefault(name, float(time_s[lifted[0]]))
+        return speeds
+
+    def _in_order(self, chains: Chains) -> Chains:
+        """The same legs in the order in which they were lifted, however long ago."""
+        legs = [replace(leg, moved_at_s=self._moved_at_s(leg)) for leg in chains.legs]
+        legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
+        at_s = [leg.moved_at_s for leg in legs]
+        lead_s = None if len(at_s) < 2 or at_s[0] is None or at_s[1] is None else at_s[1] - at_s[0]
+        return Chains(tuple(legs), chains.margin, lead_s)
+
+    def _moved_at_s(self, leg: Chain) -> float | None:
+        at_s = [self._lifted_at_s[name] for name in _worn(leg) if name in self._lifted_at_s]
+        return min(at_s, default=None)
+
+
+def _worn(leg: Chain) -> tuple[str, ...]:
+    return (leg.thigh, leg.shank) if leg.foot is None else (leg.thigh, leg.shank, leg.foot)
+
+
+def _legs(chains: Chains) -> set[tuple[str, ...]]:
+    return {_worn(leg) for leg in chains.legs}

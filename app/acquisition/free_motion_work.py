@@ -1,0 +1,238 @@
+"""How well does the free motion show the joints, do the labels agree with it, and who is where if nobody said so?"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from app.acquisition.chain_search import ChainSearch
+from app.acquisition.motion_memory import KEPT_S, MotionMemory, tracks_of
+from app.acquisition.placing_work import sites_of
+from core.body import Side, Site
+from core.live.free_motion import FreeMotion, FreeMotionState
+from core.live.sensors import LiveSensor
+from core.placement.arrangements import joints_between
+from core.placement.chains import Chains
+from core.placement.labels import exchanged_sites
+from core.samples import FloatArray, ImuBlock
+
+LABELS_AFTER_S, LABELS_EVERY_S = 10.0, 5.0  # of motion, before labels are doubted; then two looks have to agree
+CAUGHT_UP_S = 1.0  # of what was held back, taken in one update
+
+
+@dataclass(frozen=True, slots=True)
+class FreeMotionView:
+    """The free motion so far.
+
+    Attributes
+    ----------
+    motion
+        Empty as long as nobody knows who is where.
+    elapsed_s
+        Since the first sample, or since one leg alone began anew.
+    repeated
+        The leg that is being repeated; the other's joints stay as they were.
+    exchanged
+        Groups of sites whose labels the motion contradicts, in two looks that agree.
+    site_of
+        By the sensor's name: as was said, or as the motion has told.
+    chains
+        What is known of the legs where the placement is left to the motion.
+    """
+
+    motion: FreeMotionState = field(default_factory=FreeMotionState)
+    elapsed_s: float = 0.0
+    repeated: Side | None = None
+    exchanged: tuple[tuple[Site, ...], ...] = ()
+    site_of: Mapping[str, Site] = field(default_factory=dict)
+    chains: Chains | None = None
+
+
+class FreeMotionWork:
+    """The motion of sensors whose sites are known. Their joints are watched leg by leg, so that one can begin anew.
+
+    Parameters
+    ----------
+    live_sensors
+        By name. Sensors that are missing here, or in `site_of`, are not worn.
+    standing
+        Mean specific force (3,) in standing, by name, where it is known: it helps to judge the labels.
+    """
+
+    def __init__(
+        self,
+        site_of: Mapping[str, Site],
+        live_sensors: Mapping[str, LiveSensor],
+        prosthetic_sides: frozenset[Side] = frozenset(),
+        without_ankle: frozenset[Side] = frozenset(),
+        standing: Mapping[str, FloatArray] | None = None,
+    ) -> None:
+        self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
+        self._sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
+        self._prosthetic_sides, self._without_ankle = prosthetic_sides, without_ankle
+        sides = [side for side in Side if any(site.side is side for site in self._sensors)]
+        self._legs = {side: self._new_leg(side) for side in sides}
+        self._states: dict[Side, FreeMotionState] = {}
+        self._labels = _LabelCheck(self._sensors, {site_of[k]: v for k, v in (standing or {}).items() if k in site_of})
+        self._first_s: float | None = None
+        self._now_s = -np.inf
+        self._repeated: Side | None = None
+        self._wish: Side | None = None  # set by the screen, taken by the estimator
+        self.state = FreeMotionView(site_of=self._site_of)
+
+    def repeat(self, side: Side) -> None:
+        """Begin this leg anew at the next update, and leave the other as it is. From any thread."""
+        self._wish = side
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples of some or all sensors; those that are not worn are passed over."""
+        wish, self._wish = self._wish, None
+        if wish in self._legs:
+            self._legs[wish], self._repeated, self._first_s = self._new_leg(wish), wish, None
+            self._states.pop(wish, None)
+        worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
+        if not worn:
+            return
+        first_s = min(float(block.time_s[0]) for block in worn.values())
+        self._first_s = first_s if self._first_s is None else min(self._first_s, first_s)
+        self._now_s = max(self._now_s, *(float(block.time_s[-1]) for block in worn.values()))
+        for side, leg in self._legs.items():
+            if self._repeated in (None, side):
+                self._states[side] = leg.update({s: block for s, block in worn.items() if s.side is side})
+        self._labels.update(worn)
+        self.state = FreeMotionView(
+            motion=_both(self._states),
+            elapsed_s=self._now_s - self._first_s,
+            repeated=self._repeated,
+            exchanged=self._labels.exchanged,
+            site_of=self._site_of,
+        )
+
+    def _new_leg(self, side: Side) -> FreeMotion:
+        of_leg = {site: sensor for site, sensor in self._sensors.items() if site.side is side}
+        return FreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
+
+
+class UnplacedFreeMotionWork:
+    """The motion of sensors whose sites it has to tell itself: it is held back until it has, and then made up for.
+
+    Where both legs began together, or only one wears sensors, `name_first` settles what the motion cannot tell.
+
+    Parameters
+    ----------
+    live_sensors
+        By name, of all sensors that are worn.
+    first_moved
+        The leg that the patient was asked to move first; None: not asked.
+    """
+
+    def __init__(
+        self,
+        live_sensors: Mapping[str, LiveSensor],
+        first_moved: Side | None,
+        prosthetic_sides: frozenset[Side] = frozenset(),
+        without_ankle: frozenset[Side] = frozenset(),
+        standing: Mapping[str, FloatArray] | None = None,
+    ) -> None:
+        self._sensors, self._first_moved, self._standing = live_sensors, first_moved, standing or {}
+        self._prosthetic_sides, self._without_ankle = prosthetic_sides, without_ankle
+        self._search = ChainSearch(live_sensors, live_sensors, standing)
+        self._placed: FreeMotionWork | None = None
+        self._held: list[dict[str, ImuBlock]] = []
+        self._first_s, self._now_s = np.inf, -np.inf
+        self._answer: Side | None = None
+        self._wish: Side | None = None
+        self.state = FreeMotionView()
+
+    def name_first(self, side: Side) -> None:
+        """Say which leg the first of the chains is; it counts once they are certain. From any thread."""
+        self._answer = side
+
+    def repeat(self, side: Side) -> None:
+        """As of `FreeMotionWork`; nothing before it is known who is where. From any thread."""
+        self._wish = side
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples of some or all sensors; those that are not worn are passed over."""
+        worn = {name: block for name, block in blocks.items() if name in self._sensors and len(block)}
+        if not worn:
+            return
+        self._first_s = min(self._first_s, _begin_s(worn))
+        self._now_s = max(self._now_s, *(float(block.time_s[-1]) for block in worn.values()))
+        self._held.append(worn)
+        if self._placed is None:
+            self._look(worn)
+        state = FreeMotionView() if self._placed is None else self._caught_up(self._placed)
+        elapsed_s = self._now_s - self._first_s if state.repeated is None else state.elapsed_s
+        self.state = replace(state, elapsed_s=elapsed_s, chains=self._search.chains)
+
+    def _caught_up(self, placed: FreeMotionWork) -> FreeMotionView:
+        """Take a little of what was held back."""
+        wish, self._wish = self._wish, None
+        if wish is not None:
+            self._held = self._held[-1:]  # what was before begins anew, or stays as it is
+            placed.repeat(wish)
+        until_s = _begin_s(self._held[0]) + CAUGHT_UP_S
+        while self._held and _begin_s(self._held[0]) < until_s:
+            placed.update(self._held.pop(0))
+        return placed.state
+
+    def _look(self, worn: Mapping[str, ImuBlock]) -> None:
+        """Whether the motion tells by now who is where."""
+        while _begin_s(self._held[0]) < self._now_s - KEPT_S and len(self._held) > 1:
+            del self._held[0]
+        self._search.update(worn)
+        site_of = self._told()
+        if site_of:
+            self._placed = FreeMotionWork(
+                site_of, self._sensors, self._prosthetic_sides, self._without_ankle, self._standing
+            )
+
+    def _told(self) -> dict[str, Site]:
+        chains = self._search.chains
+        if chains is None or not self._search.is_sure:
+            return {}
+        if self._answer is not None:
+            return chains.sites(self._answer)
+        return sites_of(chains, self._first_moved) if self._first_moved is not None else {}
+
+
+class _LabelCheck:
+    """Looks every LABELS_EVERY_S whether the motion contradicts the labels."""
+
+    def __init__(self, sensors: Mapping[Site, LiveSensor], standing: Mapping[Site, FloatArray]) -> None:
+        self._sensors = {str(site): sensor for site, sensor in sensors.items()}
+        self._standing = {str(site): force for site, force in standing.items()}
+        self._memory = MotionMemory(self._sensors)
+        self._next_look_s: float | None = None
+        self._last: list[tuple[Site, ...]] = []
+        self.exchanged: tuple[tuple[Site, ...], ...] = ()
+
+    def update(self, worn: Mapping[Site, ImuBlock]) -> None:
+        self._memory.feed({str(site): block for site, block in worn.items()})
+        if self._next_look_s is None:
+            first_s = min(float(block.time_s[0]) for block in worn.values())
+            self._next_look_s = LABELS_EVERY_S * float(np.ceil((first_s + LABELS_AFTER_S) / LABELS_EVERY_S))
+        while self._memory.has_passed(self._next_look_s):
+            found = self._found(self._memory.between(self._next_look_s - KEPT_S, self._next_look_s))
+            self.exchanged = tuple(found) if found == self._last else ()
+            self._last = found
+            self._next_look_s += LABELS_EVERY_S
+            self._memory.forget_before(self._next_look_s - KEPT_S)
+
+    def _found(self, blocks: Mapping[str, ImuBlock]) -> list[tuple[Site, ...]]:
+        ends = {end for joint in joints_between(tuple(map(Site, blocks))) for end in (joint.proximal, joint.distal)}
+        joined = {site: block for site, block in blocks.items() if Site(site) in ends}
+        return exchanged_sites(tracks_of(joined, self._sensors), self._standing)
+
+
+def _both(legs: Mapping[Side, FreeMotionState]) -> FreeMotionState:
+    """The state of both legs together."""
+    joints = {joint: state for leg in legs.values() for joint, state in leg.joints.items()}
+    lags = {joint: state for leg in legs.values() for joint, state in leg.lags.items()}
+    weakest = [leg.weakest for leg in legs.values() if leg.weakest is not None]
+    return FreeMotionState(joints, lags, max(weakest, key=lambda joint: joints[joint].wanting, default=None))
+
+
+def _begin_s(worn: Mapping[str, ImuBlock]) -> float:
+    return min(float(block.time_s[0]) for block in worn.values())

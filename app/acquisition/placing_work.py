@@ -1,0 +1,76 @@
+"""Which sensor is worn where? Told by shaking one after the other, or by moving the legs."""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.acquisition.chain_search import ChainSearch
+from app.acquisition.shaking import Shaking
+from core.body import Side, Site
+from core.placement.chains import Chains
+from core.samples import FloatArray, ImuBlock
+
+
+@dataclass(frozen=True, slots=True)
+class PlacingState:
+    """What the movement so far tells.
+
+    Attributes
+    ----------
+    shaken, shaken_together, shakes
+        As in `ShakingState`; `shakes` counts, so that nothing is missed between two looks of the screen.
+    movement_deg_s
+        Spread of each sensor's rate over its last quarter of a second.
+    chains
+        The legs, once the patient moves; None before.
+    is_sure
+        Whether the legs are certain, and have been for two seconds; left and right are another matter.
+    """
+
+    shaken: str | None = None
+    shaken_together: tuple[str, ...] = ()
+    shakes: int = 0
+    movement_deg_s: Mapping[str, float] = field(default_factory=dict)
+    chains: Chains | None = None
+    is_sure: bool = False
+
+    def sites(self, first_moved: Side) -> dict[str, Site]:
+        """Every sensor's site, once it is certain, with the side that was asked to move first; a single leg's side."""
+        return sites_of(self.chains, first_moved) if self.is_sure else {}
+
+
+class PlacingWork:
+    """For one way of placing sensors; another begins with another work.
+
+    Parameters
+    ----------
+    standing
+        Mean specific force (3,) in standing of the sensors that have stood.
+    """
+
+    def __init__(self, sensors: Iterable[str], standing: Mapping[str, FloatArray] | None = None) -> None:
+        names = tuple(sensors)
+        self._shaking = Shaking(names)
+        self._search = ChainSearch(names, standing=standing)
+        self.state = PlacingState()
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples of some or all sensors."""
+        shaking = self._shaking.update(blocks)
+        self._search.update(blocks)
+        self.state = PlacingState(
+            shaking.shaken,
+            shaking.shaken_together,
+            shaking.count,
+            {name: float(np.rad2deg(spread)) for name, spread in self._shaking.spread_rad_s.items()},
+            self._search.chains,
+            self._search.is_sure,
+        )
+
+
+def sites_of(chains: Chains | None, first_moved: Side) -> dict[str, Site]:
+    """Name the sites where the order of the legs is certain too; a single leg needs no order."""
+    if chains is None or not (len(chains.legs) == 1 or chains.is_first_certain):
+        return {}
+    return chains.sites(first_moved)

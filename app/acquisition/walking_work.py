@@ -1,0 +1,285 @@
+"""What does the walking patient do now, and did in the last seconds? Curves, phases, steps: what the screen draws."""
+
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+
+import numpy as np
+
+from core.body import Joint, Segment, Side, Site
+from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
+from core.gait.phases import Phase
+from core.gait.strides import MAX_STRIDE_S
+from core.live.angle import AngleSamples
+from core.live.sensors import LiveSensor
+from core.live.walking import LiveFoot, Walking
+from core.results import JointCalibration
+from core.samples import FloatArray, ImuBlock
+from core.strap import Slip
+
+KEPT_S = 15.0
+SILENT_S = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class JointCurve:
+    """One joint's last seconds, both (n,) and read-only; NaN in gaps, one of them between two stretches."""
+
+    time_s: FloatArray
+    angle_rad: FloatArray
+    is_provisional: bool
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseSpan:
+    """A foot's phase; `end_s` None: it still lasts."""
+
+    phase: Phase
+    start_s: float
+    end_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class FootLane:
+    """One foot's last seconds: its known phases in order, and when it was silent, from and to; None: it still is."""
+
+    spans: tuple[PhaseSpan, ...] = ()
+    silent_s: tuple[tuple[float, float | None], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class WalkingView:
+    """All times on the acquisition's clock, as the thighs' sensors have it.
+
+    Attributes
+    ----------
+    now_s
+        The newest sample of any sensor. When all are silent, it stands still.
+    joints
+        Of every joint with a calibration whose two sensors are worn.
+    lanes, strides
+        Of every side with a foot sensor; strides since `count_from`.
+    cadence_steps_min
+        Of both feet; None while nobody walks.
+    missing
+        Sites not heard for SILENT_S.
+    """
+
+    now_s: float | None = None
+    joints: Mapping[Joint, JointCurve] = field(default_factory=dict)
+    lanes: Mapping[Side, FootLane] = field(default_factory=dict)
+    strides: Mapping[Side, int] = field(default_factory=dict)
+    cadence_steps_min: float | None = None
+    slips: tuple[Slip, ...] = ()
+    missing: tuple[Site, ...] = ()
+
+    @property
+    def total_strides(self) -> int:
+        return sum(self.strides.values())
+
+
+class WalkingWork:
+    """Both legs of a walking patient, from walk to walk without a break: filters that have settled stay so.
+
+    Parameters
+    ----------
+    live_sensors
+        By name. Sensors that are missing here, or in `site_of`, are not worn.
+    """
+
+    def __init__(
+        self,
+        site_of: Mapping[str, Site],
+        live_sensors: Mapping[str, LiveSensor],
+        calibration: Mapping[Joint, JointCalibration],
+    ) -> None:
+        self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
+        sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
+        self._walking = Walking(sensors, calibration)
+        known = [joint for joint in Joint if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)]
+        self._curves = {joint: _Curve(sensors[joint.proximal].step_s) for joint in known}
+        self._feet = {site.side: _Foot() for site in sensors if site.segment is Segment.FOOT}
+        self._heard_s: dict[Site, float] = {}
+        self._first_s: float | None = None
+        self._now_s = -np.inf
+        self._count_from_s = -np.inf  # set by the screen
+        self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
+        self.state = WalkingView()
+
+    def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
+        """Go over to another calibration without a jump, from the next update on; not of a joint that had none.
+
+        From any thread.
+        """
+        self._wishes.append((joint, calibration))
+
+    def count_from(self, time_s: float) -> None:
+        """Count strides from here on, as a walk begins. From any thread."""
+        self._count_from_s = time_s
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples of some or all sensors; those that are not worn are passed over."""
+        while self._wishes:
+            joint, calibration = self._wishes.popleft()
+            if joint in self._curves:
+                self._walking.recalibrate(joint, calibration)
+        worn = {self._site_of[name]: block for name, block in blocks.items() if name in self._site_of and len(block)}
+        if not worn:
+            return
+        self._hear(worn)
+        told = self._walking.update(worn)
+        kept_from_s = self._now_s - KEPT_S
+        joints = {}
+        for joint, curve in self._curves.items():
+            curve.add(told.joints[joint].samples)
+            joints[joint] = curve.since(kept_from_s, told.joints[joint].is_provisional)
+        missing = tuple(site for site in self._walking_sites() if self._is_silent(site))
+        lanes, cadences = {}, []
+        for side, foot in self._feet.items():
+            site = Site(f"{side}_{Segment.FOOT}")
+            foot.take(told.feet[side], worn.get(site))
+            lanes[side] = foot.lane(kept_from_s, is_silent=site in missing)
+            cadence = told.feet[side].cadence_steps_min
+            if np.isfinite(cadence) and site not in missing:
+                cadences.append(cadence)
+        self.state = WalkingView(
+            now_s=self._now_s,
+            joints=joints,
+            lanes=lanes,
+            strides={side: foot.strides_since(self._count_from_s) for side, foot in self._feet.items()},
+            cadence_steps_min=float(np.mean(cadences)) if cadences else None,
+            slips=told.slips,
+            missing=missing,
+        )
+
+    def _hear(self, worn: Mapping[Site, ImuBlock]) -> None:
+        for site, block in worn.items():
+            self._heard_s[site] = float(block.time_s[-1])
+        if self._first_s is None:
+            self._first_s = min(float(block.time_s[0]) for block in worn.values())
+        self._now_s = max(self._heard_s.values())
+
+    def _walking_sites(self) -> list[Site]:
+        return [site for site in Site if site in self._site_of.values()]
+
+    def _is_silent(self, site: Site) -> bool:
+        assert self._first_s is not None
+        return self._now_s - self._heard_s.get(site, self._first_s) > SILENT_S
+
+
+class _Curve:
+    """One joint's angles. They are written behind what the screen holds, and never twice: what it holds stays."""
+
+    def __init__(self, step_s: float) -> None:
+        self._step_s = step_s
+        self._room = round(4 * KEPT_S / step_s)
+        self._time_s, self._angle_rad = np.empty(self._room), np.empty(self._room)
+        self._begin = self._end = 0
+        self._last_tick: int | None = None
+
+    def add(self, samples: AngleSamples) -> None:
+        """Take the next samples; where ticks jump, a NaN parts the stretches."""
+        if not len(samples):
+            return
+        before = samples.tick[:1] - 1 if self._last_tick is None else [self._last_tick]
+        jumps = np.flatnonzero(np.diff(np.concatenate([before, samples.tick])) > 1)
+        self._last_tick = int(samples.tick[-1])
+        time_s, angle_rad = samples.time_s, samples.angle_rad
+        if len(jumps):
+            time_s = np.insert(time_s, jumps, time_s[jumps] - self._step_s)
+            angle_rad = np.insert(angle_rad, jumps, np.nan)
+        end = self._end + len(time_s)
+        if end > len(self._time_s):
+            end = self._move(len(time_s))
+        self._time_s[self._end : end], self._angle_rad[self._end : end] = time_s, angle_rad
+        self._end = end
+
+    def since(self, time_s: float, is_provisional: bool) -> JointCurve:
+        self._begin += int(np.searchsorted(self._time_s[self._begin : self._end], time_s))
+        part = slice(self._begin, self._end)
+        return JointCurve(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), is_provisional)
+
+    def _move(self, coming: int) -> int:
+        """Go over to new arrays with what is still needed; returns where the coming samples end there."""
+        kept = slice(self._begin, self._end)
+        count = self._end - self._begin
+        room = max(self._room, 2 * (count + coming))
+        old_s, old_rad = self._time_s[kept], self._angle_rad[kept]
+        self._time_s, self._angle_rad = np.empty(room), np.empty(room)
+        self._time_s[:count], self._angle_rad[:count] = old_s, old_rad
+        self._begin, self._end = 0, count
+        return count + coming
+
+
+class _Foot:
+    """One foot's phases, silences and contacts."""
+
+    def __init__(self) -> None:
+        self._phases: list[tuple[Phase, float]] = []  # each lasts until the next
+        self._silent_s: list[tuple[float, float]] = []
+        self._heard_s: float | None = None
+        self._contacts_s: list[float] = []
+
+    def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
+        if block is not None:
+            before = block.time_s[:1] if self._heard_s is None else np.array([self._heard_s])
+            time_s = np.concatenate([before, block.time_s])
+            ends = np.flatnonzero(np.diff(time_s) > SILENT_S)
+            self._silent_s += zip(time_s[ends].tolist(), time_s[ends + 1].tolist(), strict=True)
+            self._heard_s = float(time_s[-1])
+        for events, change in _by_sample(foot.events, foot.changes):
+            for event in events:
+                self._begin(PHASE_AFTER[event.event], event.time_s)
+                if event.event is FootEvent.INITIAL_CONTACT:
+                    self._contacts_s.append(event.time_s)
+            self._go_over(change)
+
+    def strides_since(self, time_s: float) -> int:
+        """Two contacts that follow each other are a stride; farther apart than MAX_STRIDE_S, a pause."""
+        first = int(np.searchsorted(self._contacts_s, time_s))
+        return sum(end - start <= MAX_STRIDE_S for start, end in pairwise(self._contacts_s[first:]))
+
+    def lane(self, from_s: float, is_silent: bool) -> FootLane:
+        """What is still of interest; the rest is forgotten."""
+        while len(self._phases) > 1 and self._phases[1][1] < from_s:
+            del self._phases[0]
+        self._silent_s = [span for span in self._silent_s if span[1] >= from_s]
+        following = [*self._phases[1:], (Phase.UNKNOWN, self._heard_s if is_silent else None)]
+        spans = tuple(
+            PhaseSpan(phase, start_s, end_s)
+            for (phase, start_s), (_, end_s) in zip(self._phases, following, strict=False)
+            if phase is not Phase.UNKNOWN
+        )
+        silent: tuple[tuple[float, float | None], ...] = tuple(self._silent_s)
+        if is_silent and self._heard_s is not None:
+            silent = (*silent, (self._heard_s, None))
+        return FootLane(spans, silent)
+
+    def _begin(self, phase: Phase, at_s: float) -> None:
+        """An event told since when the foot is in a phase: what was shown after that instant was premature."""
+        while self._phases and self._phases[-1][1] >= at_s:
+            self._phases.pop()
+        if not self._phases or self._phases[-1][0] is not phase:
+            self._phases.append((phase, at_s))
+
+    def _go_over(self, change: PhaseChange) -> None:
+        """A sample put the foot into a phase, with an event or without."""
+        last = self._phases[-1] if self._phases else None
+        if last is not None and last[0] is Phase.PRE_SWING and change.phase is Phase.FOOT_FLAT:
+            self._begin(Phase.FOOT_FLAT, last[1])  # it did not leave the floor
+        elif last is None or last[0] is not change.phase:
+            self._begin(change.phase, change.since_s)
+
+
+def _by_sample(
+    events: tuple[LiveEvent, ...], changes: tuple[PhaseChange, ...]
+) -> list[tuple[list[LiveEvent], PhaseChange]]:
+    """Events and the change that one sample told; every event comes with a change."""
+    return [([event for event in events if event.told_s == change.told_s], change) for change in changes]
+
+
+def _read_only(part: FloatArray) -> FloatArray:
+    view = part.view()
+    view.flags.writeable = False
+    return view
