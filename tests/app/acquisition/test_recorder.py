@@ -1,0 +1,287 @@
+"""What is recorded live gets into the library, whatever the database does, and is analysed as it was recorded."""
+
+import shutil
+import time
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from uuid import UUID
+
+import numpy as np
+import pytest
+
+from app.acquisition.acquisition import Acquisition
+from app.acquisition.recorder import Recorder
+from app.storage.exchange import session_with_samples
+from app.storage.journal.disk import JournalFile, Room, Trouble
+from app.storage.journal.header import JournalRefusedError
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import FILE_NAME, Library
+from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.recovery import find_interrupted
+from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedSensor, RecordingState, Role
+from core.analysis import analyse
+from core.body import Joint
+from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from devices.replay import ReplayFaults, ReplaySource
+from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from tests.safety.live_material import Clock, numbered_session
+
+ANY_ROOM = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
+PATIENCE_S = 20.0
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> OpenedLibrary:
+    """A new library whose one operator is `hk`, closed."""
+    folder = tmp_path_factory.mktemp("untouched")
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
+    library = Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
+    library.close()
+    return OpenedLibrary(library, folder, data_key)
+
+
+def reopened(opened: OpenedLibrary) -> OpenedLibrary:
+    library = Library.open(opened.folder, opened.data_key)
+    library.log_in("hk")
+    return OpenedLibrary(library, opened.folder, opened.data_key)
+
+
+@pytest.fixture
+def opened(untouched: OpenedLibrary, tmp_path: Path) -> Iterator[OpenedLibrary]:
+    folder = tmp_path / "library"
+    shutil.copytree(untouched.folder, folder)
+    with reopened(OpenedLibrary(untouched.library, folder, untouched.data_key)) as opened:
+        yield opened
+
+
+def visit_of(opened: OpenedLibrary, session: Session, code: str = "DEMO-1") -> UUID:
+    """A session of the library in which the sensors of `session` are worn where they were."""
+    patient = opened.library.patients.create(Patient(code=code))
+    visit = opened.library.sessions.create(patient.id, Session(()))
+    imu = session.recordings[0].imu
+    worn = {site: PlacedSensor(imu[site].sensor, session.sensors.get(site, SensorInfo())) for site in imu}
+    opened.library.sessions.place(visit.id, worn)
+    return visit.id
+
+
+def walk(name: str = "walk 1") -> Recording:
+    return Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+
+
+@pytest.fixture
+def acquisition() -> Iterator[Acquisition]:
+    acquisition = Acquisition([ReplaySource(numbered_session("a", 2))])
+    acquisition.start()
+    yield acquisition
+    acquisition.close()
+
+
+@pytest.fixture
+def session_id(opened: OpenedLibrary) -> UUID:
+    return visit_of(opened, numbered_session("a", 2))
+
+
+def wait_for(is_so: Callable[[], bool]) -> None:
+    give_up_s = time.monotonic() + PATIENCE_S
+    while not is_so():
+        assert time.monotonic() < give_up_s, "waited in vain"
+        time.sleep(0.002)
+
+
+def differences(one: object, other: object, where: str = "") -> list[str]:
+    """Where two results are not the same, to the last bit."""
+    if type(one) is not type(other):
+        return [f"{where}: {type(one)} and {type(other)}"]
+    if is_dataclass(one):
+        pairs = [(field.name, getattr(one, field.name), getattr(other, field.name)) for field in fields(one)]
+        return [found for name, a, b in pairs for found in differences(a, b, f"{where}.{name}")]
+    if isinstance(one, Mapping) and isinstance(other, Mapping):
+        if list(one) != list(other):
+            return [f"{where}: {list(one)} and {list(other)}"]
+        return [found for key in one for found in differences(one[key], other[key], f"{where}[{key}]")]
+    if isinstance(one, np.ndarray) and isinstance(other, np.ndarray):
+        return [] if one.shape == other.shape and one.tobytes() == other.tobytes() else [f"{where}: other values"]
+    if isinstance(one, Sequence) and isinstance(other, Sequence) and not isinstance(one, str):
+        if len(one) != len(other):
+            return [f"{where}: {len(one)} and {len(other)}"]
+        return [
+            found
+            for k, (a, b) in enumerate(zip(one, other, strict=True))
+            for found in differences(a, b, f"{where}[{k}]")
+        ]
+    is_same = one == other or (one != one and other != other)
+    return [] if is_same else [f"{where}: {one} and {other}"]
+
+
+def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened: OpenedLibrary) -> None:
+    """With losses, a sensor that was silent for a while, and one whose stamps are late."""
+    clock = Clock()
+    simulated = simulate(WalkerSettings(seed=2, recordings=(Standing(), FreeMotion(duration_s=9.0), Walk(strides=6))))
+    session = simulated.session
+    late, silent = (block.sensor for block in list(session.recordings[0].imu.values())[1:3])
+    faults = ReplayFaults(loss_share=0.01, lag_s={late: 0.02}, silent_s={silent: (6.0, 6.5)}, seed=4)
+    acquisition = Acquisition([ReplaySource(session, faults=faults, now_ns=clock, sleep=clock.sleep)], now_ns=clock)
+    visit_id = visit_of(opened, session)
+    acquisition.start()
+    live: list[Recording] = []
+    for played in session.recordings:
+        told = Recording(played.name, played.kind, played.folder, {})
+        length_s = max(block.time_s[-1] for block in played.imu.values())
+        recorder = Recorder.begin(opened, acquisition, visit_id, told, room=ANY_ROOM)
+        recorder.mark("go")
+        acquisition.ask(played.kind)
+        until_s = acquisition.now_s + length_s
+        wait_for(lambda until_s=until_s: acquisition.now_s > until_s)  # type: ignore[misc]
+        stored, recording = recorder.stop(opened)
+        assert stored.state is RecordingState.CLOSED
+        assert [journal.sha256 for journal in stored.journals] == [recorder.summary.sha256 if recorder.summary else ""]
+        live.append(recording)
+    acquisition.close()
+    for played, recording in zip(session.recordings, live, strict=True):
+        assert list(recording.imu) == list(played.imu)
+        assert all(is_part_of(recording.imu[site], played.imu[site]) for site in played.imu)
+
+    visit = opened.library.sessions.get(visit_id)
+    first = analyse(Session(tuple(live), visit.told.patient, visit.told.sensors, is_simulated=True))
+    opened.library.close()
+    with reopened(opened) as later:
+        stored_visit = later.library.sessions.get(visit_id)
+        again = session_with_samples(later, stored_visit, {}, lambda _share, _what: None)
+    assert again.is_simulated
+    assert again.findings == ()
+    assert differences(tuple(live), again.recordings) == []
+    assert differences(first, analyse(again)) == []
+    angle = first.recordings[-1].joints[Joint.LEFT_KNEE].angle_rad
+    assert np.mean(np.isfinite(angle)) > 0.8
+    assert np.nanmax(angle) - np.nanmin(angle) > np.deg2rad(40.0)
+
+
+def is_part_of(block: ImuBlock, played: ImuBlock) -> bool:
+    """Whether most of what was played is there, each sample as it was."""
+    rows = {row.tobytes(): number for number, row in enumerate(np.hstack([played.gyr_rad_s, played.acc_m_s2]))}
+    found = [rows.get(row.tobytes(), -1) for row in np.hstack([block.gyr_rad_s, block.acc_m_s2])]
+    numbers = [number for number in found if number >= 0]
+    return len(set(numbers)) > 0.9 * len(played)
+
+
+def test_a_name_that_is_taken_is_refused_and_nothing_is_recorded(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
+) -> None:
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    recorder.stop(opened)
+    files = list(opened.recordings.iterdir())
+    with pytest.raises(LibraryError, match="of this name already"):
+        Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    assert list(opened.recordings.iterdir()) == files
+    Recorder.begin(opened, acquisition, session_id, walk("walk 2"), room=ANY_ROOM).stop(opened)
+
+
+def test_simulated_sensors_are_not_recorded_for_a_real_patient(opened: OpenedLibrary, acquisition: Acquisition) -> None:
+    visit_id = visit_of(opened, numbered_session("a", 2), code="P-001")
+    with pytest.raises(LibraryError, match="starts with DEMO"):
+        Recorder.begin(opened, acquisition, visit_id, walk(), room=ANY_ROOM)
+
+
+def test_without_room_nothing_begins_and_the_name_stays_free(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
+) -> None:
+    with pytest.raises(JournalRefusedError, match="free disk"):
+        Recorder.begin(opened, acquisition, session_id, walk(), room=Room(start_bytes=10**15))
+    wait_for(lambda: opened.library.sessions.get(session_id).recordings == ())
+    stored, _ = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM).stop(opened)
+    assert stored.told.name == "walk 1"
+
+
+class Busy:
+    """A database that answers nobody who writes, until it is told to."""
+
+    def __init__(self, opened: OpenedLibrary, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.refuses = False
+        self.is_held = True
+        recordings = opened.library.recordings
+        for name in ("start", "add_journal", "close"):
+            monkeypatch.setattr(recordings, name, self._held(getattr(recordings, name)))
+
+    def _held(self, call: Callable[..., object]) -> Callable[..., object]:
+        def held(*arguments: object) -> object:
+            while self.is_held and not self.refuses:
+                time.sleep(0.005)
+            if self.is_held:
+                raise LibraryBusyError("Another program keeps the library busy", "Wait a moment")
+            return call(*arguments)
+
+        return held
+
+
+@pytest.fixture
+def busy(opened: OpenedLibrary, session_id: UUID, monkeypatch: pytest.MonkeyPatch) -> Busy:
+    assert session_id
+    monkeypatch.setattr("app.acquisition.recorder.ROW_WAIT_S", 0.1)
+    return Busy(opened, monkeypatch)
+
+
+def test_a_busy_database_holds_up_no_recording_and_the_row_follows(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
+) -> None:
+    begin_s = time.monotonic()
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    assert time.monotonic() - begin_s < 5.0
+    assert opened.library.sessions.get(session_id).recordings == ()
+    time.sleep(0.2)
+    busy.is_held = False
+    stored, recording = recorder.stop(opened)
+    assert stored.state is RecordingState.CLOSED
+    assert stored.id == recorder.id
+    assert len(stored.journals) == 1
+    assert all(len(block) > 20 for block in recording.imu.values())
+    assert len(recording.imu) == 2
+
+
+def test_a_row_that_could_not_be_entered_is_entered_on_stop(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
+) -> None:
+    busy.refuses = True
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    time.sleep(0.2)
+    busy.is_held = False
+    stored, recording = recorder.stop(opened)
+    assert stored.state is RecordingState.CLOSED
+    assert recorder.summary is not None
+    assert [journal.sha256 for journal in stored.journals] == [recorder.summary.sha256]
+    assert len(recording.imu) == 2
+
+
+def test_a_database_that_stays_busy_leaves_a_journal_that_is_found(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, busy: Busy
+) -> None:
+    busy.refuses = True
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    time.sleep(0.1)
+    with pytest.raises(LibraryBusyError):
+        recorder.stop(opened)
+    (orphan,) = find_interrupted(opened)
+    assert (orphan.recording_id, orphan.is_orphan) == (recorder.id, True)
+    busy.is_held = False
+    stored, _ = recorder.stop(opened)  # tried again
+    assert stored.state is RecordingState.CLOSED
+    assert find_interrupted(opened) == ()
+
+
+def test_a_disk_that_fails_is_told_and_what_was_written_is_kept(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    said: list[Trouble] = []
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), said.append, room=ANY_ROOM)
+    time.sleep(0.3)
+
+    def fail(file: JournalFile, data: bytes) -> None:
+        raise OSError(5, "Input/output error")
+
+    monkeypatch.setattr(JournalFile, "append", fail)
+    wait_for(lambda: said == [Trouble.DISK_GONE])
+    stored, recording = recorder.stop(opened)
+    assert stored.state is RecordingState.RECOVERED
+    assert all(len(block) > 20 for block in recording.imu.values())
+    assert len(recording.imu) == 2
+    assert (opened.folder / FILE_NAME).exists()
