@@ -19,6 +19,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import HEIGHT, Button, Kind
+from app.widgets.grid import NARROW_BELOW, side_margin
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
@@ -27,7 +28,6 @@ from app.wording import tr
 BAR = 72
 STOP_HEIGHT = 56  # what stops a recording is found first
 PRIMARY_WIDTH = 208
-NARROW_BELOW = 964  # the bar's share of a window of 1180
 NOTE_WIDTH = 300  # longer words beside a verb take a second line
 NOTE_AT_LEAST = 170
 DOT = 16
@@ -76,6 +76,7 @@ class ActionBar(QWidget):
     other_pressed = Signal(int)
     quiet_pressed = Signal(int)
     sound_pressed = Signal()
+    recording_changed = Signal(bool)
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -110,10 +111,14 @@ class ActionBar(QWidget):
         return [button for button in self._quiet if not button.isHidden()]
 
     @property
+    def buttons(self) -> list[QWidget]:
+        """All buttons, also hidden ones, in the order of reading."""
+        return [self.back, *self._quiet, self.sound, *self._others, self.primary]
+
+    @property
     def tab_order(self) -> list[QWidget]:
         """All that can be pressed, in the order of reading."""
-        buttons = [self.back, *self._quiet, self.sound, *self._others, self.primary]
-        return [button for button in buttons if not button.isHidden()]
+        return [button for button in self.buttons if not button.isHidden()]
 
     def show_state(self, state: BarState) -> None:
         """Show what can be done; cheap where only the elapsed time is another."""
@@ -122,6 +127,8 @@ class ActionBar(QWidget):
             self._clock.show_elapsed(state.recording.elapsed_s)
         if _without_time(before) != _without_time(state):
             self._show()
+            if (state.recording is None) != (before.recording is None):
+                self.recording_changed.emit(state.recording is not None)
             if state.recording is not None and before.recording is None:
                 words = f"{state.recording.title}. {state.recording.note}"
                 QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, words))
@@ -184,8 +191,7 @@ class ActionBar(QWidget):
             button = VerbButton(self._look, self)
             button.clicked.connect(slot)
             buttons.append(button)
-            order = [self.back, *self._quiet, self.sound, *self._others, self.primary]
-            for before, after in pairwise(order):
+            for before, after in pairwise(self.buttons):
                 QWidget.setTabOrder(before, after)
 
     def _colour(self) -> None:
@@ -203,7 +209,8 @@ class ActionBar(QWidget):
     def _arrange(self) -> None:
         """Put all in one row, or the words above the verbs, or the verbs in as many rows as they need."""
         px = self._look.theme.px
-        margin, gap = (px(24), px(16)) if self.width() >= px(NARROW_BELOW) else (px(16), px(8))
+        margin = side_margin(self.width(), self._look.theme)
+        gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width() - 2 * margin, 1)
         left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
         right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
@@ -212,7 +219,7 @@ class ActionBar(QWidget):
         is_one_row = before + after - 2 * gap <= room
         is_beside = is_one_row and self._fits(room - before - after)
         rows = [(left, right)] if is_one_row else [*_rows(left, room, gap), *_rows(right, room, gap, is_right=True)]
-        line = px(BAR) if is_beside else px(HEIGHT + 8)
+        line = px(BAR) if is_beside else px((STOP_HEIGHT if self._state.recording is not None else HEIGHT) + 8)
         top = 0
         if is_beside:
             self._place_words(self._narrowed(QRect(margin + before, 0, room - before - after, line)))

@@ -6,11 +6,12 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import Button, Kind
+from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr
 
 HEIGHT = 64
-MARK = 28
+MARK = 36
 ABOVE = 12  # clear of the header; gone together with the banner
 
 
@@ -23,7 +24,7 @@ class Banner(QWidget):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self._what = Text(look, size=14, weight=SEMIBOLD, tone="caution_ink", wraps=True)
+        self._what = Text(look, size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._next = Text(look, size=14, tone="caution_ink", wraps=True)
         self._dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
         words = QVBoxLayout()
@@ -66,9 +67,9 @@ class Banner(QWidget):
         painter.setPen(theme.pen(c.caution_edge, 1))
         painter.setBrush(QColor(c.caution_mark))
         painter.drawEllipse(centre, MARK / 2 * theme.scale, MARK / 2 * theme.scale)
-        painter.setPen(theme.pen(c.caution_mark_ink, 2.5))
-        painter.drawLine(centre + QPointF(0, -px(7)), centre + QPointF(0, px(2)))
-        painter.drawPoint(centre + QPointF(0, px(7)))
+        side = px(MARK) * 0.6
+        mark = QRectF(centre.x() - side / 2, centre.y() - side * 0.55, side, side)
+        paint_icon(painter, Icon.WARNING, mark, c.caution_mark_ink)
 
     def _on_dismiss_clicked(self) -> None:
         self.hide()

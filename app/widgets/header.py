@@ -1,43 +1,84 @@
 """Whose session is on the screen, and is it real? The line at the top of every page."""
 
-from PySide6.QtCore import QPointF, QSize, Qt
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtCore import QPoint, QPointF, QRect, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import CHIP_RADIUS, Look
+from app.widgets.grid import side_margin
+from app.widgets.sensor_strip import StripButton
+from app.widgets.stopwatch import Stopwatch
 from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
 from core.body import Side
 
 HEIGHT = 56
+COMPACT_HEIGHT = 48
+FACTS_AT_LEAST = 120  # narrower, the lines break after every word
 
 
 class Header(QWidget):
-    def __init__(self, look: Look) -> None:
+    """With the rail beside it, it needs neither mark nor name; `fold` and `stopwatch` are hidden until they are used.
+
+    Where all does not fit into one line, what is at the right moves to a second.
+    """
+
+    def __init__(self, look: Look, has_mark: bool = True) -> None:
         super().__init__()
-        self._look = look
+        self._look, self._has_mark, self._is_compact = look, has_mark, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self._mark = Mark(look)
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
         self._code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
-        self._facts = Text(look, size=14, tone="ink2")
-        self._simulated = _Tag(look, "SIMULATED")
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(Mark(look))
-        self._row.addWidget(self._name)
-        self._row.addWidget(self._code)
-        self._row.addWidget(self._facts)
-        self._row.addStretch(1)
-        self._row.addWidget(self._simulated)
+        self._facts = Text(look, size=14, tone="ink2", wraps=True)
+        self._simulated = _Tag(look, tr("SIMULATED"))
+        self.fold = StripButton(look)
+        self.stopwatch = Stopwatch(look)
+        self._left: list[QWidget] = [self._mark, self._name, self._code, self._facts, self._simulated]
+        self._right: list[QWidget] = [self.fold, self.stopwatch]
+        for widget in (*self._left, *self._right):
+            widget.setParent(self)
+        for widget in (*self._right, self._simulated):
+            widget.hide()
+        self._mark.setVisible(has_mark)
+        self.fold.resized.connect(self._arrange)
         self.show_session("", "", is_simulated=False)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def show_session(self, code: str, facts: str, is_simulated: bool) -> None:
         """Show the patient's code and what the clinic typed; without a session, the program's name."""
+        if (code, facts, is_simulated) == (self._code.text(), self._facts.text(), not self._simulated.isHidden()):
+            return
         for label, text in ((self._code, code), (self._facts, facts)):
             label.setText(text)
             label.setVisible(bool(text))
-        self._name.setVisible(not code)
+        self._name.setVisible(self._has_mark and not code)
         self._simulated.setVisible(is_simulated)
+        self._arrange()
+
+    def show_elapsed(self, elapsed_s: float) -> None:
+        """Show how long the session has taken."""
+        self.stopwatch.show_elapsed(elapsed_s)
+        if self.stopwatch.isHidden():
+            self.stopwatch.show()
+            self._arrange()
+
+    def set_fold_shown(self, is_shown: bool) -> None:
+        """Show the sensors as a button that unfolds their strip, or take it away."""
+        self.fold.setVisible(is_shown)
+        self._arrange()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self.fold.set_compact(is_compact)
+        self.stopwatch.set_compact(is_compact)
+        self._arrange()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if event.size().width() != event.oldSize().width():
+            self._arrange()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -46,11 +87,47 @@ class Header(QWidget):
         painter.setPen(theme.pen(theme.colours.line, 1))
         painter.drawLine(self.rect().bottomLeft(), self.rect().bottomRight())
 
-    def _on_look_changed(self) -> None:
+    def _arrange(self) -> None:
         px = self._look.theme.px
-        self._row.setContentsMargins(px(24), 0, px(24), 0)
-        self._row.setSpacing(px(16))
-        self.setMinimumHeight(px(HEIGHT))
+        margin, gap = side_margin(self.width(), self._look.theme), px(16)
+        line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
+        room = max(self.width() - 2 * margin, 1)
+        left = [widget for widget in self._left if not widget.isHidden()]
+        right = [widget for widget in self._right if not widget.isHidden()]
+        facts = self._facts.fontMetrics().horizontalAdvance(self._facts.text()) + px(2) if self._facts in left else 0
+        others = sum(widget.sizeHint().width() for widget in left if widget is not self._facts)
+        others += gap * max(len(left) - 1, 0)
+        taken = sum(widget.sizeHint().width() + gap for widget in right)
+        is_one_line = others + min(facts, px(FACTS_AT_LEAST)) + taken <= room
+        free = room - others - (taken if is_one_line else 0)
+        width = max(min(facts, free), 1)
+        height = max(self._facts.heightForWidth(width) if facts else 0, line - px(8))
+        top = px(4)
+        x = margin
+        for widget in left:
+            size = widget.sizeHint()
+            if widget is self._facts:
+                size = QSize(width, self._facts.heightForWidth(width))
+            widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
+            x += size.width() + gap
+        rows = [right]
+        if not is_one_line:
+            top += height
+            height = line - px(8)
+            if taken - gap > room:
+                rows = [[widget] for widget in right]
+        for row in rows:
+            x = margin + room
+            for widget in reversed(row):
+                size = widget.sizeHint()
+                x -= size.width()
+                widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
+                x -= gap
+            top += height
+        self.setFixedHeight(top + px(4))
+
+    def _on_look_changed(self) -> None:
+        self._arrange()
         self.update()
 
 
@@ -83,10 +160,10 @@ class Mark(QWidget):
 
 
 class _Tag(Text):
-    """A word in a frame of ink."""
+    """A word that must not be overlooked, on yellow."""
 
     def __init__(self, look: Look, text: str) -> None:
-        super().__init__(look, text, size=14, weight=SEMIBOLD)
+        super().__init__(look, text, size=13, weight=SEMIBOLD, tone="caution_ink")
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         look.changed.connect(self._on_margin_changed)
         self._on_margin_changed()
@@ -95,11 +172,12 @@ class _Tag(Text):
         theme = self._look.theme
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.ink, 1.75))
-        painter.drawRoundedRect(self.rect().adjusted(1, 1, -1, -1), theme.px(4), theme.px(4))
+        painter.setPen(theme.pen(theme.colours.caution_edge, 1.25))
+        painter.setBrush(QColor(theme.colours.caution))
+        painter.drawRoundedRect(self.rect().adjusted(1, 1, -1, -1), theme.px(CHIP_RADIUS), theme.px(CHIP_RADIUS))
         painter.end()
         super().paintEvent(event)
 
     def _on_margin_changed(self) -> None:
         px = self._look.theme.px
-        self.setContentsMargins(px(10), px(5), px(10), px(5))
+        self.setContentsMargins(px(10), px(4), px(10), px(4))

@@ -30,7 +30,7 @@ class Toast(QWidget):
 
     def __init__(self, look: Look, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._look = look
+        self._look, self._room = look, 10_000
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self._text = Text(look, tone="inv_ink", wraps=True)
         self.button = VerbButton(look, self)
@@ -62,6 +62,12 @@ class Toast(QWidget):
             self._clock.start()
         words = tr("{what} Ctrl Z takes it back.").format(what=what)
         QAccessible.updateAccessibility(QAccessibleAnnouncementEvent(self, words))
+
+    def set_room(self, width: int) -> None:
+        """Say how many pixels wide it may be at most."""
+        if width != self._room:
+            self._room = width
+            self._fit()
 
     def undo(self) -> None:
         """Ask for what is offered to be taken back, if it still is."""
@@ -99,7 +105,7 @@ class Toast(QWidget):
 
     def _fit(self) -> None:
         px = self._look.theme.px
-        width = max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32))
+        width = min(max(px(WIDTH), self.button.sizeHint().width() + px(180 + 32)), self._room)
         room = width - self.button.sizeHint().width() - px(16 + 12 + 4)
         self.setFixedSize(width, max(px(HEIGHT), self._text.heightForWidth(room) + px(16)))
 

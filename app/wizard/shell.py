@@ -1,0 +1,321 @@
+"""The frame round every step: rail, header, sensors, banner, page and bar, each in its place at every size."""
+
+from enum import Enum, auto
+from itertools import pairwise
+
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, QVariantAnimation, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.action_bar import ActionBar
+from app.widgets.banner import Banner
+from app.widgets.grid import COMPACT_BELOW, CONTENT, WIDE_FROM, side_margin
+from app.widgets.header import Header
+from app.widgets.motion import duration_ms
+from app.widgets.sensor_strip import SensorStrip
+from app.widgets.step_rail import RailForm, StepRail
+from app.widgets.toast import Toast
+
+FADE_MS = 120
+LOW_BELOW = 480  # of the window, px of the design: tiles would leave the page no room
+
+
+class StripMode(Enum):
+    """FOLDED: a button in the header, which unfolds by itself when a sensor turns bad.
+
+    Where the window is too low for tiles, SHOWN is folded too, and nothing unfolds by itself: the button says it.
+    """
+
+    SHOWN = auto()
+    FOLDED = auto()
+    HIDDEN = auto()
+
+
+class WizardShell(QWidget):
+    """Passive: it lays out what it holds, and knows nothing of what a page is for.
+
+    Signals
+    -------
+    room_changed
+        Whether the window is compact, and the width and height that a page has, in px of the design. Told when the
+        room or the page is another one.
+    """
+
+    room_changed = Signal(bool, float, float)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._strip_mode, self._is_compact = look, StripMode.HIDDEN, False
+        self._is_low = False
+        self._by_index: dict[int, QWidget] = {}
+        self.rail = StepRail(look)
+        self.header = Header(look, has_mark=False)
+        self.strip = SensorStrip(look)
+        self.banner = Banner(look)
+        self._pages = _Pages()
+        self._scroll = QScrollArea()
+        self.bar = ActionBar(look)
+        self._build()
+        self.toast = Toast(look, self)
+        self._fade = _Fade(self._scroll)
+        self._connect()
+        self._on_look_changed()
+        self.set_strip_mode(StripMode.HIDDEN)
+
+    @property
+    def is_compact(self) -> bool:
+        return self._is_compact
+
+    @property
+    def page(self) -> QWidget | None:
+        """The page in sight."""
+        return self._pages.currentWidget()
+
+    def add_page(self, index: int, page: QWidget) -> None:
+        """Take in a page; one that had the same index is given up."""
+        if (before := self._by_index.get(index)) is page:
+            return
+        if before is not None:
+            self._pages.removeWidget(before)
+            before.deleteLater()
+        self._by_index[index] = page
+        self._pages.addWidget(page)
+
+    def show_page(self, index: int, page: QWidget | None = None) -> None:
+        """Go to a page, which is taken in if it is new. The focus goes where its reading starts."""
+        if page is not None:
+            self.add_page(index, page)
+        page = self._by_index[index]
+        if page is not self.page:
+            self._fade.begin()
+            self._pages.setCurrentWidget(page)
+            self._scroll.verticalScrollBar().setValue(0)
+            self._scroll.horizontalScrollBar().setValue(0)
+        self._tell_room()
+        self._chain()
+        self._focus_page()
+
+    def clear_pages(self) -> None:
+        """Let go of all pages."""
+        self._fade.end()
+        for page in self._by_index.values():
+            self._pages.removeWidget(page)
+            page.hide()
+            page.deleteLater()
+        self._by_index.clear()
+
+    def set_strip_mode(self, mode: StripMode) -> None:
+        if mode is not self._strip_mode:
+            self._strip_mode = mode
+            self.header.fold.setChecked(False)
+        self._show_strip()
+
+    def focus_next_region(self, steps: int) -> None:
+        """Take the focus to the next region, or the one before: rail, sensors, page, bar."""
+        sensors = self.strip if not self.strip.isHidden() else self.header.fold
+        regions = [region for region in (self.rail, sensors, self._scroll, self.bar) if not region.isHidden()]
+        focused = self.window().focusWidget()
+        at = next(
+            (
+                k
+                for k, one in enumerate(regions)
+                if focused is not None and (one is focused or one.isAncestorOf(focused))
+            ),
+            regions.index(self._scroll),
+        )
+        goal = regions[(at + steps) % len(regions)]
+        if goal is self._scroll:
+            self._focus_page()
+        elif isinstance(goal, StepRail | SensorStrip | ActionBar):
+            goal.focus()
+        else:
+            goal.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._fit()
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() in (QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Move):
+            if watched is self._scroll.viewport():
+                self._fade.setGeometry(self._scroll.viewport().rect())
+                self._tell_room()
+            else:
+                self._place_toast()
+        return super().eventFilter(watched, event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+
+    def _build(self) -> None:
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setWidget(self._pages)
+        self._scroll.setMinimumSize(1, 1)  # the hint of a scroll area would be more than a low window has
+        self._banner_row = QVBoxLayout()
+        self._banner_row.addWidget(self.banner)
+        self._middle = QVBoxLayout()
+        self._middle.setSpacing(0)
+        self._middle.addLayout(self._banner_row)
+        self._middle.addWidget(self._scroll, 1)
+        right = QVBoxLayout()
+        right.setSpacing(0)
+        right.addWidget(self.header)
+        right.addWidget(self.strip)
+        right.addLayout(self._middle, 1)
+        right.addWidget(self.bar)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        row.addWidget(self.rail)
+        row.addLayout(right, 1)
+
+    def _connect(self) -> None:
+        self.header.fold.toggled.connect(self._on_fold_toggled)
+        self.strip.tiles_changed.connect(self._on_tiles_changed)
+        self.strip.turned_bad.connect(self._on_turned_bad)
+        self.bar.recording_changed.connect(self._on_recording_changed)
+        self._scroll.viewport().installEventFilter(self)
+        for widget in (self.bar, self.toast):
+            widget.installEventFilter(self)
+        self._look.changed.connect(self._on_look_changed)
+
+    def _fit(self) -> None:
+        """Choose the forms of all parts by the room the window has, in px of the design."""
+        scale = self._look.theme.scale
+        width, height = self.width() / scale, self.height() / scale
+        was_low, self._is_low = self._is_low, height < LOW_BELOW
+        self._is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
+        form = RailForm.WIDE if width >= WIDE_FROM else RailForm.USUAL
+        self.rail.set_form(RailForm.COMPACT if self._is_compact else form)
+        self.header.set_compact(self._is_compact)
+        self.strip.set_compact(self._is_compact)
+        free = self.width() - self.rail.width()
+        beside = max(free - self._look.theme.px(CONTENT), 0) // 2
+        self._middle.setContentsMargins(beside, 0, beside, 0)
+        margin = side_margin(free, self._look.theme) - beside
+        self._banner_row.setContentsMargins(margin, 0, margin, 0)
+        if was_low != self._is_low:
+            self.header.fold.setChecked(False)
+            self._show_strip()
+        self._place_toast()
+        self._tell_room()
+
+    def _tell_room(self) -> None:
+        if self.page is None:
+            return
+        scale = self._look.theme.scale
+        room = self._scroll.viewport().size()
+        self.room_changed.emit(self._is_compact, room.width() / scale, room.height() / scale)
+
+    def _chain(self) -> None:
+        """Let Tab go through the page after the banner, and from the page to the bar."""
+        page = self.page
+        if page is None:
+            return
+        inside = getattr(page, "tab_order", None)
+        if inside is None:
+            inside = [one for one in page.findChildren(QWidget) if one.focusPolicy() & Qt.FocusPolicy.TabFocus]
+        for before, after in pairwise([self.banner, *inside, *self.bar.buttons]):
+            QWidget.setTabOrder(before, after)
+
+    def _focus_page(self) -> None:
+        page = self.page
+        if page is None:
+            return
+        focus = getattr(page, "focus", None)
+        if focus is not None:
+            focus()
+        else:
+            page.setFocus(Qt.FocusReason.OtherFocusReason)
+
+    def _show_strip(self) -> None:
+        mode = self._strip_mode
+        if mode is StripMode.SHOWN and self._is_low:
+            mode = StripMode.FOLDED
+        self.header.set_fold_shown(mode is StripMode.FOLDED)
+        self.strip.setVisible(mode is StripMode.SHOWN or (mode is StripMode.FOLDED and self.header.fold.isChecked()))
+
+    def _place_toast(self) -> None:
+        px = self._look.theme.px
+        bar = self.bar.geometry()
+        margin = side_margin(bar.width(), self._look.theme)
+        self.toast.set_room(bar.width() - 2 * margin)
+        self.toast.move(bar.left() + margin, bar.top() - px(16) - self.toast.height())
+
+    def _on_fold_toggled(self) -> None:
+        self._show_strip()
+
+    def _on_tiles_changed(self) -> None:
+        self.header.fold.show_tiles(self.strip.tiles)
+
+    def _on_turned_bad(self) -> None:
+        if self._strip_mode is StripMode.FOLDED and not self._is_low:
+            self.header.fold.setChecked(True)
+
+    def _on_recording_changed(self, is_recording: bool) -> None:
+        """Keep the banner's place free while recording: what is read then must not jump."""
+        policy = self.banner.sizePolicy()
+        policy.setRetainSizeWhenHidden(is_recording)
+        self.banner.setSizePolicy(policy)
+
+    def _on_look_changed(self) -> None:
+        self._fit()
+        self.update()
+
+
+class _Pages(QStackedWidget):
+    """As large as the page in sight needs to be, not as the largest."""
+
+    def minimumSizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.minimumSizeHint() if page is not None else QSize()
+
+    def sizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.sizeHint() if page is not None else QSize()
+
+
+class _Fade(QWidget):
+    """The page that was there, as a picture over the one that is, going away."""
+
+    def __init__(self, scroll: QScrollArea) -> None:
+        super().__init__(scroll.viewport())
+        self._under = scroll.viewport()
+        self._picture = QPixmap()
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self._run = QVariantAnimation(self)
+        self._run.setStartValue(1.0)
+        self._run.setEndValue(0.0)
+        self._run.valueChanged.connect(self.update)
+        self._run.finished.connect(self.end)
+        self.hide()
+
+    def begin(self) -> None:
+        """Take the picture of what is there now; what comes next appears under it."""
+        self.end()
+        duration = duration_ms(FADE_MS)
+        if duration == 0 or not self._under.isVisible():
+            return
+        self._picture = self._under.grab()
+        self.setGeometry(self._under.rect())
+        self._run.setDuration(duration)
+        self.show()
+        self.raise_()
+        self._run.start()
+
+    def end(self) -> None:
+        self._run.stop()
+        self._picture = QPixmap()
+        self.hide()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setOpacity(float(self._run.currentValue()))
+        painter.drawPixmap(0, 0, self._picture)
