@@ -24,6 +24,7 @@ from core.body import Side
 from core.gait.phases import Phase
 
 AXIS_HEIGHT, TICK = 24, 4
+BETWEEN_COMPACT, AXIS_HEIGHT_COMPACT = 4, 20
 TICK_S = 2.0
 LEAST_WIDTH = 320
 
@@ -51,6 +52,7 @@ class LiveLanes(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
+        self._between, self._axis_height = BETWEEN, AXIS_HEIGHT
         self._seconds = SHOWN_S
         self._now_s = 0.0
         self._lanes: Mapping[Side, LiveLane] = {}
@@ -62,10 +64,15 @@ class LiveLanes(QWidget):
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(BETWEEN) + px(AXIS_HEIGHT))
+        return QSize(px(LEAST_WIDTH), 2 * px(LANE) + px(self._between) + px(self._axis_height))
 
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._between = BETWEEN_COMPACT if is_compact else BETWEEN
+        self._axis_height = AXIS_HEIGHT_COMPACT if is_compact else AXIS_HEIGHT
+        self._on_look_changed()
 
     def set_seconds(self, seconds: float) -> None:
         """Set how much time is in sight."""
@@ -110,11 +117,11 @@ class LiveLanes(QWidget):
         """Of the lanes, in px of the widget."""
         px = self._look.theme.px
         width = max(self.width() - px(AXIS_WIDTH) - px(RIGHT_MARGIN), 1)
-        return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(BETWEEN))
+        return QRectF(px(AXIS_WIDTH), 0, width, 2 * px(LANE) + px(self._between))
 
     def _top(self, side: Side) -> int:
         px = self._look.theme.px
-        return 0 if side is Side.LEFT else px(LANE) + px(BETWEEN)
+        return 0 if side is Side.LEFT else px(LANE) + px(self._between)
 
     def _up_to_date(self, place: QRectF, ratio: float) -> ScrollingPicture:
         columns, rows = round(place.width() * ratio), round(place.height() * ratio)

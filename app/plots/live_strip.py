@@ -24,7 +24,7 @@ from app.wording import tr
 from core.body import Side
 from core.samples import BoolArray, FloatArray
 
-LEAST_SIZE = (320, 72)
+LEAST_SIZE = (320, 40)  # what can just be read; the page gives more where it has more
 FOOT = 6  # under the axis' lowest tick, whose figure is half below it
 CURVE_PX, THIN_PX = 2.5, 1.25
 SHOWN_S = 8.0
@@ -32,7 +32,7 @@ KEPT_S = 15.0  # more than any width shows
 BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts lie closer
 MISSING_S = 0.5  # without a sample for longer, it is said in words
 FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they tell a first angle
-MAX_TICKS = 6
+LEAST_BETWEEN_TICKS = 18  # figures of 12 px
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +83,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.setCentralItem(self._layout)
         self._history = _HistoryItem(look, fixed_deg, self._view)
         self._view.sigResized.connect(self._history.on_resized)
+        self._view.sigResized.connect(self._set_range)
         self._set_range()
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
@@ -121,7 +122,10 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def _set_range(self) -> None:
         lowest, highest = self.range_deg
         self._view.setYRange(lowest, highest, padding=0)
-        step = self._tick_deg if highest - lowest <= MAX_TICKS * self._tick_deg else 2 * self._tick_deg
+        room = self._view.height() / self._look.theme.px(LEAST_BETWEEN_TICKS)
+        step = self._tick_deg
+        while step < highest - lowest and (highest - lowest) / step > room:
+            step *= 2
         self._axis.setTickSpacing(levels=[(step, 0)])
 
     def showEvent(self, event: QShowEvent) -> None:
@@ -139,6 +143,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._axis.setTextPen(QColor(c.ink2))
         self._axis.setStyle(tickFont=theme.font(12), tickLength=theme.px(4), maxTickLevel=0)
         self._layout.setContentsMargins(0, theme.px(FOOT), theme.px(RIGHT_MARGIN), 0)
+        self._set_range()
         self._history.redraw()
         self.updateGeometry()
 

@@ -1,0 +1,290 @@
+"""Which walks were recorded, under which condition, and what became of each? Nothing is deleted: it can come back."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QFrame,
+    QHBoxLayout,
+    QScrollArea,
+    QSizePolicy,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.icons import Icon, IconMark, paint_icon
+from app.widgets.painted_text import CENTRE, PaintedText, height_for
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr
+
+BADGE = 28
+ROW, BETWEEN = 56, 4
+LEAST_ROWS = 1.5  # in sight: half a row says that there are more
+
+
+class WalkState(StrEnum):
+    RECORDING = "recording"
+    ASKING = "asking"  # stopped, neither kept nor discarded
+    KEPT = "kept"
+    DISCARDED = "discarded"
+    RECOVERED = "recovered"  # the program was closed while it was recorded
+
+
+@dataclass(frozen=True, slots=True)
+class WalkRow:
+    """One walk: `letter` names its condition on every chart; `strides` None while nobody has counted them."""
+
+    id: str
+    letter: str
+    label: str
+    state: WalkState
+    strides: int | None = None
+
+    @property
+    def note(self) -> str:
+        """What is so, in the second line."""
+        strides = "" if self.strides is None else tr("{count} strides").format(count=self.strides)
+        return {
+            WalkState.RECORDING: tr("recording"),
+            WalkState.ASKING: tr("keep or discard?"),
+            WalkState.KEPT: strides,
+            WalkState.DISCARDED: tr("discarded"),
+            WalkState.RECOVERED: tr("recovered, look at it"),
+        }[self.state]
+
+
+class WalkList(Card):
+    """The newest walk is in sight. Below the list: what to press when the sensors came off."""
+
+    undo_pressed = Signal(str)
+    restrapped_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        self._rows: list[_Row] = []
+        self._is_compact = False
+        self._title = Text(look, tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
+        self._none = Text(look, tr("No walk yet."), size=14, tone="ink2", wraps=True)
+        self._inside = QWidget()
+        self._scroll = QScrollArea()
+        self.restrapped = ActionRow(
+            look,
+            Icon.REPEAT,
+            tr("Sensors were re\N{NON-BREAKING HYPHEN}strapped"),
+            tr("Standing still and free motion come again first."),
+        )
+        self._list = QVBoxLayout(self._inside)
+        super().__init__(look, spacing=4)
+        self._list.addStretch(1)
+        self._scroll.setWidget(self._inside)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self._none)
+        self.column.addWidget(self._scroll, 1)
+        self.column.addWidget(self.restrapped)
+        self.restrapped.clicked.connect(self.restrapped_pressed)
+
+    @property
+    def undo_buttons(self) -> list[QWidget]:
+        return [row.undo for row in self._rows if not row.undo.isHidden()]
+
+    def show_walks(self, rows: tuple[WalkRow, ...]) -> None:
+        """Show these, in the order of recording; a row that stays keeps the focus."""
+        is_longer = len(rows) > len(self._rows)
+        while len(self._rows) > len(rows):
+            self._rows.pop().deleteLater()
+        while len(self._rows) < len(rows):
+            added = _Row(self._look, self)
+            self._list.insertWidget(len(self._rows), added)
+            self._rows.append(added)
+        for widget, row in zip(self._rows, rows, strict=True):
+            widget.show_walk(row)
+        self._none.setVisible(not rows)
+        self._scroll.setVisible(bool(rows))
+        self._fit()
+        if is_longer:
+            self._inside.adjustSize()
+            bar = self._scroll.verticalScrollBar()
+            bar.setValue(bar.maximum())
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Show all rows, and leave it to the page to scroll."""
+        self._is_compact = is_compact
+        self._fit()
+
+    def set_restrap_offered(self, is_offered: bool) -> None:
+        self.restrapped.setVisible(is_offered)
+
+    def _fit(self) -> None:
+        px = self._look.theme.px
+        rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
+        self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
+        self._scroll.setMinimumWidth(px(180))
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        self._list.setContentsMargins(0, 0, 0, 0)
+        self._list.setSpacing(self._look.theme.px(BETWEEN))
+        self._fit()
+
+
+class _Row(QWidget):
+    def __init__(self, look: Look, owner: WalkList) -> None:
+        super().__init__()
+        self._look, self._owner = look, owner
+        self._walk = WalkRow("", "", "", WalkState.KEPT)
+        self._label = Text(look, size=15, weight=MEDIUM, wraps=True)
+        self._note = Text(look, size=12, tone="ink2", wraps=True)
+        self._mark = IconMark(look, Icon.CHECK, size=20)
+        self.undo = Button(look, tr("Undo"), Kind.QUIET, height=44)
+        self._words = QVBoxLayout()
+        self._words.addStretch(1)
+        self._words.addWidget(self._label)
+        self._words.addWidget(self._note)
+        self._words.addStretch(1)
+        self._row = QHBoxLayout(self)
+        self._row.addLayout(self._words, 1)
+        self._row.addWidget(self._mark)
+        self._row.addWidget(self.undo)
+        self.undo.clicked.connect(self._on_undo_clicked)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def show_walk(self, walk: WalkRow) -> None:
+        self._walk = walk
+        self._label.setText(walk.label)
+        self._note.setText(walk.note)
+        self._note.setVisible(bool(walk.note))
+        had_focus = self.undo.hasFocus()
+        self.undo.setVisible(walk.state is WalkState.DISCARDED)
+        self.undo.setAccessibleName(tr("Keep {label} after all").format(label=walk.label))
+        if had_focus and walk.state is not WalkState.DISCARDED:
+            self._owner.setFocus()
+        marks = {
+            WalkState.KEPT: Icon.CHECK,
+            WalkState.RECORDING: Icon.RECORDING,
+            WalkState.RECOVERED: Icon.WARNING,
+            WalkState.ASKING: Icon.UNCHECKED,
+        }
+        mark = marks.get(walk.state)
+        self._mark.setVisible(mark is not None)
+        if mark is not None:
+            self._mark.set_icon(mark)
+        self._label.set_tone("ink2" if walk.state is WalkState.DISCARDED else "ink")
+        state = tr("kept") if walk.state is WalkState.KEPT else ""
+        self.setAccessibleName(", ".join(filter(None, [walk.letter, walk.label, walk.note, state])))
+        self.update()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        is_now = self._walk.state is WalkState.RECORDING
+        if is_now:
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(QColor(c.sunken))
+            radius = CONTROL_RADIUS * theme.scale
+            painter.drawRoundedRect(QRectF(self.rect()), radius, radius)
+            painter.setBrush(QColor(c.ink))
+            painter.drawRoundedRect(QRectF(0, px(4), px(3), self.height() - 2 * px(4)), 1, 1)
+        badge = QRectF(px(10), (self.height() - px(BADGE)) / 2, px(BADGE), px(BADGE))
+        painter.setPen(theme.pen(c.ink if is_now else c.control, 1.25))
+        painter.setBrush(QColor(c.ink) if is_now else Qt.BrushStyle.NoBrush)
+        radius = CHIP_RADIUS * theme.scale
+        painter.drawRoundedRect(badge.adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+        tone = "inv_ink" if is_now else "ink"
+        PaintedText(self._walk.letter, badge, theme.font(14, SEMIBOLD), tone, CENTRE).paint(painter, c)
+
+    def _on_undo_clicked(self) -> None:
+        self._owner.undo_pressed.emit(self._walk.id)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(10 + BADGE + 10), px(4), px(8), px(4))
+        self._row.setSpacing(px(4))
+        self._words.setSpacing(0)
+        self.setMinimumHeight(px(ROW))
+        self.update()
+
+
+class ActionRow(QAbstractButton):
+    """A row that does something: an icon, what was the case, and below what follows. Both wrap."""
+
+    def __init__(self, look: Look, icon: Icon, text: str, note: str) -> None:
+        super().__init__()
+        self._look, self._icon, self._note = look, icon, note
+        self.setText(text)
+        self.setAccessibleName(text)
+        self.setAccessibleDescription(note)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self._fit)
+        self._fit()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(180), self.minimumHeight())
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def painted_texts(self) -> list[PaintedText]:
+        """Give what is painted now, each in its box."""
+        theme = self._look.theme
+        px = theme.px
+        left, width = px(10 + 20 + 10), self._words_width
+        text, note = theme.font(14, MEDIUM), theme.font(12)
+        high, low = height_for(self.text(), text, width), height_for(self._note, note, width)
+        top = (self.height() - high - low) / 2
+        return [
+            PaintedText(self.text(), QRectF(left, top, width, high), text, "ink", wraps=True),
+            PaintedText(self._note, QRectF(left, top + high, width, low), note, "ink2", wraps=True),
+        ]
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        painter.setPen(theme.pen(c.control, 1.25))
+        painter.setBrush(QColor(c.surface))
+        painter.drawRoundedRect(box, radius, radius)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(box, radius, radius)
+        mark = QRectF(px(10), (self.height() - px(20)) / 2, px(20), px(20))
+        paint_icon(painter, self._icon, mark, c.ink)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    @property
+    def _words_width(self) -> int:
+        px = self._look.theme.px
+        return max(self.width() - px(10 + 20 + 10) - px(8), 1)
+
+    def _fit(self) -> None:
+        theme = self._look.theme
+        width = self._words_width
+        high = height_for(self.text(), theme.font(14, MEDIUM), width)
+        low = height_for(self._note, theme.font(12), width)
+        self.setFixedHeight(max(theme.px(44), high + low + theme.px(16)))
+        self.update()

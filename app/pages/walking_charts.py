@@ -1,0 +1,173 @@
+"""The live curves of both legs above their gait phases, on one time that ends now."""
+
+import math
+from collections.abc import Mapping
+
+from PySide6.QtCore import QRectF, QSize
+from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+
+from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
+from app.plots.live_lanes import LiveLane, LiveLanes
+from app.plots.live_strip import LiveStrip, LiveTrace
+from app.plots.phase_lanes import Swatch
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.chip import LETTERS, SideKey
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr
+from core.body import Side
+from core.gait.phases import Phase
+
+KNEE_TICK_DEG, ANKLE_TICK_DEG = 30, 20
+KNEE_SHARE, ANKLE_SHARE = 5, 4  # of the height: the knee's axis is half as long again
+
+
+class WalkingCharts(Card):
+    """Knee, ankle and phases in one frame."""
+
+    def __init__(self, look: Look) -> None:
+        self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
+        self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
+        self.lanes = LiveLanes(look)
+        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
+        self._keys = [SideKey(look, side) for side in Side]
+        self._legend_pairs: list[QHBoxLayout] = []
+        self._lines = Hairline(look), Hairline(look)
+        self._heads: list[QHBoxLayout] = []
+        self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
+        self._phases_title = Text(look, tr("Gait phases"), size=14, tone="ink2")
+        super().__init__(look, spacing=4)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self._build()
+        self._on_look_changed()
+
+    def set_simulated(self, is_simulated: bool) -> None:
+        self._simulated.setVisible(is_simulated)
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Keep the room for the curves."""
+        for widget in (self._phases_title, *self._lines):
+            widget.setVisible(not is_compact)
+        self.lanes.set_compact(is_compact)
+        self._padding, self._spacing = (8.0, 2.0) if is_compact else (16.0, 4.0)
+        self._on_look_changed()
+
+    def set_seconds(self, seconds: float) -> None:
+        for chart in (self.knee, self.ankle, self.lanes):
+            chart.set_seconds(seconds)
+
+    def show_live(
+        self,
+        now_s: float,
+        knees: Mapping[Side, LiveTrace],
+        ankles: Mapping[Side, LiveTrace],
+        lanes: Mapping[Side, LiveLane],
+    ) -> None:
+        """Draw up to `now_s`; a side that is left out has no curve or lane."""
+        self.knee.show_traces(now_s, knees)
+        self.ankle.show_traces(now_s, ankles)
+        self.lanes.show_lanes(now_s, lanes)
+        self._say_provisional([side for side in Side if side in ankles and ankles[side].is_provisional])
+
+    def clear(self) -> None:
+        for chart in (self.knee, self.ankle, self.lanes):
+            chart.clear()
+        self._say_provisional([])
+
+    def _say_provisional(self, sides: list[Side]) -> None:
+        said = tr("{sides} provisional until five strides").format(sides=", ".join(LETTERS[side] for side in sides))
+        said = said if sides else ""
+        if said != self._provisional.text():
+            self._provisional.setText(said)
+
+    def _build(self) -> None:
+        knee = self._head(Text(self._look, tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
+        knee.addWidget(self._simulated)
+        knee.addStretch(1)
+        knee.addLayout(self._key_row)
+        for key in self._keys:
+            self._key_row.addWidget(key)
+        ankle = self._head(Text(self._look, tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
+        ankle.addStretch(1)
+        ankle.addWidget(self._provisional)
+        phases = self._head(self._phases_title, "")
+        phases.addStretch(1)
+        words = (
+            (Phase.LOADING, tr("Loading")),
+            (Phase.FOOT_FLAT, tr("Foot flat")),
+            (Phase.PRE_SWING, tr("Pre-swing")),
+            (Phase.SWING, tr("Swing")),
+        )
+        for phase, word in words:
+            pair = QHBoxLayout()
+            pair.addWidget(Swatch(self._look, phase))
+            pair.addWidget(Text(self._look, word, size=12, tone="ink2"))
+            self._legend.addLayout(pair)
+            self._legend_pairs.append(pair)
+        phases.addLayout(self._legend)
+        self.column.addLayout(knee)
+        self.column.addWidget(self.knee, KNEE_SHARE)
+        self.column.addWidget(self._lines[0])
+        self.column.addLayout(ankle)
+        self.column.addWidget(self.ankle, ANKLE_SHARE)
+        self.column.addWidget(self._lines[1])
+        self.column.addLayout(phases)
+        self.column.addWidget(self.lanes)
+        self._simulated.hide()
+
+    def _head(self, title: Text, sign: str) -> QHBoxLayout:
+        head = QHBoxLayout()
+        head.addWidget(title)
+        if sign:
+            head.addWidget(Text(self._look, sign, size=12, tone="ink2"))
+        self._heads.append(head)
+        return head
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        px = self._look.theme.px
+        for head in self._heads:
+            head.setSpacing(px(8))
+        for row in (self._legend, self._key_row):
+            row.setSpacing(px(20))
+        for pair in self._legend_pairs:
+            pair.setSpacing(px(8))
+
+
+class Hairline(QWidget):
+    """A line across, between things that belong together."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+
+    def sizeHint(self) -> QSize:
+        return QSize(1, self._look.theme.px(9))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        height = self._look.theme.px(1)
+        line = QRectF(0, (self.height() - height) // 2, self.width(), height)
+        painter.fillRect(line, QColor(self._look.theme.colours.line))
+
+
+def last_angles_in_words(knees: Mapping[Side, LiveTrace], ankles: Mapping[Side, LiveTrace]) -> str:
+    """Say each joint's newest angle, for who cannot see the curves."""
+    words = {
+        (Side.LEFT, True): tr("Left knee {angle}."),
+        (Side.RIGHT, True): tr("Right knee {angle}."),
+        (Side.LEFT, False): tr("Left ankle {angle}."),
+        (Side.RIGHT, False): tr("Right ankle {angle}."),
+    }
+    said = []
+    for traces, is_knee in ((knees, True), (ankles, False)):
+        for side in Side:
+            if side in traces:
+                angles = traces[side].angle_rad
+                last = math.degrees(angles[-1]) if len(angles) else math.nan
+                known = degrees_in_words(last, 0) if math.isfinite(last) else tr("missing")
+                said.append(words[side, is_knee].format(angle=known))
+    return " ".join(said)

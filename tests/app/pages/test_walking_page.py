@@ -1,0 +1,246 @@
+"""The Walking page: none yet, recording, asking, between; by mouse, by keys, and in words for who cannot see it."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.pages.walk_list import WalkRow, WalkState
+from app.pages.walking_page import LiveWalk, WalkingPage
+from app.plots.live_lanes import LiveLane, PhaseSpan
+from app.plots.live_strip import LiveTrace
+from app.theme import Look, load_fonts
+from core.body import Side
+from core.gait.phases import Phase
+
+KEPT = WalkRow("1", "A", "Barefoot", WalkState.KEPT, 18)
+DISCARDED = WalkRow("2", "B", "Shoes", WalkState.DISCARDED, 17)
+ASKING = WalkRow("3", "C", "AFO", WalkState.ASKING, 12)
+RECORDING = WalkRow("3", "C", "AFO", WalkState.RECORDING)
+RECOVERED = WalkRow("4", "B", "Shoes", WalkState.RECOVERED, 9)
+LABELS = ("Barefoot", "Shoes", "AFO")
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def page(qtbot: QtBot, look: Look) -> WalkingPage:
+    page = WalkingPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 600)
+    page.show_labels(LABELS, "Shoes")
+    page.show()
+    return page
+
+
+def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = False) -> LiveWalk:
+    time_s = np.arange(int(now_s * 100)) / 100
+    knee = LiveTrace(time_s, np.full(len(time_s), math.radians(knee_deg)))
+    ankle = LiveTrace(time_s, np.zeros(len(time_s)), is_provisional)
+    lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
+    return LiveWalk(
+        now_s,
+        {Side.LEFT: knee, Side.RIGHT: LiveTrace(time_s, np.full(len(time_s), np.nan))},
+        {Side.LEFT: ankle},
+        {Side.LEFT: lane},
+        {Side.LEFT: 14, Side.RIGHT: 13},
+        101.4,
+    )
+
+
+def texts(page: WalkingPage) -> list[str]:
+    """What can be read now."""
+    labels = [label.text() for label in page.findChildren(QLabel) if label.isVisible()]
+    return labels + [button.text() for button in page.findChildren(QAbstractButton) if button.isVisible()]
+
+
+def test_before_the_first_walk_it_says_what_to_do(page: WalkingPage) -> None:
+    assert "Choose a label, then press Space." in texts(page)
+    assert not page.charts.isVisible()
+    assert "Next condition: A" in texts(page)
+
+
+def test_while_a_walk_is_recorded_curves_and_figures_are_all_there_is(page: WalkingPage) -> None:
+    page.show_walks((KEPT, RECORDING))
+    page.show_view(live())
+    assert page.charts.isVisible()
+    assert page.notice.isVisible()  # its place is reserved
+    assert {"14", "13", "101", "recording"} <= set(texts(page))
+    assert not page.next.isVisible()
+    assert not page.walks.restrapped.isVisible()
+
+
+def test_a_message_moves_nothing_while_a_walk_is_recorded(page: WalkingPage, qtbot: QtBot) -> None:
+    page.show_walks((RECORDING,))
+    QApplication.processEvents()
+    before = page.charts.geometry()
+    page.show_message("R foot has been silent for 2 s", "Recording goes on.")
+    QApplication.processEvents()
+    assert page.charts.geometry() == before
+    assert "R foot has been silent for 2 s" in texts(page)
+    page.show_message("")
+    assert "R foot has been silent for 2 s" not in texts(page)
+
+
+def test_a_stopped_walk_is_kept_or_discarded(page: WalkingPage, qtbot: QtBot) -> None:
+    page.show_walks((KEPT, ASKING), "L 12, R 11 strides")
+    assert {"Keep 12 strides", "Discard", "L 12, R 11 strides", "keep or discard?"} <= set(texts(page))
+    with qtbot.waitSignal(page.keep_pressed) as kept:
+        page.stopped.keep.click()
+    assert kept.args == ["3"]
+    with qtbot.waitSignal(page.discard_pressed) as discarded:
+        page.stopped.discard.click()
+    assert discarded.args == ["3"]
+    page.show_walks((KEPT, DISCARDED))
+    assert not page.stopped.isVisible()
+
+
+def test_what_was_discarded_can_come_back(page: WalkingPage, qtbot: QtBot) -> None:
+    page.show_walks((KEPT, DISCARDED))
+    (undo,) = page.walks.undo_buttons
+    assert undo.accessibleName() == "Keep Shoes after all"
+    with qtbot.waitSignal(page.undo_pressed) as undone:
+        QTest.keyClick(undo, Qt.Key.Key_Return)
+    assert undone.args == ["2"]
+
+
+def test_a_recovered_walk_asks_as_a_stopped_one_does(page: WalkingPage, qtbot: QtBot) -> None:
+    page.show_walks((KEPT, RECOVERED))
+    assert {"recovered, look at it", "B  Shoes: recovered", "Keep 9 strides"} <= set(texts(page))
+    page.show_walks((KEPT, RECOVERED, ASKING))
+    assert "C  AFO: stopped" in texts(page)  # the newest question first
+
+
+def test_keys_choose_the_label_with_their_digit(page: WalkingPage, qtbot: QtBot) -> None:
+    with qtbot.waitSignal(page.label_chosen) as chosen:
+        assert page.choose_digit(3)
+    assert chosen.args == ["AFO"]
+    assert page.next.chooser.choice == "AFO"
+    assert not page.choose_digit(4)
+    page.show_walks((RECORDING,))
+    assert not page.choose_digit(1)
+
+
+def test_arrows_go_from_label_to_label(page: WalkingPage) -> None:
+    page.focus()
+    first = QApplication.focusWidget()
+    assert isinstance(first, QAbstractButton)
+    assert (first.text(), first.isChecked()) == ("Shoes", True)
+    QTest.keyClick(first, Qt.Key.Key_Right)
+    assert page.next.chooser.choice == "AFO"
+    second = QApplication.focusWidget()
+    assert second is not None
+    QTest.keyClick(second, Qt.Key.Key_Right)
+    assert page.next.chooser.choice == "Barefoot"
+
+
+def test_other_words_are_a_label_too(page: WalkingPage, qtbot: QtBot) -> None:
+    field = page.next.chooser.own.line_edit
+    field.setFocus()
+    QTest.keyClicks(field, "new foot")
+    with qtbot.waitSignal(page.label_chosen) as chosen:
+        QTest.keyClick(field, Qt.Key.Key_Return)
+    assert chosen.args == ["new foot"]
+    assert not any(button.isChecked() for button in page.next.chooser.buttons)
+    page.show_labels(LABELS, "new foot")
+    assert page.next.chooser.own.text == "new foot"
+    page.choose_digit(1)
+    assert page.next.chooser.own.text == ""
+
+
+def test_a_label_used_before_keeps_its_letter(page: WalkingPage) -> None:
+    page.show_walks((KEPT, DISCARDED))
+    assert "Next condition: B" in texts(page)
+    page.choose_digit(3)
+    assert "Next condition: C" in texts(page)
+    page.choose_digit(1)
+    assert "Next condition: A" in texts(page)
+
+
+def test_sensors_strapped_anew_are_told_with_the_consequence(page: WalkingPage, qtbot: QtBot) -> None:
+    page.show_walks((KEPT,))
+    assert "Standing still and free motion come again first." in page.walks.restrapped.accessibleDescription()
+    with qtbot.waitSignal(page.restrapped_pressed):
+        QTest.keyClick(page.walks.restrapped, Qt.Key.Key_Return)
+
+
+def test_charts_are_told_in_words(page: WalkingPage) -> None:
+    page.show_walks((RECORDING,))
+    page.show_view(live(5.0))
+    assert page.charts.accessibleDescription() == (
+        "14 strides. Left 14. Right 13. Cadence 101 steps per minute. Left knee 30°. Right knee missing. Left ankle 0°."
+    )
+    page.show_view(live(5.5, knee_deg=50.0))
+    assert "Left knee 30°" in page.charts.accessibleDescription()  # once a second is enough to listen to
+    page.show_view(live(6.1, knee_deg=50.0))
+    assert "Left knee 50°" in page.charts.accessibleDescription()
+
+
+def test_a_provisional_ankle_is_said(page: WalkingPage) -> None:
+    page.show_walks((RECORDING,))
+    page.show_view(live(is_provisional=True))
+    assert "L provisional until five strides" in texts(page)
+    page.show_view(live(5.1))
+    assert "L provisional until five strides" not in texts(page)
+
+
+def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
+    page.show_walks((KEPT, DISCARDED, RECORDING))
+    names = [row.accessibleName() for row in page.walks.findChildren(QWidget) if hasattr(row, "undo")]
+    assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, discarded", "C, AFO, recording"]
+
+
+def test_simulated_is_said_on_the_charts(page: WalkingPage) -> None:
+    page.show_walks((RECORDING,))
+    page.set_simulated(True)
+    assert "SIMULATED" in texts(page)
+
+
+def test_in_little_room_curves_and_walks_are_two_tabs(page: WalkingPage) -> None:
+    page.set_compact(True)
+    page.resize(896, 428)
+    page.show_walks((KEPT, RECORDING))
+    assert page.charts.isVisible()
+    assert page.figures.isVisible()
+    assert not page.walks.isVisible()
+    page.show_walks((KEPT, ASKING))
+    assert not page.charts.isVisible()
+    assert page.stopped.isVisible()
+    page.tabs.choose("curves")
+    assert page.charts.isVisible()
+    assert not page.walks.isVisible()
+
+
+@pytest.mark.parametrize(("scale", "width", "height", "is_compact"), [(0.8, 850, 480, False), (1.0, 736, 388, True),
+                                                                     (2.0, 1128, 456, True)])  # fmt: skip
+@pytest.mark.parametrize("rows", [(KEPT, RECORDING), (KEPT, DISCARDED, ASKING), ()])
+def test_no_word_is_cut(
+    page: WalkingPage, look: Look, scale: float, width: int, height: int, is_compact: bool, rows: tuple[WalkRow, ...]
+) -> None:
+    look.set_scale(scale)
+    page.set_compact(is_compact)
+    page.resize(width, height)
+    page.show_walks(rows, "L 12, R 11 strides · 101 steps/min · 0:24")
+    page.show_view(live())
+    for _ in range(3):
+        QApplication.processEvents()
+    for label in page.findChildren(QLabel):
+        if label.isVisible() and label.text():
+            wanted = label.heightForWidth(label.width()) if label.wordWrap() else label.sizeHint().height()
+            assert label.height() >= wanted, label.text()
+            assert label.wordWrap() or label.width() >= label.sizeHint().width(), label.text()
+    for button in page.findChildren(QAbstractButton):
+        if button.isVisible():
+            assert button.width() >= button.sizeHint().width(), button.text()
