@@ -5,7 +5,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import CHIP_RADIUS, Look
-from app.widgets.grid import side_margin
+from app.widgets.grid import LEAST, side_margin
 from app.widgets.sensor_strip import StripButton
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.text import SEMIBOLD, Text
@@ -57,11 +57,12 @@ class Header(QWidget):
         self._simulated.setVisible(is_simulated)
         self._arrange()
 
-    def show_elapsed(self, elapsed_s: float) -> None:
-        """Show how long the session has taken."""
-        self.stopwatch.show_elapsed(elapsed_s)
-        if self.stopwatch.isHidden():
-            self.stopwatch.show()
+    def show_elapsed(self, elapsed_s: float | None) -> None:
+        """Show how long the session has taken; None: nobody is waiting, it is only looked at."""
+        if elapsed_s is not None:
+            self.stopwatch.show_elapsed(elapsed_s)
+        if self.stopwatch.isHidden() == (elapsed_s is not None):
+            self.stopwatch.setVisible(elapsed_s is not None)
             self._arrange()
 
     def set_fold_shown(self, is_shown: bool) -> None:
@@ -91,7 +92,7 @@ class Header(QWidget):
         px = self._look.theme.px
         margin, gap = side_margin(self.width(), self._look.theme), px(16)
         line = px(COMPACT_HEIGHT if self._is_compact else HEIGHT)
-        room = max(self.width() - 2 * margin, 1)
+        room = max(self.width(), px(LEAST)) - 2 * margin
         left = [widget for widget in self._left if not widget.isHidden()]
         right = [widget for widget in self._right if not widget.isHidden()]
         facts = self._facts.fontMetrics().horizontalAdvance(self._facts.text()) + px(2) if self._facts in left else 0

@@ -48,6 +48,7 @@ class Wizard(QWidget):
         super().__init__()
         self._look, self._desk = look, desk
         self._visit: Visit | None = None
+        self._closing: list[Visit] = []  # a few objects each; their threads end by themselves
         self._steps: list[Step] = []
         self._current = PATIENT
         self._ticks = 0
@@ -96,9 +97,17 @@ class Wizard(QWidget):
             if self._steps:
                 self._steps[self._current].leave()
             self._visit.close()
-            self._visit.deleteLater()
+            self._closing.append(self._visit)
+        for step in self._steps:
+            step.deleteLater()
         self._visit, self._steps = None, []
         self.shell.clear_pages()
+
+    def finish(self) -> None:
+        """Close the visit and wait for its threads: for the end of the program."""
+        self.close_visit()
+        for visit in self._closing:
+            visit.finish()
 
     def _connect(self) -> None:
         shell = self.shell
