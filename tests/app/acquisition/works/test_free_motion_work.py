@@ -1,0 +1,142 @@
+"""The free motion: gauges, one leg again, labels that are wrong, and sensors whose sites nobody has said."""
+
+import numpy as np
+import pytest
+
+from app.acquisition.free_motion_work import FreeMotionView, FreeMotionWork, UnplacedFreeMotionWork
+from core.body import Joint, Side, Site
+from core.live.free_motion import FreeMotionState
+from core.samples import ImuBlock
+from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks
+
+LEFT_MOVES_S, RIGHT_MOVES_S = BEGIN_S, BEGIN_S + 11.0
+
+
+def fed(
+    work: FreeMotionWork | UnplacedFreeMotionWork, streams: dict[str, ImuBlock], block_s: float = 0.1
+) -> list[FreeMotionView]:
+    told = []
+    for block in in_blocks(streams, block_s):
+        work.update(block)
+        told.append(work.state)
+    return told
+
+
+def assert_same(one: FreeMotionState, two: FreeMotionState) -> None:
+    assert one.joints == two.joints
+    assert one.lags == two.lags
+    assert one.weakest == two.weakest
+
+
+def shortened(worn: Worn, from_s: float, to_s: float) -> dict[str, ImuBlock]:
+    return {name: between(block, from_s, to_s) for name, block in worn.free_motion.items()}
+
+
+def exchanged(worn: Worn, one: Site, other: Site) -> dict[str, Site]:
+    swap = {one: other, other: one}
+    return {name: swap.get(site, site) for name, site in worn.site_of.items()}
+
+
+@pytest.fixture(scope="module")
+def usual(worn: Worn) -> list[FreeMotionView]:
+    return fed(FreeMotionWork(worn.site_of, worn.live_sensors), dict(worn.free_motion), 0.03)
+
+
+def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[FreeMotionView]) -> None:
+    last = usual[-1]
+    assert set(last.motion.joints) == set(Joint)
+    assert last.elapsed_s == pytest.approx(22.0, abs=0.05)
+    halfway = usual[len(usual) // 2].motion
+    assert halfway.joints[Joint.LEFT_KNEE].moved_s > 9.0
+    assert halfway.joints[Joint.RIGHT_KNEE].moved_s < 1.0
+    assert halfway.weakest is not None
+    assert halfway.weakest.side is Side.RIGHT
+    assert not any(state.exchanged for state in usual)
+
+
+@pytest.mark.parametrize("block_s", [0.7, 60.0])
+def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[FreeMotionView], block_s: float) -> None:
+    other = fed(FreeMotionWork(worn.site_of, worn.live_sensors), dict(worn.free_motion), block_s)[-1]
+    assert_same(other.motion, usual[-1].motion)
+    assert (other.elapsed_s, other.exchanged) == (usual[-1].elapsed_s, usual[-1].exchanged)
+
+
+def test_one_leg_begins_anew_and_the_other_stays_as_it_is(worn: Worn) -> None:
+    work = FreeMotionWork(worn.site_of, worn.live_sensors)
+    before = fed(work, shortened(worn, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
+    work.repeat(Side.LEFT)
+    after = fed(work, shortened(worn, LEFT_MOVES_S + 8.0, LEFT_MOVES_S + 14.0))
+    first, last = after[0], after[-1]
+    assert first.repeated is last.repeated is Side.LEFT
+    assert first.motion.joints[Joint.LEFT_KNEE].moved_s == 0.0
+    assert last.motion.joints[Joint.LEFT_KNEE].moved_s == pytest.approx(3.0, abs=0.7)
+    assert last.elapsed_s == pytest.approx(6.0, abs=0.05)
+    for joint in (Joint.RIGHT_KNEE, Joint.RIGHT_ANKLE):
+        assert last.motion.joints[joint] is before.motion.joints[joint]
+
+
+@pytest.mark.parametrize(
+    ("one", "other"), [(Site.LEFT_THIGH, Site.LEFT_SHANK), (Site.LEFT_FOOT, Site.RIGHT_FOOT)], ids=["leg", "legs"]
+)
+def test_labels_that_the_motion_contradicts_are_named(worn: Worn, one: Site, other: Site) -> None:
+    standing = {name: rest.acc_m_s2 for name, rest in worn.rests.items()}
+    work = FreeMotionWork(exchanged(worn, one, other), worn.live_sensors, standing=standing)
+    told = fed(work, dict(worn.free_motion))
+    assert told[-1].exchanged == ((one, other),)
+    assert all(state.exchanged in ((), ((one, other),)) for state in told)
+
+
+@pytest.mark.parametrize("first", [Side.LEFT, None])
+def test_sensors_without_sites_are_placed_and_made_up_for(
+    worn: Worn, usual: list[FreeMotionView], first: Side | None
+) -> None:
+    work = UnplacedFreeMotionWork(worn.live_sensors, first)
+    told = fed(work, dict(worn.free_motion), 0.1)
+    if first is None:
+        assert not told[-1].site_of
+        assert told[-1].chains is not None
+        assert told[-1].chains.is_first_certain
+        return
+    assert all(state.site_of in ({}, worn.site_of) for state in told)
+    assert told[-1].site_of == worn.site_of
+    assert_same(told[-1].motion, usual[-1].motion)
+    assert told[-1].elapsed_s == usual[-1].elapsed_s
+
+
+def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(worn: Worn) -> None:
+    work = UnplacedFreeMotionWork(worn.live_sensors, None)
+    work.name_first(Side.RIGHT)
+    last = fed(work, dict(worn.free_motion))[-1]
+    assert {name: site.segment for name, site in last.site_of.items()} == {
+        name: site.segment for name, site in worn.site_of.items()
+    }
+    assert all(last.site_of[name].side is not site.side for name, site in worn.site_of.items())
+
+
+def test_no_more_than_half_a_minute_is_held_back(worn: Worn) -> None:
+    work = UnplacedFreeMotionWork(worn.live_sensors, Side.LEFT)
+    stood = {
+        name: ImuBlock(name, np.concatenate([block.time_s + 5.0 * k for k in range(8)]), *repeated(block, 8))
+        for name, block in worn.standing.items()
+    }
+    for block in in_blocks(stood, 0.5):
+        work.update(block)
+    end_s = max(float(block.time_s[-1]) for block in stood.values())
+    moved = {
+        name: ImuBlock(name, block.time_s - BEGIN_S + end_s + 0.02, block.gyr_rad_s, block.acc_m_s2)
+        for name, block in worn.free_motion.items()
+    }
+    told = fed(work, moved)
+    assert told[-1].site_of == worn.site_of
+    assert told[-1].elapsed_s == pytest.approx(62.0, abs=0.2)
+    assert told[-1].motion.joints[Joint.RIGHT_KNEE].moved_s == pytest.approx(11.0, abs=1.0)
+
+
+def repeated(block: ImuBlock, times: int) -> tuple[np.ndarray, np.ndarray]:
+    return np.tile(block.gyr_rad_s, (times, 1)), np.tile(block.acc_m_s2, (times, 1))
+
+
+def test_a_state_that_was_read_stays_as_it_was(usual: list[FreeMotionView]) -> None:
+    moved_s = [state.motion.joints[Joint.LEFT_KNEE].moved_s for state in usual]
+    assert moved_s == sorted(moved_s)
+    assert len(set(moved_s)) > 50

@@ -1,0 +1,162 @@
+"""The walking patient as the screen draws him: curves, lanes, strides, cadence, what is missing."""
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from app.acquisition.walking_work import KEPT_S, WalkingView, WalkingWork
+from core.body import Joint, Side, Site
+from core.gait.phases import Phase
+from core.results import AxisSource
+from core.samples import ImuBlock
+from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks, without
+
+ORDER = (Phase.LOADING, Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING)
+
+
+def work_of(worn: Worn) -> WalkingWork:
+    return WalkingWork(worn.site_of, worn.live_sensors, worn.calibration)
+
+
+def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingView]:
+    told = []
+    for block in in_blocks(streams, block_s):
+        work.update(block)
+        told.append(work.state)
+    return told
+
+
+@pytest.fixture(scope="module")
+def usual(worn: Worn) -> list[WalkingView]:
+    return fed(work_of(worn), dict(worn.walk))
+
+
+def test_curves_hold_the_last_seconds_of_every_joint(worn: Worn, usual: list[WalkingView]) -> None:
+    last = usual[-1]
+    assert set(last.joints) == set(Joint)
+    now_s = max(float(block.time_s[-1]) for block in worn.walk.values())
+    assert last.now_s == now_s
+    for curve in last.joints.values():
+        assert curve.time_s[0] == pytest.approx(now_s - KEPT_S, abs=0.02)
+        assert curve.time_s[-1] > now_s - 0.1
+        assert np.all(np.diff(curve.time_s) > 0)
+        assert np.isfinite(curve.angle_rad).all()
+    knee = np.rad2deg(last.joints[Joint.LEFT_KNEE].angle_rad)
+    assert 50.0 < knee.max() < 75.0
+
+
+def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: list[WalkingView]) -> None:
+    walking = usual[len(usual) * 2 // 3]
+    assert walking.now_s is not None
+    for side in Side:
+        spans = walking.lanes[side].spans
+        assert len(spans) > 12
+        assert spans[-1].end_s is None
+        for one, two in pairwise(spans):
+            assert one.end_s == two.start_s > one.start_s
+            assert two.phase is ORDER[(ORDER.index(one.phase) + 1) % len(ORDER)]
+        assert spans[0].end_s is not None
+        assert spans[0].end_s >= walking.now_s - KEPT_S
+    assert [span.phase for span in usual[-1].lanes[Side.LEFT].spans][-1] is Phase.FOOT_FLAT  # stands again
+
+
+def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingView]) -> None:
+    assert usual[5].cadence_steps_min is None
+    assert usual[len(usual) // 2].cadence_steps_min == pytest.approx(112.0, abs=8.0)
+    assert usual[-1].cadence_steps_min is None
+    assert all(count >= 12 for count in usual[-1].strides.values())
+    assert usual[-1].total_strides == sum(usual[-1].strides.values())
+
+
+def test_a_walk_counts_its_own_strides(worn: Worn, usual: list[WalkingView]) -> None:
+    work = work_of(worn)
+    work.count_from(BEGIN_S + 8.0)
+    last = fed(work, dict(worn.walk))[-1]
+    for side in Side:
+        assert 3 < last.strides[side] < usual[-1].strides[side] - 3
+
+
+@pytest.mark.parametrize("block_s", [0.017, 60.0])
+def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[WalkingView], block_s: float) -> None:
+    one, two = usual[-1], fed(work_of(worn), dict(worn.walk), block_s)[-1]
+    for joint in Joint:
+        np.testing.assert_array_equal(two.joints[joint].time_s, one.joints[joint].time_s)
+        np.testing.assert_allclose(two.joints[joint].angle_rad, one.joints[joint].angle_rad, rtol=0, atol=1e-9)
+    assert two.lanes == one.lanes
+    assert (two.strides, two.cadence_steps_min, two.missing, two.slips) == (
+        one.strides,
+        one.cadence_steps_min,
+        one.missing,
+        one.slips,
+    )
+
+
+def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(worn: Worn) -> None:
+    name, (from_s, to_s) = worn.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
+    told = fed(work_of(worn), {**worn.walk, name: without(worn.walk[name], from_s, to_s)})
+    amid = next(state for state in told if state.now_s is not None and state.now_s > to_s - 0.2)
+    assert amid.missing == (Site.RIGHT_FOOT,)
+    lane = amid.lanes[Side.RIGHT]
+    ((silent_from_s, silent_to_s),) = lane.silent_s
+    assert silent_from_s == pytest.approx(from_s, abs=0.02)
+    assert silent_to_s is None
+    assert lane.spans[-1].end_s == pytest.approx(from_s, abs=0.02)
+    assert amid.joints[Joint.RIGHT_ANKLE].time_s[-1] < from_s
+    assert amid.joints[Joint.RIGHT_KNEE].time_s[-1] > to_s - 0.4
+    assert amid.cadence_steps_min is not None  # the other foot tells
+    last = told[-1]
+    assert last.missing == ()
+    ((then_from_s, then_to_s),) = last.lanes[Side.RIGHT].silent_s
+    assert then_from_s == silent_from_s
+    assert then_to_s == pytest.approx(to_s, abs=0.02)
+    assert not any(span.start_s < to_s - 0.05 < (span.end_s or np.inf) for span in last.lanes[Side.RIGHT].spans)
+    ankle = last.joints[Joint.RIGHT_ANKLE]
+    in_gap = (ankle.time_s > from_s) & (ankle.time_s < to_s)
+    assert in_gap.any()
+    assert np.isnan(ankle.angle_rad[in_gap]).all()
+
+
+def test_another_calibration_is_taken_at_the_next_update(worn: Worn, usual: list[WalkingView]) -> None:
+    joint = Joint.LEFT_ANKLE
+    settled = worn.calibration[joint]
+    provisional = replace(settled, axis_source=AxisSource.FREE_MOTION, zero_rad=settled.zero_rad + 0.2)
+    work = WalkingWork(worn.site_of, worn.live_sensors, {**worn.calibration, joint: provisional})
+    early = {name: between(block, BEGIN_S, BEGIN_S + 8.0) for name, block in worn.walk.items()}
+    late = {name: between(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in worn.walk.items()}
+    assert fed(work, early)[-1].joints[joint].is_provisional
+    work.recalibrate(joint, settled)
+    assert work.state.joints[joint].is_provisional  # not yet
+    last = fed(work, late)[-1].joints[joint]
+    assert not last.is_provisional
+    whole = usual[-1].joints[joint]
+    np.testing.assert_allclose(last.angle_rad[-300:], whole.angle_rad[-300:], atol=0.02)
+    assert np.max(np.abs(np.diff(last.angle_rad))) < 0.15  # no jump
+
+
+def test_a_leg_of_one_joint_has_one_curve_and_no_lane(worn: Worn) -> None:
+    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
+    streams = {name: worn.walk[name] for name, site in worn.site_of.items() if site in sites}
+    work = WalkingWork({name: worn.site_of[name] for name in streams}, worn.live_sensors, worn.calibration)
+    last = fed(work, dict(worn.walk))[-1]  # the others are heard, and not worn
+    assert set(last.joints) == {Joint.LEFT_KNEE}
+    assert not last.lanes
+    assert not last.strides
+    assert last.cadence_steps_min is None
+
+
+def test_a_state_that_was_read_stays_as_it_was(worn: Worn) -> None:
+    work, held = work_of(worn), []
+    for _ in range(4):  # past the arrays' room
+        last_s = 0.0 if work.state.now_s is None else work.state.now_s - BEGIN_S + 0.01
+        later = {name: replace(block, time_s=block.time_s + last_s) for name, block in worn.walk.items()}
+        for block in in_blocks(later, 0.25):
+            work.update(block)
+            curve = work.state.joints[Joint.RIGHT_KNEE]
+            held.append((curve, curve.time_s.copy(), curve.angle_rad.copy()))
+    for curve, time_s, angle_rad in held:
+        np.testing.assert_array_equal(curve.time_s, time_s)
+        np.testing.assert_array_equal(curve.angle_rad, angle_rad)
+    with pytest.raises(ValueError, match="read-only"):
+        held[-1][0].angle_rad[0] = 0.0
