@@ -1,0 +1,162 @@
+"""How well do the joints show in the motion so far, and which motion comes next? Four gauges round both legs."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from PySide6.QtCore import QPointF, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.body_figure import BodyFigure, SensorMark
+from app.widgets.button import Button, Kind
+from app.widgets.gauge import Gauge, GaugeFace
+from app.widgets.hint import Hint, HintBand
+from app.widgets.icons import Icon
+from app.widgets.notice import Notice
+from app.wording import tr
+from core.body import Joint, Site
+
+USUAL_S = 10.0
+FACING = (Joint.RIGHT_KNEE, Joint.LEFT_KNEE, Joint.RIGHT_ANKLE, Joint.LEFT_ANKLE)  # the patient faces you
+FIGURE_WIDTH = 232
+
+
+@dataclass(frozen=True, slots=True)
+class FreeMotionView:
+    """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded."""
+
+    gauges: Mapping[Joint, GaugeFace] = field(default_factory=dict)
+    hint: Hint = field(default_factory=lambda: Hint(""))
+    elapsed_s: float | None = None
+    emphasised: Site | None = None
+    worn: Mapping[Site, SensorMark] = field(default_factory=dict)
+
+
+class FreeMotionPage(QWidget):
+    """Its gauges are laid out like the patient who faces you; where there is little room, without the figure.
+
+    Signals
+    -------
+    swap_pressed, keep_pressed
+        The labels that the motion contradicts are changed, or stay.
+    """
+
+    swap_pressed = Signal()
+    keep_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._is_compact = False
+        self.labels = _LabelBand(look)
+        self.band = HintBand(look)
+        self.gauges = {joint: Gauge(look, joint) for joint in Joint}
+        self.figure = BodyFigure(look, legs_only=True)
+        self._grid = QGridLayout()
+        for number, joint in enumerate(FACING):
+            self._grid.addWidget(self.gauges[joint], number // 2, 2 * (number % 2))
+        self._grid.addWidget(self.figure, 0, 1, 2, 1)
+        for column in (0, 2):
+            self._grid.setColumnStretch(column, 1)
+        for row in (0, 1):
+            self._grid.setRowStretch(row, 1)
+        self._column = QVBoxLayout(self)
+        self._column.addWidget(self.labels)
+        self._column.addWidget(self.band)
+        self._column.addLayout(self._grid, 1)
+        self.labels.swap.clicked.connect(self.swap_pressed)
+        self.labels.keep.clicked.connect(self.keep_pressed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.labels.swap, self.labels.keep]
+
+    def focus(self) -> None:
+        """Give the focus to the choice there is; without one the bar has it."""
+        if not self.labels.isHidden():
+            self.labels.swap.setFocus()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self.band.set_compact(is_compact)
+        for gauge in self.gauges.values():
+            gauge.set_compact(is_compact)
+        self.figure.setVisible(not is_compact)
+        self._on_look_changed()
+
+    def show_labels(self, what: str, then: str = "") -> None:
+        """Say that labels seem swapped and offer to change them; empty takes it back."""
+        self.labels.notice.tell(Icon.WARNING, what, then)
+        self.labels.setVisible(bool(what))
+
+    def show_state(self, view: FreeMotionView) -> None:
+        """Show how far the motion has come; only what reads otherwise is painted anew."""
+        self.band.show_hint(view.hint)
+        self.band.show_elapsed(view.elapsed_s, USUAL_S)
+        for joint, gauge in self.gauges.items():
+            gauge.show_face(view.gauges.get(joint, GaugeFace()))
+        self.figure.emphasise(view.emphasised)
+        self.figure.show_worn(view.worn)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        """Lead a line from each card to its joint."""
+        if self._is_compact:
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(self._look.theme.pen(self._look.theme.colours.control, 1))
+        for joint, gauge in self.gauges.items():
+            place = gauge.geometry()
+            is_left_of_figure = place.right() < self.figure.geometry().center().x()
+            edge = float(place.right() + 1 if is_left_of_figure else place.left())
+            start = QPointF(edge, place.center().y())
+            end = QPointF(self.figure.pos()) + self.figure.joint_anchor(joint)
+            inwards = self._look.theme.px(1) if is_left_of_figure else -self._look.theme.px(1)
+            bends = [start + QPointF(14 * inwards, 0), end - QPointF(24 * inwards, 0)]
+            painter.drawPolyline(QPolygonF([start, *bends, end]))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        across, down = (16, 12) if self._is_compact else (24, 20)
+        self._column.setContentsMargins(px(across), px(down), px(across), px(down))
+        self._column.setSpacing(px(12 if self._is_compact else 16))
+        self._grid.setVerticalSpacing(px(12))
+        self._grid.setHorizontalSpacing(px(6) if self._is_compact else 0)
+        self._grid.setColumnMinimumWidth(1, 0 if self._is_compact else px(FIGURE_WIDTH))
+        self.update()
+
+
+class _LabelBand(QWidget):
+    """Two labels seem swapped: what speaks for it, and both answers."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self.notice = Notice(look, size=14)
+        self.swap = Button(look, tr("Swap them"), Kind.PRIMARY, height=44)
+        self.keep = Button(look, tr("Keep as worn"), Kind.SECONDARY, height=44)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(self.notice, 1)
+        self._row.addWidget(self.swap)
+        self._row.addWidget(self.keep)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self.hide()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.caution_edge, 1))
+        painter.setBrush(QColor(theme.colours.caution))
+        radius = theme.px(8)
+        painter.drawRoundedRect(self.rect().adjusted(0, 0, -1, -1), radius, radius)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(6), px(6), px(10), px(6))
+        self._row.setSpacing(px(12))

@@ -1,0 +1,404 @@
+"""How well is a joint known from the motion so far? Rings that close as what motion can still reduce goes down."""
+
+import math
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from PySide6.QtCore import QPointF, QRect, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.body_words import joint_name
+from app.theme import CARD_RADIUS, Look
+from app.widgets.chip import paint_chip
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
+from app.wording import name_of, tr
+from core.body import Joint, Side
+from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD
+from core.live.excitation import ExcitationState, Wanted
+
+AXIS_FROM_DEG, CENTRE_FROM_MM = 30.0, 120.0  # where the rings begin
+UNKNOWN = "\N{EN DASH}"
+STEPS = 360  # of a ring: finer ones nobody sees
+DASHES, DASH = 40, 0.62  # of the right leg's rings
+CARD = QSize(400, 210)
+COMPACT_CARD = QSize(340, 130)
+RING, READY_RING = 172, 164
+OUTER, INNER, READY_OUTER, READY_INNER = 14.0, 6.0, 7.0, 3.0
+RING_GAP = 5.0
+VALUE, LARGEST_VALUE = 56, 72
+CHIP = 28
+PADDING = 20
+WIDEST = 240  # of the words: what is told and what is wanted are read together
+
+
+class GaugeState(Enum):
+    OPEN = auto()
+    NOW = auto()  # the joint whose motion helps most
+    READY = auto()
+    PLATEAU = auto()  # as good as this motion gives
+    LOOSE = auto()  # of a prosthesis, and turns as no hinge does
+    ABSENT = auto()  # nothing to find, or nothing to find it with
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """One figure of a joint: as it is read, what is wanted, and how far its ring is closed (0 to 1)."""
+
+    figure: str
+    unit: str
+    wanted: str
+    share: float
+    is_met: bool
+
+
+@dataclass(frozen=True, slots=True)
+class GaugeFace:
+    """`axis` is None where it is not asked for: an ankle's closes in walking. `note` says why there is no gauge."""
+
+    state: GaugeState = GaugeState.OPEN
+    axis: Measure | None = None
+    centre: Measure | None = None
+    note: str = ""
+
+    @property
+    def is_settled(self) -> bool:
+        return self.state in (GaugeState.READY, GaugeState.PLATEAU, GaugeState.LOOSE)
+
+
+def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_now: bool) -> GaugeFace:
+    """Read a gauge off the excitation, without the floors that no motion reduces; None: nothing was heard yet."""
+    is_closed = found is not None and found.is_closed
+    axis_deg = math.degrees(found.axis_sd_rad) if found is not None else math.inf
+    centre_mm = 1000 * found.centre_sd_m if found is not None else math.inf
+    axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
+    axis = _measure(axis_deg, axis_wanted, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
+    centre = _measure(centre_mm, centre_wanted, CENTRE_FROM_MM, tr("mm"), is_closed)
+    if found is None:
+        return GaugeFace(GaugeState.NOW if is_now else GaugeState.OPEN, axis, centre)
+    is_loose = wanted.is_hinge and found.axis_sd_with_floor_rad > AXIS_FLOOR_HUMAN_RAD
+    if is_loose and (is_closed or found.is_plateau):
+        state = GaugeState.LOOSE
+    elif is_closed:
+        state = GaugeState.READY
+    elif found.is_plateau:
+        state = GaugeState.PLATEAU
+    else:
+        state = GaugeState.NOW if is_now else GaugeState.OPEN
+    return GaugeFace(state, axis, centre)
+
+
+def two_digits(value: float) -> str:
+    """Write a certainty as it is told: 0.8, 2.4, 11."""
+    return f"{value:.1f}" if round(value, 1) < 10 else f"{value:.0f}"
+
+
+def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> Measure:
+    """A ring is logarithmic: each halving of what is uncertain closes as much of it."""
+    share = math.log(begins / value) / math.log(begins / wanted) if 0 < value < math.inf else 0.0
+    is_met = is_closed or value <= wanted
+    share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)
+    figure = two_digits(value) if value < begins else UNKNOWN
+    return Measure(figure, unit, f"{wanted:g}{unit}" if unit == "°" else f"{wanted:g} {unit}", _steps(share), is_met)
+
+
+def _steps(share: float) -> float:
+    return round(share * STEPS) / STEPS
+
+
+class Gauge(QWidget):
+    """One joint's card. The ring lies on the side of the figure: a right leg's at the right."""
+
+    def __init__(self, look: Look, joint: Joint) -> None:
+        super().__init__()
+        self._look, self._joint = look, joint
+        self._face = GaugeFace()
+        self._is_compact = False
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        look.changed.connect(self._on_look_changed)
+        self._name()
+
+    @property
+    def face(self) -> GaugeFace:
+        return self._face
+
+    def show_face(self, face: GaugeFace) -> None:
+        """Show it; painted anew only if it reads otherwise than before."""
+        if face != self._face:
+            self._face = face
+            self._name()
+            self.update()
+
+    def set_compact(self, is_compact: bool) -> None:
+        self._is_compact = is_compact
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        return (COMPACT_CARD if self._is_compact else CARD) * self._look.theme.scale
+
+    def minimumSizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(300), px(112)) if self._is_compact else QSize(px(330), px(150))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme, face = self._look.theme, self._face
+        c = theme.colours
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        is_now, is_absent = face.state is GaugeState.NOW, face.state is GaugeState.ABSENT
+        pen = theme.pen(c.ink if is_now else c.control if is_absent else c.line, 2.5 if is_now else 1)
+        if is_absent:
+            pen.setDashPattern([3.0, 3.0])
+        painter.setPen(pen)
+        painter.setBrush(Qt.BrushStyle.NoBrush if is_absent else QColor(c.surface))
+        half, radius = pen.widthF() / 2, CARD_RADIUS * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(half, half, -half, -half), radius, radius)
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        if is_absent:
+            self._paint_absent(painter)
+        elif self._is_compact:
+            self._paint_compact(painter)
+        else:
+            self._paint_full(painter)
+
+    # the parts of a card
+
+    def _paint_full(self, painter: QPainter) -> None:
+        theme = self._look.theme
+        px = theme.px
+        grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
+        middle = px(110) * min(max(grow, 0.8), 1.3)
+        x = self.width() - middle if self._joint.side is Side.RIGHT else middle
+        room = min(self.height() - 2 * px(PADDING), 2 * middle - 2 * px(PADDING) + px(4))
+        ring = QRectF(0, 0, room, room)
+        ring.moveCenter(QPointF(x, self.height() / 2))
+        self._paint_rings(painter, ring)
+        self._paint_value(painter, ring)
+        words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING))
+        if self._joint.side is Side.RIGHT:
+            words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))
+        else:
+            words.setLeft(ring.right() + px(16))
+            words.setRight(min(words.right(), words.left() + px(WIDEST)))
+        self._paint_name(painter, words)
+        self._paint_rows(painter, words)
+        self._paint_state(painter, words)
+
+    def _paint_compact(self, painter: QPainter) -> None:
+        theme, face = self._look.theme, self._face
+        c, px = theme.colours, theme.px
+        room = min(self.height() - px(24), px(118))
+        ring = QRectF(px(14), (self.height() - room) / 2, room, room)
+        self._paint_rings(painter, ring)
+        icon = _ICONS[face.state]
+        if icon is not None:
+            mark = QRectF(0, 0, px(32), px(32))
+            mark.moveCenter(ring.center())
+            paint_icon(painter, icon, mark, c.ink)
+        words = QRectF(self.rect()).adjusted(px(14) + room + px(20), px(10), -px(18), -px(8))
+        name_width = self._paint_name(painter, words)
+        left = words.left() + name_width + px(12)
+        beside = QRectF(left, words.top(), words.right() - left, words.height() - px(36))
+        self._paint_state_word(painter, beside)
+        main, second = self._figures()
+        painter.setPen(QColor(c.ink))
+        painter.setFont(theme.font(VALUE, SEMIBOLD))
+        bottom = Qt.AlignmentFlag.AlignBottom
+        painter.drawText(words, bottom | Qt.AlignmentFlag.AlignLeft, main)
+        beside_main = painter.fontMetrics().horizontalAdvance(main) + px(8)
+        painter.setPen(QColor(c.ink2))
+        painter.setFont(theme.font(20, MEDIUM))
+        is_unit = face.axis is None  # it stands by its figure; a second figure stands apart
+        line = words.adjusted(beside_main if is_unit else 0, 0, 0, -px(10))
+        painter.drawText(
+            line, bottom | (Qt.AlignmentFlag.AlignLeft if is_unit else Qt.AlignmentFlag.AlignRight), second
+        )
+
+    def _paint_absent(self, painter: QPainter) -> None:
+        theme = self._look.theme
+        px = theme.px
+        words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING / 2))
+        if self._is_compact:
+            words.adjust(0, -px(8), 0, 0)
+        self._paint_name(painter, words)
+        painter.setPen(QColor(theme.colours.ink2))
+        painter.setFont(theme.font(16 if not self._is_compact else 14))
+        note = words.adjusted(0, px(CHIP + 14), 0, 0)
+        painter.drawText(note, Qt.TextFlag.TextWordWrap, self._face.note)
+
+    def _paint_rings(self, painter: QPainter, room: QRectF) -> None:
+        face, unit = self._face, room.width() / RING
+        is_thin = face.state is GaugeState.READY
+        outer, inner = (READY_OUTER, READY_INNER) if is_thin else (OUTER, INNER)
+        back = (RING - READY_RING) / 2 * unit if is_thin else 0.0
+        first, second = (face.axis, face.centre) if face.axis is not None else (face.centre, None)
+        box = room.adjusted(back, back, -back, -back)
+        for measure, width in ((first, outer * unit), (second, inner * unit)):
+            if measure is None:
+                continue
+            half = width / 2
+            self._paint_ring(painter, box.adjusted(half, half, -half, -half), width, measure.share)
+            step = width + RING_GAP * unit
+            box.adjust(step, step, -step, -step)
+
+    def _paint_ring(self, painter: QPainter, box: QRectF, width: float, share: float) -> None:
+        theme, side = self._look.theme, self._joint.side
+        pen = theme.pen(theme.colours.track, 1)
+        pen.setWidthF(width)
+        pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+        if share < 1.0:
+            painter.setPen(pen)
+            painter.drawEllipse(box)
+        if share <= 0.0:
+            return
+        pen.setColor(theme.curve(side))
+        if side is Side.RIGHT:
+            pitch = math.pi * box.width() / DASHES / width  # in widths of the pen, as Qt counts
+            pen.setDashPattern([DASH * pitch, (1 - DASH) * pitch])
+        painter.setPen(pen)
+        painter.drawArc(box, 90 * 16, -round(share * 360 * 16))
+
+    def _paint_value(self, painter: QPainter, ring: QRectF) -> None:
+        theme, middle = self._look.theme, Qt.AlignmentFlag.AlignCenter
+        grow = ring.width() / RING / theme.scale
+        size, second_size = min(LARGEST_VALUE, VALUE * grow), max(14.0, 20 * min(grow, 1.2))
+        main, second = self._figures()
+        px = theme.px
+        painter.setPen(QColor(theme.colours.ink))
+        painter.setFont(theme.font(size, SEMIBOLD))
+        centre = ring.center()
+        figure = QRectF(ring.left(), centre.y() - px(size) * 0.72, ring.width(), px(size) * 1.12)
+        if main.endswith("°"):  # a degree sign is light: the digits stand in the middle
+            figure.translate(painter.fontMetrics().horizontalAdvance("°") * 0.16, 0)
+        painter.drawText(figure, middle, main)
+        painter.setPen(QColor(theme.colours.ink2))
+        painter.setFont(theme.font(second_size, MEDIUM))
+        below = QRectF(ring.left(), centre.y() + px(size) * 0.36, ring.width(), px(second_size) * 1.4)
+        painter.drawText(below, middle, second)
+
+    def _paint_name(self, painter: QPainter, words: QRectF) -> float:
+        theme = self._look.theme
+        chip = theme.px(CHIP)
+        paint_chip(painter, QRectF(words.left(), words.top(), chip, chip), self._joint.side, theme)
+        painter.setPen(QColor(theme.colours.ink))
+        name = joint_name(self._joint)
+        left = words.left() + chip + theme.px(10)
+        painter.setFont(self._fitting(name, 22, words.right() - left))
+        painter.drawText(QRectF(left, words.top(), words.right() - left, chip), Qt.AlignmentFlag.AlignVCenter, name)
+        return chip + theme.px(10) + painter.fontMetrics().horizontalAdvance(name)
+
+    def _paint_rows(self, painter: QPainter, words: QRectF) -> None:
+        """What is asked for, and whether it is met: in words, for rings are read by nobody at once."""
+        theme, face = self._look.theme, self._face
+        c, px = theme.colours, theme.px
+        top = words.top() + px(CHIP + 10)
+        for name, measure in ((tr("Axis"), face.axis), (tr("Centre"), face.centre)):
+            if measure is None:
+                continue
+            line = QRectF(words.left(), top, words.width(), px(26))
+            mark = QRectF(line.left(), line.center().y() - px(8), px(16), px(16))
+            paint_icon(painter, Icon.CHECK if measure.is_met else Icon.UNCHECKED, mark, c.ink)
+            painter.setPen(QColor(c.ink))
+            painter.setFont(theme.font(14, MEDIUM))
+            painter.drawText(line.adjusted(px(24), 0, 0, 0), Qt.AlignmentFlag.AlignVCenter, name)
+            painter.setPen(QColor(c.ink2))
+            painter.setFont(theme.font(14))
+            wanted = tr("under {limit}").format(limit=measure.wanted)
+            metrics = painter.fontMetrics()
+            if metrics.horizontalAdvance(name) + metrics.horizontalAdvance(wanted) + px(24 + 6) > line.width():
+                wanted = f"< {measure.wanted}"
+            painter.drawText(line, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, wanted)
+            top += px(26)
+
+    def _paint_state(self, painter: QPainter, words: QRectF) -> None:
+        theme, face = self._look.theme, self._face
+        c, px = theme.colours, theme.px
+        word, icon = state_word(face.state), _ICONS[face.state]
+        is_short = face.state in (GaugeState.READY, GaugeState.NOW, GaugeState.OPEN)
+        weight = REGULAR if face.state is GaugeState.OPEN else SEMIBOLD
+        font = theme.font(20 if is_short else 14, weight)
+        room = QRect(0, 0, round(words.width()) - px(26), 1000)
+        wraps = int(Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextWordWrap)
+        height = max(px(28), QFontMetrics(font).boundingRect(room, wraps, word).height())
+        line = QRectF(words.left(), words.bottom() - height + px(4), words.width(), height)
+        x = line.left()
+        if icon is not None:
+            side = px(28) if face.state is GaugeState.READY else px(20)
+            mark = QRectF(x, line.center().y() - side / 2, side, side)
+            if face.state is GaugeState.READY:
+                painter.setPen(Qt.PenStyle.NoPen)
+                painter.setBrush(QColor(c.inv))
+                painter.drawEllipse(mark)
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                paint_icon(painter, icon, mark.adjusted(px(5), px(5), -px(5), -px(5)), c.inv_ink)
+            else:
+                paint_icon(painter, icon, mark.translated(-px(4) if face.state is GaugeState.NOW else 0, 0), c.ink)
+            x += side + (px(10) if face.state is GaugeState.READY else px(6))
+        painter.setPen(QColor(c.ink2 if face.state is GaugeState.OPEN else c.ink))
+        painter.setFont(font)
+        painter.drawText(QRectF(x, line.top(), line.right() - x + 1, line.height()), wraps, word)
+
+    def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
+        theme, state = self._look.theme, self._face.state
+        is_short = state in (GaugeState.READY, GaugeState.NOW, GaugeState.OPEN)
+        painter.setPen(QColor(theme.colours.ink2 if state is GaugeState.OPEN else theme.colours.ink))
+        painter.setFont(theme.font(18 if is_short else 14, REGULAR if state is GaugeState.OPEN else SEMIBOLD))
+        flags = int(Qt.AlignmentFlag.AlignRight) | int(Qt.TextFlag.TextWordWrap)
+        painter.drawText(place.adjusted(0, self._look.theme.px(3), 0, 0), flags, state_word(state))
+
+    def _figures(self) -> tuple[str, str]:
+        """The main figure, and the second one or the main one's unit."""
+        axis, centre = self._face.axis, self._face.centre
+        if centre is None:
+            return UNKNOWN, ""
+        is_known = centre.figure != UNKNOWN
+        if axis is None:
+            return centre.figure, centre.unit if is_known else ""
+        degree = axis.unit if axis.figure != UNKNOWN else ""
+        return f"{axis.figure}{degree}", f"{centre.figure} {centre.unit}" if is_known else ""
+
+    def _fitting(self, text: str, size: float, width: float) -> QFont:
+        """The font of `size`, or of the largest below in which the text has its room."""
+        font = self._look.theme.font(size, SEMIBOLD)
+        wide = QFontMetrics(font).horizontalAdvance(text)
+        return font if wide <= width else self._look.theme.font(max(12.0, size * width / wide), SEMIBOLD)
+
+    def _name(self) -> None:
+        """Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now."""
+        face = self._face
+        parts = [name_of(self._joint).capitalize()]
+        for name, measure in ((tr("axis"), face.axis), (tr("centre"), face.centre)):
+            if measure is not None:
+                space = "" if measure.unit == "°" else " "
+                known = f"{measure.figure}{space}{measure.unit}" if measure.figure != UNKNOWN else tr("unknown")
+                parts.append(f"{name} {known}")
+                parts.append(tr("under {limit} needed").format(limit=measure.wanted))
+        parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
+        self.setAccessibleName(", ".join(parts))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+_ICONS: dict[GaugeState, Icon | None] = {
+    GaugeState.OPEN: None,
+    GaugeState.NOW: Icon.NEXT,
+    GaugeState.READY: Icon.CHECK,
+    GaugeState.PLATEAU: Icon.INFO,
+    GaugeState.LOOSE: Icon.WARNING,
+    GaugeState.ABSENT: None,
+}
+
+
+def state_word(state: GaugeState) -> str:
+    """Say a state as the gauge does."""
+    return {
+        GaugeState.OPEN: tr("Open"),
+        GaugeState.NOW: tr("Now"),
+        GaugeState.READY: tr("Ready"),
+        GaugeState.PLATEAU: tr("as good as this motion gives"),
+        GaugeState.LOOSE: tr("no hinge"),
+        GaugeState.ABSENT: "",
+    }[state]

@@ -1,0 +1,179 @@
+"""Which words ask for the motion that is missing, and what does stopping now cost?"""
+
+import math
+from dataclasses import dataclass
+
+from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, two_digits
+from app.widgets.hint import Hint
+from app.widgets.icons import Icon
+from app.wording import name_of, tr
+from core.body import Joint, Segment, Side, Site
+from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Wanted
+from core.live.free_motion import FreeMotionState
+
+LETTERS = 28  # what is read from two metres
+HELD_S = 2.5  # nobody can follow a hint that changes sooner
+ASKED_FOR_S = 5.0  # more movement, where little is wanting
+
+
+def wanted_of(joint: Joint, prosthetic_sides: frozenset[Side]) -> Wanted:
+    """What closes this joint."""
+    return PROSTHESIS if joint.side in prosthetic_sides else HUMAN
+
+
+def hint_for(missing: Missing, prosthetic_sides: frozenset[Side] = frozenset()) -> Hint:
+    """Ask for one motion; on a prosthetic side the therapist moves the limb."""
+    is_circle = missing.movement is Movement.CIRCLE
+    sentence = _circle(missing.site) if is_circle else _bend(missing.site)
+    icon = Icon.REPEAT if is_circle else Icon.BEND
+    if missing.site.side in prosthetic_sides:
+        how = (
+            tr("The therapist moves the limb. Change direction.") if is_circle else tr("The therapist moves the limb.")
+        )
+        return Hint(sentence, how, tr("The therapist moves the limb."), icon)
+    if is_circle:
+        how = tr("Change direction. Seated or standing, held by the hand is fine.")
+        return Hint(sentence, how, tr("Change direction. Seated is fine."), icon)
+    how = tr("To and fro, as far as is comfortable. Held by the hand is fine.")
+    return Hint(sentence, how, tr("To and fro. Held is fine."), icon)
+
+
+def first_hint() -> Hint:
+    """Before anything moves, or while nobody knows who is where."""
+    how = tr("One leg, then the other. Seated, lying or standing, held by the hand is fine.")
+    return Hint(tr("Move any leg"), how, tr("One leg, then the other. Seated is fine."))
+
+
+def last_hint(motion: FreeMotionState) -> Hint:
+    """When nothing is left to do: all ready, or some only as good as the motion gave."""
+    is_whole = all(state.is_closed for state in motion.joints.values())
+    how = tr("Walking comes next, by itself.")
+    return Hint(tr("All joints are ready") if is_whole else tr("As good as it gets"), how, how, Icon.CHECK)
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """What is asked for now. `joint` is the one whose card is bold, `site` the limb that is darkened."""
+
+    hint: Hint
+    joint: Joint | None = None
+    site: Site | None = None
+
+
+class HintHold:
+    """Keeps a hint on the screen for HELD_S, unless its joint is ready before."""
+
+    def __init__(self, prosthetic_sides: frozenset[Side] = frozenset()) -> None:
+        self._prosthetic_sides = prosthetic_sides
+        self._asked: Asked | None = None
+        self._since_s = -math.inf
+
+    def ask(self, motion: FreeMotionState, now_s: float) -> Asked:
+        """Say what to ask for at `now_s`, of any clock that goes on evenly."""
+        wish = self._wish(motion)
+        if self._asked is None or (
+            wish != self._asked and (now_s - self._since_s >= HELD_S or self._is_answered(self._asked, motion))
+        ):
+            self._asked, self._since_s = wish, now_s
+        return self._asked
+
+    def _wish(self, motion: FreeMotionState) -> Asked:
+        weakest = motion.weakest
+        if weakest is None:
+            return Asked(last_hint(motion) if motion.is_done else first_hint())
+        missing = motion.joints[weakest].missing
+        if missing is None or not any(state.moved_s for state in motion.joints.values()):
+            return Asked(first_hint())
+        return Asked(hint_for(missing, self._prosthetic_sides), weakest, missing.site)
+
+    def _is_answered(self, asked: Asked, motion: FreeMotionState) -> bool:
+        if asked.joint is None:
+            return True  # "Move any leg" has been answered by moving
+        state = motion.joints.get(asked.joint)
+        return state is None or state.is_closed or state.is_plateau
+
+
+def price_of_stopping(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> str:
+    """Say what stopping now leaves undone; empty where nothing is."""
+    if not motion.joints:
+        return tr("Nothing is known of the joints yet.")
+    is_open = [joint for joint, state in motion.joints.items() if not state.is_closed]
+    unknown = [joint for joint in is_open if _is_unknown(joint, motion.joints[joint])]
+    if unknown:
+        names = _names(unknown)
+        return tr("Stopping now leaves {joints} without angles to rely on.").format(joints=names)
+    if not is_open:
+        return ""
+    worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
+    figure = _figure(worst, motion.joints[worst], wanted_of(worst, prosthetic_sides))
+    if motion.joints[worst].is_plateau or len(is_open) > 1:
+        rest = tr("Go on and the report says so.")
+    elif worst.side is Side.LEFT:
+        rest = tr("Go on and the report says so, or move the left leg for {seconds:.0f} more seconds.")
+    else:
+        rest = tr("Go on and the report says so, or move the right leg for {seconds:.0f} more seconds.")
+    return f"{figure} {rest.format(seconds=ASKED_FOR_S)}"
+
+
+def _circle(site: Site) -> str:
+    left = {
+        Segment.THIGH: tr("Circle the left thigh"),
+        Segment.SHANK: tr("Circle the left lower leg"),
+        Segment.FOOT: tr("Circle the left foot"),
+    }
+    right = {
+        Segment.THIGH: tr("Circle the right thigh"),
+        Segment.SHANK: tr("Circle the right lower leg"),
+        Segment.FOOT: tr("Circle the right foot"),
+    }
+    return (left if site.side is Side.LEFT else right)[site.segment]
+
+
+def _bend(site: Site) -> str:
+    """The joint at the segment's near end is what bends."""
+    left = {
+        Segment.THIGH: tr("Bend the left hip"),
+        Segment.SHANK: tr("Bend the left knee"),
+        Segment.FOOT: tr("Bend the left ankle"),
+    }
+    right = {
+        Segment.THIGH: tr("Bend the right hip"),
+        Segment.SHANK: tr("Bend the right knee"),
+        Segment.FOOT: tr("Bend the right ankle"),
+    }
+    return (left if site.side is Side.LEFT else right)[site.segment]
+
+
+def _is_unknown(joint: Joint, state: ExcitationState) -> bool:
+    is_axis_unknown = joint.is_knee and math.degrees(state.axis_sd_rad) >= AXIS_FROM_DEG
+    return is_axis_unknown or 1000 * state.centre_sd_m >= CENTRE_FROM_MM
+
+
+def _figure(joint: Joint, state: ExcitationState, wanted: Wanted) -> str:
+    """ "Left knee: 3.8°, 1.5° wanted." """
+    name = name_of(joint)
+    name = name[0].upper() + name[1:]
+    axis, centre = math.degrees(state.axis_sd_rad), 1000 * state.centre_sd_m
+    axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
+    if joint.is_knee and axis / axis_wanted >= centre / centre_wanted:
+        said = tr("{joint}: {figure}°, {wanted:g}° wanted.")
+        return said.format(joint=name, figure=two_digits(axis), wanted=axis_wanted)
+    said = tr("{joint}: {figure} mm, {wanted:g} mm wanted.")
+    return said.format(joint=name, figure=two_digits(centre), wanted=centre_wanted)
+
+
+def _names(joints: list[Joint]) -> str:
+    if len(joints) == 1:
+        return _the(joints[0])
+    if len(joints) == 2:
+        return tr("{first} and {last}").format(first=_the(joints[0]), last=_the(joints[1]))
+    return tr("{count} joints").format(count=len(joints))
+
+
+def _the(joint: Joint) -> str:
+    return {
+        Joint.LEFT_KNEE: tr("the left knee"),
+        Joint.LEFT_ANKLE: tr("the left ankle"),
+        Joint.RIGHT_KNEE: tr("the right knee"),
+        Joint.RIGHT_ANKLE: tr("the right ankle"),
+    }[joint]

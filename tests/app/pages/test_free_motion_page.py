@@ -1,0 +1,125 @@
+"""The free motion on the page: what is said aloud, what is painted anew, and how it is laid out."""
+
+import time
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import QEvent, QObject
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessibleEvent
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.free_motion_page import FreeMotionPage, FreeMotionView
+from app.theme import Look, load_fonts
+from app.widgets.gauge import Gauge, GaugeFace, GaugeState, Measure
+from app.widgets.hint import Hint
+from core.body import Joint, Site
+
+
+def measure(figure: str, unit: str = "°", share: float = 0.4) -> Measure:
+    return Measure(figure, unit, f"1.5{unit}", share, is_met=False)
+
+
+def face(figure: str = "11", share: float = 0.4, state: GaugeState = GaugeState.OPEN) -> GaugeFace:
+    return GaugeFace(state, measure(figure, share=share), measure("34", "mm"))
+
+
+def view(**faces: GaugeFace) -> FreeMotionView:
+    gauges = {joint: faces.get(joint.value, face()) for joint in Joint}
+    return FreeMotionView(gauges, Hint("Circle the left lower leg", "Change direction."), 7.3, Site.LEFT_SHANK)
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    page = FreeMotionPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 600)
+    with qtbot.waitExposed(page):
+        page.show()
+    page.show_state(view())
+    QApplication.processEvents()
+    yield page
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def announced(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    said: list[str] = []
+
+    def note(event: QAccessibleEvent) -> None:
+        if isinstance(event, QAccessibleAnnouncementEvent):
+            said.append(event.message())
+
+    monkeypatch.setattr(QAccessible, "updateAccessibility", note)
+    return said
+
+
+def test_gauges_lie_as_the_patient_faces_you(page: FreeMotionPage) -> None:
+    at = {joint: gauge.geometry().center() for joint, gauge in page.gauges.items()}
+    assert at[Joint.RIGHT_KNEE].x() < page.figure.geometry().center().x() < at[Joint.LEFT_KNEE].x()
+    assert at[Joint.LEFT_KNEE].y() < at[Joint.LEFT_ANKLE].y()
+
+
+def test_where_there_is_little_room_the_figure_goes(page: FreeMotionPage) -> None:
+    page.set_compact(True)
+    page.resize(736, 388)
+    QApplication.processEvents()
+    assert page.figure.isHidden()
+    assert page.minimumSizeHint().height() <= 388
+    assert all(gauge.width() > 300 for gauge in page.gauges.values())
+
+
+def test_a_hint_is_said_aloud_only_when_its_sentence_changes(page: FreeMotionPage, announced: list[str]) -> None:
+    page.band.show_hint(Hint("Bend the left knee", "To and fro."))
+    page.band.show_hint(Hint("Bend the left knee", "The therapist moves the limb."))
+    page.band.show_hint(Hint("Bend the right knee", "To and fro."))
+    assert announced == ["Bend the left knee. To and fro.", "Bend the right knee. To and fro."]
+
+
+class Paints(QObject):
+    """Notes which of the watched widgets are painted."""
+
+    def __init__(self, page: FreeMotionPage) -> None:
+        super().__init__()
+        self.painted: list[Joint] = []
+        self._joints = {gauge: joint for joint, gauge in page.gauges.items()}
+        for gauge in self._joints:
+            gauge.installEventFilter(self)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() is QEvent.Type.Paint and isinstance(watched, Gauge):
+            self.painted.append(self._joints[watched])
+        return False
+
+
+def test_only_the_gauge_that_reads_otherwise_is_painted(page: FreeMotionPage) -> None:
+    paints = Paints(page)
+    page.show_state(view(left_knee=face("9.4")))
+    QApplication.processEvents()
+    page.show_state(view(left_knee=face("9.4")))
+    QApplication.processEvents()
+    assert paints.painted == [Joint.LEFT_KNEE]
+
+
+def test_labels_that_seem_swapped_are_asked_about_in_the_page(qtbot: QtBot, page: FreeMotionPage) -> None:
+    page.show_labels("Left thigh and shank seem swapped.", "Swap them, or keep as worn.")
+    assert page.labels.isVisible()
+    with qtbot.waitSignal(page.swap_pressed):
+        page.labels.swap.click()
+    with qtbot.waitSignal(page.keep_pressed):
+        page.labels.keep.click()
+    page.show_labels("")
+    assert page.labels.isHidden()
+
+
+def test_a_frame_in_which_all_four_gauges_move_is_painted_in_time(page: FreeMotionPage) -> None:
+    taken_ms = []
+    for count in range(20):
+        page.show_state(view(**{joint.value: face(f"{count}", share=count / 30) for joint in Joint}))
+        began = time.perf_counter()
+        QApplication.processEvents()
+        taken_ms.append(1000 * (time.perf_counter() - began))
+    assert sorted(taken_ms)[5] < 30  # ten times a second leaves 100; a busy machine is no reason to fail

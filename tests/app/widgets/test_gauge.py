@@ -1,0 +1,123 @@
+"""A gauge as it reads the excitation of a joint: figures without floors, rings that close, and words beside them."""
+
+import math
+from collections.abc import Iterator
+from itertools import pairwise
+
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.theme import Look, load_fonts
+from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
+from core.body import Joint
+from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
+
+
+def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: bool) -> ExcitationState:
+    return ExcitationState(
+        axis_sd_rad=math.radians(axis_deg),
+        centre_sd_m=centre_mm / 1000,
+        axis_sd_with_floor_rad=math.radians(math.hypot(axis_deg, floor_deg)),
+        centre_sd_with_floor_m=centre_mm / 1000,
+        sign_margin=2.0,
+        wanting=1.0,
+        is_closed=told.get("is_closed", False),
+        is_plateau=told.get("is_plateau", False),
+        trend=0.5,
+        missing=None,
+        moved_s=5.0,
+    )
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.mark.parametrize(("value", "written"), [(0.84, "0.8"), (9.94, "9.9"), (9.96, "10"), (11.4, "11"), (2.0, "2.0")])
+def test_figures_have_two_digits(value: float, written: str) -> None:
+    assert two_digits(value) == written
+
+
+def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:
+    face = gauge_face(Joint.LEFT_KNEE, state(0.8, 6.2, floor_deg=4.0, is_closed=True), HUMAN, is_now=False)
+    assert face.state is GaugeState.READY
+    assert face.axis is not None
+    assert face.centre is not None
+    assert (face.axis.figure, face.axis.wanted, face.axis.share) == ("0.8", "1.5°", 1.0)
+    assert (face.centre.figure, face.centre.wanted, face.centre.share) == ("6.2", "10 mm", 1.0)
+
+
+def test_an_ankle_has_its_centre_only() -> None:
+    face = gauge_face(Joint.LEFT_ANKLE, state(20, 18), HUMAN, is_now=False)
+    assert face.axis is None
+    assert face.centre is not None
+    assert face.centre.figure == "18"
+
+
+def test_a_ring_closes_by_as_much_with_each_halving() -> None:
+    shares = []
+    for axis_deg in (24.0, 12.0, 6.0, 3.0):
+        axis = gauge_face(Joint.LEFT_KNEE, state(axis_deg, 50), HUMAN, is_now=True).axis
+        assert axis is not None
+        shares.append(axis.share)
+    steps = [b - a for a, b in pairwise(shares)]
+    assert steps == pytest.approx([math.log(2) / math.log(20)] * 3, abs=1 / 180)
+    assert 0 < shares[0] < shares[-1] < 1
+
+
+def test_more_is_wanted_of_a_prosthesis() -> None:
+    human = gauge_face(Joint.LEFT_KNEE, state(1.0, 6), HUMAN, is_now=False)
+    hinge = gauge_face(Joint.LEFT_KNEE, state(1.0, 6, floor_deg=0.15), PROSTHESIS, is_now=False)
+    assert human.axis is not None
+    assert human.axis.is_met
+    assert hinge.axis is not None
+    assert hinge.centre is not None
+    assert (hinge.axis.is_met, hinge.axis.wanted, hinge.centre.wanted) == (False, "0.5°", "5 mm")
+
+
+def test_an_open_ring_never_looks_closed() -> None:
+    axis = gauge_face(Joint.LEFT_KNEE, state(1.5001, 50), HUMAN, is_now=False).axis
+    assert axis is not None
+    assert axis.share < 1.0
+    assert not axis.is_met
+
+
+def test_what_is_not_known_yet_is_a_dash() -> None:
+    for found in (None, state(57, 250)):
+        face = gauge_face(Joint.LEFT_KNEE, found, HUMAN, is_now=False)
+        assert face.axis is not None
+        assert (face.axis.figure, face.axis.share) == ("\N{EN DASH}", 0.0)
+
+
+def test_a_plateau_keeps_its_figure_and_its_open_ring() -> None:
+    face = gauge_face(Joint.LEFT_KNEE, state(3.8, 8, is_plateau=True), HUMAN, is_now=False)
+    assert face.state is GaugeState.PLATEAU
+    assert face.axis is not None
+    assert (face.axis.figure, face.axis.is_met) == ("3.8", False)
+    assert face.centre is not None
+    assert face.centre.is_met
+
+
+def test_a_prosthesis_that_turns_like_no_hinge_is_called_so() -> None:
+    loose = state(0.4, 4, floor_deg=6.0, is_closed=True)
+    assert gauge_face(Joint.LEFT_KNEE, loose, PROSTHESIS, is_now=False).state is GaugeState.LOOSE
+    assert gauge_face(Joint.LEFT_KNEE, loose, HUMAN, is_now=False).state is GaugeState.READY
+    firm = state(0.4, 4, floor_deg=0.6, is_closed=True)
+    assert gauge_face(Joint.LEFT_KNEE, firm, PROSTHESIS, is_now=False).state is GaugeState.READY
+
+
+def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: Look) -> None:
+    gauge = Gauge(look, Joint.LEFT_KNEE)
+    qtbot.addWidget(gauge)
+    gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))
+    assert gauge.accessibleName() == (
+        "Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now"
+    )
+    gauge.show_face(GaugeFace(GaugeState.ABSENT, note="No foot sensor: no left ankle angle."))
+    assert gauge.accessibleName() == "Left knee, No foot sensor: no left ankle angle."

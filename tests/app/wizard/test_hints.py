@@ -1,0 +1,128 @@
+"""Which words ask for a motion, how long they stay, and what stopping early is said to cost."""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.wizard.hints import HELD_S, LETTERS, HintHold, first_hint, hint_for, last_hint, price_of_stopping
+from core.body import Joint, Side, Site
+from core.live.excitation import ExcitationState, Missing, Movement
+from core.live.free_motion import FreeMotionState
+
+LEFT_LEG = Missing(Site.LEFT_SHANK, Movement.CIRCLE)
+RIGHT_KNEE = Missing(Site.RIGHT_SHANK, Movement.BEND)
+
+
+def state(axis_deg: float, centre_mm: float, missing: Missing | None = LEFT_LEG, **more: object) -> ExcitationState:
+    known = ExcitationState(
+        axis_sd_rad=float(np.deg2rad(axis_deg)),
+        centre_sd_m=centre_mm / 1000,
+        axis_sd_with_floor_rad=float(np.deg2rad(np.hypot(axis_deg, 4.0))),
+        centre_sd_with_floor_m=centre_mm / 1000,
+        sign_margin=2.0,
+        wanting=max(axis_deg / 1.5, centre_mm / 10),
+        is_closed=False,
+        is_plateau=False,
+        trend=0.5,
+        missing=missing,
+        moved_s=6.0,
+    )
+    return replace(known, **more)  # type: ignore[arg-type]
+
+
+def motion(joints: Mapping[Joint, ExcitationState]) -> FreeMotionState:
+    is_open = [joint for joint, one in joints.items() if not (one.is_closed or one.is_plateau)]
+    return FreeMotionState(joints, {}, max(is_open, key=lambda joint: joints[joint].wanting, default=None))
+
+
+def every_hint() -> Iterator[str]:
+    for site in Site:
+        for movement in Movement:
+            yield hint_for(Missing(site, movement)).sentence
+    yield first_hint().sentence
+    yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)})).sentence
+    yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)})).sentence
+
+
+def test_every_hint_is_read_from_two_metres() -> None:
+    too_long = [sentence for sentence in every_hint() if len(sentence) > LETTERS]
+    assert too_long == []
+
+
+def test_a_hint_names_side_and_limb_in_plain_words() -> None:
+    assert hint_for(LEFT_LEG).sentence == "Circle the left lower leg"
+    assert hint_for(LEFT_LEG).how == "Change direction. Seated or standing, held by the hand is fine."
+    assert hint_for(Missing(Site.LEFT_SHANK, Movement.BEND)).sentence == "Bend the left knee"
+    assert hint_for(Missing(Site.RIGHT_FOOT, Movement.BEND)).sentence == "Bend the right ankle"
+
+
+def test_on_a_prosthetic_side_the_therapist_moves_the_limb() -> None:
+    prosthetic = frozenset({Side.LEFT})
+    assert hint_for(LEFT_LEG, prosthetic).how == "The therapist moves the limb. Change direction."
+    assert hint_for(RIGHT_KNEE, prosthetic) == hint_for(RIGHT_KNEE)
+
+
+def test_nothing_is_asked_of_one_leg_before_anything_moved() -> None:
+    still = motion({Joint.LEFT_KNEE: state(57, 250, moved_s=0.0)})
+    assert HintHold().ask(still, 0.0).hint.sentence == "Move any leg"
+
+
+def test_a_hint_stays_long_enough_to_be_followed() -> None:
+    hold = HintHold()
+    left = motion({Joint.LEFT_KNEE: state(11, 34), Joint.RIGHT_KNEE: state(3, 12, RIGHT_KNEE)})
+    right = motion({Joint.LEFT_KNEE: state(2, 12), Joint.RIGHT_KNEE: state(3, 12, RIGHT_KNEE)})
+    assert hold.ask(left, 10.0).joint is Joint.LEFT_KNEE
+    assert hold.ask(right, 10.0 + HELD_S - 0.1).joint is Joint.LEFT_KNEE
+    assert hold.ask(right, 10.0 + HELD_S).joint is Joint.RIGHT_KNEE
+    assert hold.ask(left, 10.0 + HELD_S + 0.1).joint is Joint.RIGHT_KNEE
+
+
+@pytest.mark.parametrize(("is_closed", "is_plateau"), [(True, False), (False, True)])
+def test_a_hint_goes_at_once_when_its_joint_is_settled(is_closed: bool, is_plateau: bool) -> None:
+    hold = HintHold()
+    right = state(3, 12, RIGHT_KNEE)
+    hold.ask(motion({Joint.LEFT_KNEE: state(11, 34), Joint.RIGHT_KNEE: right}), 10.0)
+    settled = state(1, 8, is_closed=is_closed, is_plateau=is_plateau)
+    asked = hold.ask(motion({Joint.LEFT_KNEE: settled, Joint.RIGHT_KNEE: right}), 10.1)
+    assert asked.joint is Joint.RIGHT_KNEE
+    assert asked.site is Site.RIGHT_SHANK
+
+
+def test_at_the_end_it_says_whether_all_are_ready_or_only_as_good_as_they_get() -> None:
+    ready = state(1, 8, None, is_closed=True)
+    assert last_hint(motion({Joint.LEFT_KNEE: ready})).sentence == "All joints are ready"
+    mixed = motion({Joint.LEFT_KNEE: ready, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
+    assert HintHold().ask(mixed, 0.0).hint.sentence == "As good as it gets"
+
+
+def test_stopping_costs_nothing_when_all_are_ready() -> None:
+    assert price_of_stopping(motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})) == ""
+
+
+def test_stopping_before_a_joint_is_found_costs_its_angles() -> None:
+    unknown, ready = state(57, 250), state(1, 8, None, is_closed=True)
+    one = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: ready})
+    assert price_of_stopping(one) == "Stopping now leaves the left knee without angles to rely on."
+    both = motion({Joint.LEFT_KNEE: unknown, Joint.RIGHT_KNEE: unknown})
+    assert price_of_stopping(both) == "Stopping now leaves the left knee and the right knee without angles to rely on."
+    assert price_of_stopping(FreeMotionState()) == "Nothing is known of the joints yet."
+
+
+def test_a_joint_that_is_nearly_there_is_told_with_both_figures_and_what_helps() -> None:
+    nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
+    assert price_of_stopping(nearly) == (
+        "Left knee: 3.8°, 1.5° wanted. Go on and the report says so, or move the left leg for 5 more seconds."
+    )
+
+
+def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
+    assert price_of_stopping(motion({Joint.RIGHT_ANKLE: state(9, 18, is_plateau=True)})) == (
+        "Right ankle: 18 mm, 10 mm wanted. Go on and the report says so."
+    )
+
+
+def test_of_a_prosthesis_more_is_wanted() -> None:
+    said = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
+    assert said.startswith("Left knee: 1.2°, 0.5° wanted.")
