@@ -101,9 +101,10 @@ class FreeMotionPage(QWidget):
         self.figure.emphasise(view.emphasised)
         self.figure.show_worn(view.worn)
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def paintEvent(self, event: QPaintEvent) -> None:
         """Lead a line from each card to its joint."""
-        if self._is_compact:
+        middle = self.figure.geometry().adjusted(-self._look.theme.px(8), 0, self._look.theme.px(8), 0)
+        if self._is_compact or not event.rect().intersects(middle):
             return
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)

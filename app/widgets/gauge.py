@@ -89,6 +89,12 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
     return GaugeFace(state, axis, centre)
 
 
+def _words(face: GaugeFace) -> tuple[object, ...]:
+    """All of a face but its ring and the figures in it."""
+    measures = (face.axis, face.centre)
+    return face.state, face.note, [(one.wanted, one.is_met) if one is not None else None for one in measures]
+
+
 def two_digits(value: float) -> str:
     """Write a certainty as it is told: 0.8, 2.4, 11."""
     return f"{value:.1f}" if round(value, 1) < 10 else f"{value:.0f}"
@@ -125,10 +131,14 @@ class Gauge(QWidget):
 
     def show_face(self, face: GaugeFace) -> None:
         """Show it; painted anew only if it reads otherwise than before."""
-        if face != self._face:
-            self._face = face
-            self._name()
+        if face == self._face:
+            return
+        before, self._face = self._face, face
+        self._name()
+        if self._is_compact or _words(before) != _words(face):
             self.update()
+        else:
+            self.update(self._ring().toAlignedRect().adjusted(-1, -1, 1, 1))
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
@@ -141,7 +151,7 @@ class Gauge(QWidget):
         px = self._look.theme.px
         return QSize(px(300), px(112)) if self._is_compact else QSize(px(330), px(150))
 
-    def paintEvent(self, _event: QPaintEvent) -> None:
+    def paintEvent(self, event: QPaintEvent) -> None:
         theme, face = self._look.theme, self._face
         c = theme.colours
         painter = QPainter(self)
@@ -160,21 +170,26 @@ class Gauge(QWidget):
         elif self._is_compact:
             self._paint_compact(painter)
         else:
-            self._paint_full(painter)
+            self._paint_full(painter, event.rect())
 
     # the parts of a card
 
-    def _paint_full(self, painter: QPainter) -> None:
-        theme = self._look.theme
-        px = theme.px
+    def _ring(self) -> QRectF:
+        """The square of the ring on a full card."""
+        px = self._look.theme.px
         grow = min(self.width() / px(CARD.width()), self.height() / px(CARD.height()))
         middle = px(110) * min(max(grow, 0.8), 1.3)
-        x = self.width() - middle if self._joint.side is Side.RIGHT else middle
         room = min(self.height() - 2 * px(PADDING), 2 * middle - 2 * px(PADDING) + px(4))
         ring = QRectF(0, 0, room, room)
-        ring.moveCenter(QPointF(x, self.height() / 2))
+        ring.moveCenter(QPointF(self.width() - middle if self._joint.side is Side.RIGHT else middle, self.height() / 2))
+        return ring
+
+    def _paint_full(self, painter: QPainter, part: QRect) -> None:
+        px, ring = self._look.theme.px, self._ring()
         self._paint_rings(painter, ring)
         self._paint_value(painter, ring)
+        if ring.adjusted(-2, -2, 2, 2).contains(QRectF(part)):
+            return  # words are dear, and as they were
         words = QRectF(self.rect()).adjusted(px(22), px(PADDING), -px(22), -px(PADDING))
         if self._joint.side is Side.RIGHT:
             words.setRight(min(ring.left() - px(16), words.left() + px(WIDEST)))

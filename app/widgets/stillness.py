@@ -1,5 +1,6 @@
 """How far has the standing come, and which sensor moves? A ring that fills, and a line per sensor beside its limit."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -162,9 +163,10 @@ class MovementBars(QWidget):
         moved: Sequence[Site],
         silent: Sequence[Site],
     ) -> None:
+        """Show each worn sensor's movement; infinite where too little was heard to tell."""
         rows = {
             site: _Row(
-                f"{movement_deg_s[site]:.1f}",
+                f"{movement_deg_s[site]:.1f}" if math.isfinite(movement_deg_s[site]) else "\N{EN DASH}",
                 round(min(movement_deg_s[site] / limit_deg_s * LIMIT_AT, 1.0), 2),
                 site in moved,
                 site in silent,
