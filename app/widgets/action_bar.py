@@ -19,7 +19,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import HEIGHT, Button, Kind
-from app.widgets.grid import NARROW_BELOW, side_margin
+from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
@@ -211,7 +211,7 @@ class ActionBar(QWidget):
         px = self._look.theme.px
         margin = side_margin(self.width(), self._look.theme)
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
-        room = max(self.width() - 2 * margin, 1)
+        room = max(self.width(), px(LEAST)) - 2 * margin
         left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
         right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
         before = _width(left, gap) + (2 * gap if left else 0)

@@ -5,6 +5,7 @@ from app.theme import Theme
 COMPACT_BELOW = (1180, 720)  # of the window, px of the design
 WIDE_FROM = 1920
 CONTENT = 1600  # wider lines are not read any better
+LEAST = 336  # the same of a window of 800 at 200 %; narrower is only what has not been laid out yet
 NARROW_BELOW = 964  # what the rail leaves of the least window that is not compact
 
 

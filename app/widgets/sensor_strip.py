@@ -13,7 +13,7 @@ from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.body_figure import SensorMark, paint_legs
 from app.widgets.chip import CHIP, LETTERS, paint_chip
-from app.widgets.grid import side_margin
+from app.widgets.grid import LEAST, side_margin
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -222,7 +222,7 @@ class SensorStrip(QWidget):
         px = self._look.theme.px
         margin = side_margin(self.width(), self._look.theme)
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
-        room = self.width() - 2 * margin
+        room = max(self.width(), px(LEAST)) - 2 * margin
         between = px(BETWEEN) if self._is_compact else px(LEGS) + 2 * gap
         needed = max(widget.needed_width() for widget in self.widgets.values())
         order = [self.widgets[site] for site in _order(self._is_from_behind)]
