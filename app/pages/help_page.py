@@ -1,0 +1,505 @@
+"""What is this page for, and what does that message mean? The manual, in the window and without leaving the session."""
+
+from enum import StrEnum
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from PySide6.QtCore import QRectF, QSize, Qt, QUrl, Signal
+from PySide6.QtGui import (
+    QColor,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QPainter,
+    QPaintEvent,
+    QPalette,
+    QResizeEvent,
+    QTextBlock,
+    QTextBlockFormat,
+    QTextCharFormat,
+    QTextCursor,
+    QTextDocument,
+    QTextFrameFormat,
+    QTextLength,
+    QTextTable,
+    QTextTableFormat,
+)
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QBoxLayout,
+    QButtonGroup,
+    QFrame,
+    QScrollArea,
+    QSizePolicy,
+    QTextBrowser,
+    QTextEdit,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.field import Field
+from app.widgets.icons import Icon
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
+from app.wording import tr, tr_n
+
+FOLDER = files("resources") / "help"
+LIST_WIDTH = 248
+ROW = 44
+PADDING = 12
+LINE_PERCENT = 145  # of the height of a line: for reading, not for finding
+LONGEST_LINE = 760  # some 100 letters; longer lines lose the eye on its way back
+TIGHT_LINE_PERCENT = 120  # of headings and tables
+HEADING_SIZES = {1: 26, 2: 20, 3: 16}
+BODY = 16
+SHORTEST_SEARCH = 2
+
+
+class Topic(StrEnum):
+    """The pages of the manual in their order; each is a file of `resources/help`."""
+
+    HOME = "home"
+    PATIENT = "patient"
+    SENSORS = "sensors"
+    STAND_STILL = "stand_still"
+    FREE_MOTION = "free_motion"
+    WALKING = "walking"
+    RESULTS = "results"
+    REPORT = "report"
+    MESSAGES = "messages"
+    KEYS = "keys"
+
+
+def topic_title(topic: Topic) -> str:
+    return {
+        Topic.HOME: tr("Patients"),
+        Topic.PATIENT: tr("Patient"),
+        Topic.SENSORS: tr("Sensors"),
+        Topic.STAND_STILL: tr("Stand still"),
+        Topic.FREE_MOTION: tr("Free motion"),
+        Topic.WALKING: tr("Walking"),
+        Topic.RESULTS: tr("Results"),
+        Topic.REPORT: tr("Report"),
+        Topic.MESSAGES: tr("What messages mean"),
+        Topic.KEYS: tr("Keys"),
+    }[topic]
+
+
+class HelpPage(QWidget):
+    """Topics at the left, or above where room is short; what is searched for is marked in the text."""
+
+    closed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_compact = look, False
+        self._topic = Topic.HOME
+        self.search = Field(look, tr("Search the help"), placeholder=tr("Search the help"), has_label=False)
+        self.found = Text(look, size=14, tone="ink2", wraps=True)
+        self.topics = _TopicList(look)
+        self.choice = Choice(look, tr("Topic"))
+        self.choice.addItems([topic_title(topic) for topic in Topic])
+        self.text = _Reader(look)
+        self.back = Button(look, tr("Back"), Kind.SECONDARY, Icon.BACK, tr("Esc"))
+        self._build()
+        self.topics.chosen.connect(self.show_topic)
+        self.choice.currentIndexChanged.connect(self._on_choice_changed)
+        self.search.edited.connect(self._on_search_edited)
+        self.back.clicked.connect(self.closed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self.show_topic(Topic.HOME)
+        self.set_compact(is_compact=False)
+
+    @property
+    def topic(self) -> Topic:
+        return self._topic
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        """What takes the focus, in the order of reading."""
+        return [self.search.line_edit, *self.topics.rows, self.choice, self.text, self.back]
+
+    def show_topic(self, topic: Topic) -> None:
+        """Open the manual at `topic`, with what is searched for marked in it."""
+        self._topic = topic
+        self.text.show_markdown(_markdown(topic), topic_title(topic))
+        self.topics.choose(topic)
+        self.choice.blockSignals(True)
+        self.choice.setCurrentIndex(list(Topic).index(topic))
+        self.choice.blockSignals(False)
+        self._mark()
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Fold the list of topics into one choice above the text."""
+        self._is_compact = is_compact
+        self._scroll.setVisible(not is_compact)
+        self.choice.setVisible(is_compact)
+        way = QBoxLayout.Direction.TopToBottom if is_compact else QBoxLayout.Direction.LeftToRight
+        self._row.setDirection(way)
+        above = QBoxLayout.Direction.LeftToRight if is_compact else QBoxLayout.Direction.TopToBottom
+        self._side.setDirection(above)
+        top = Qt.AlignmentFlag.AlignTop
+        self._side.setAlignment(self.choice, top)
+        self._side.setAlignment(self.back, top if is_compact else Qt.AlignmentFlag.AlignLeft)
+        self._on_look_changed()
+
+    def focus(self) -> None:
+        """Give the focus to the text, so that the keys scroll it."""
+        self.text.setFocus()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        match event.key():
+            case Qt.Key.Key_Escape:
+                self.closed.emit()
+            case Qt.Key.Key_Return | Qt.Key.Key_Enter if self.search.line_edit.hasFocus():
+                self._go_on()
+            case _:
+                super().keyPressEvent(event)
+
+    def _build(self) -> None:
+        self._scroll = QScrollArea()
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self._scroll.setWidget(self.topics)
+        self._beside = QWidget()
+        self._side = QBoxLayout(QBoxLayout.Direction.TopToBottom, self._beside)
+        self._side.setContentsMargins(0, 0, 0, 0)
+        searching = QVBoxLayout()
+        searching.addWidget(self.search)
+        searching.addWidget(self.found)
+        self._side.addLayout(searching)
+        for widget, stretch in (
+            (self._scroll, 1),
+            (self.choice, 0),
+            (self.back, 0),
+        ):
+            self._side.addWidget(widget, stretch)
+        page = Card(self._look, padding=16)
+        page.column.addWidget(self.text)
+        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._row.addWidget(self._beside)
+        self._row.addWidget(page, 1)
+
+    def _mark(self) -> None:
+        """Mark what is searched for, and tell every topic how often it has it."""
+        words = self.search.text.strip()
+        wanted = words if len(words) >= SHORTEST_SEARCH else ""
+        counts = {topic: _plain(topic).count(wanted.casefold()) if wanted else None for topic in Topic}
+        self.topics.show_counts(counts)
+        self.text.mark(wanted)
+        total = sum(count or 0 for count in counts.values())
+        said = ""
+        if wanted and total:
+            said = tr_n("Found once.", "Found {count} times. Enter goes on.", total).format(count=total)
+        elif wanted:
+            said = tr("Nothing is found. Try another word.")
+        self.found.setText(said)
+        self.found.setVisible(bool(said))
+
+    def _go_on(self) -> None:
+        """Go to the next place that is found, in this topic or a later one."""
+        if self.text.go_to_next():
+            return
+        topics = list(Topic)
+        here = topics.index(self._topic)
+        later = [*topics[here + 1 :], *topics[: here + 1]]
+        wanted = self.search.text.strip().casefold()
+        following = next((topic for topic in later if wanted and wanted in _plain(topic)), None)
+        if following is not None:
+            self.show_topic(following)
+            self.text.go_to_next()
+
+    def _on_search_edited(self) -> None:
+        self._mark()
+        if self.text.has_marks:
+            self.text.go_to_next()
+
+    def _on_choice_changed(self, index: int) -> None:
+        self.show_topic(list(Topic)[index])
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        margin = px(16 if self._is_compact else 24)
+        self._row.setContentsMargins(margin, margin, margin, margin)
+        self._row.setSpacing(px(16))
+        self._side.setSpacing(px(12))
+        if self._is_compact:
+            self._beside.setMinimumWidth(0)
+            self._beside.setMaximumWidth(16777215)  # Qt's own for "no limit"
+        else:
+            self._beside.setFixedWidth(px(LIST_WIDTH))
+
+
+class _TopicList(QWidget):
+    """One stop for Tab; the arrows go from topic to topic."""
+
+    chosen = Signal(object)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.setAccessibleName(tr("Topics"))
+        self._group = QButtonGroup(self)
+        self._by_topic = {topic: _TopicRow(look, topic_title(topic)) for topic in Topic}
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.setSpacing(2)
+        for row in self._by_topic.values():
+            self._group.addButton(row)
+            self._column.addWidget(row)
+        self._column.addStretch(1)
+        self._group.buttonClicked.connect(self._on_clicked)
+        self._group.buttonToggled.connect(self._on_toggled)
+
+    @property
+    def rows(self) -> list[QAbstractButton]:
+        return list(self._by_topic.values())
+
+    def choose(self, topic: Topic) -> None:
+        self._by_topic[topic].setChecked(True)
+
+    def show_counts(self, counts: dict[Topic, int | None]) -> None:
+        for topic, row in self._by_topic.items():
+            row.show_count(counts[topic])
+
+    def _on_clicked(self, button: QAbstractButton) -> None:
+        self.chosen.emit(next(topic for topic, row in self._by_topic.items() if row is button))
+
+    def _on_toggled(self, button: QAbstractButton, is_checked: bool) -> None:
+        if is_checked and button.hasFocus():  # the arrows choose without a click
+            self._on_clicked(button)
+
+
+class _TopicRow(QAbstractButton):
+    def __init__(self, look: Look, title: str) -> None:
+        super().__init__()
+        self._look = look
+        self._count: int | None = None
+        self.setText(title)
+        self.setCheckable(True)
+        self.setAutoExclusive(True)
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.show_count(None)
+        look.changed.connect(self._on_look_changed)
+
+    def show_count(self, count: int | None) -> None:
+        """Tell how often the topic has what is searched for; None while nothing is."""
+        self._count = count
+        found = "" if count is None else tr_n("{count} place", "{count} places", count).format(count=count)
+        self.setAccessibleName(", ".join(filter(None, [self.text(), found])))
+        self._on_look_changed()
+
+    def sizeHint(self) -> QSize:
+        theme = self._look.theme
+        width = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
+        return QSize(width + self._count_width() + theme.px(3 * PADDING), theme.px(ROW))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(Qt.PenStyle.NoPen)
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect())
+        if self.isChecked():
+            painter.setBrush(QColor(c.sunken))
+            painter.drawRoundedRect(box, radius, radius)
+        elif self.underMouse():
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(box, radius, radius)
+        is_without = self._count == 0
+        painter.setPen(QColor(c.ink3 if is_without else c.ink))
+        painter.setFont(theme.font(14, SEMIBOLD if self.isChecked() else REGULAR))
+        room = box.adjusted(px(PADDING), 0, -px(PADDING), 0)
+        middle = Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(room, Qt.AlignmentFlag.AlignLeft | middle, self.text())
+        if self._count:
+            painter.setFont(theme.font(14, MEDIUM))
+            painter.drawText(room, Qt.AlignmentFlag.AlignRight | middle, str(self._count))
+
+    def _count_width(self) -> int:
+        return QFontMetrics(self._look.theme.font(14, MEDIUM)).horizontalAdvance(str(self._count or ""))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+class _Reader(QTextBrowser):
+    """The text of a topic in the type of the house."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._markdown = look, ""
+        self._wanted = ""
+        self._marks: list[QTextCursor] = []
+        self._at = -1
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setLineWrapMode(QTextEdit.LineWrapMode.FixedPixelWidth)
+        self.setOpenLinks(False)  # nothing leads out of this computer
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.document().setBaseUrl(QUrl.fromLocalFile(f"{Path(str(FOLDER))}/"))
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def has_marks(self) -> bool:
+        return bool(self._marks)
+
+    def show_markdown(self, markdown: str, name: str) -> None:
+        self._markdown = markdown
+        self.setAccessibleName(name)
+        self._set_text()
+        self.moveCursor(QTextCursor.MoveOperation.Start)
+        self.verticalScrollBar().setValue(0)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._wrap()
+
+    def _wrap(self) -> None:
+        self.setLineWrapColumnOrWidth(min(self.viewport().width(), self._look.theme.px(LONGEST_LINE)))
+
+    def mark(self, wanted: str) -> None:
+        """Mark every place of `wanted`; none when it is empty."""
+        self._wanted, self._marks, self._at = wanted, [], -1
+        cursor = QTextCursor(self.document())
+        while wanted:
+            cursor = self.document().find(wanted, cursor)
+            if cursor.isNull():
+                break
+            self._marks.append(QTextCursor(cursor))
+        self._show_marks()
+
+    def go_to_next(self) -> bool:
+        """Bring the next mark into sight; False where there is none behind the present one."""
+        if self._at + 1 >= len(self._marks):
+            return False
+        self._at += 1
+        cursor = QTextCursor(self._marks[self._at])
+        cursor.setPosition(cursor.selectionStart())
+        self.setTextCursor(cursor)
+        self.ensureCursorVisible()
+        self._show_marks()
+        return True
+
+    def _show_marks(self) -> None:
+        """What is found lies on caution's ground; where the reading is, on ink."""
+        c = self._look.theme.colours
+        selections = []
+        for i, cursor in enumerate(self._marks):
+            selection = QTextEdit.ExtraSelection()
+            selection.cursor = cursor
+            ground, ink = (c.inv, c.inv_ink) if i == self._at else (c.caution_mark, c.caution_mark_ink)
+            form = QTextCharFormat()
+            form.setBackground(QColor(ground))
+            form.setForeground(QColor(ink))
+            selection.format = form
+            selections.append(selection)
+        self.setExtraSelections(selections)
+
+    def _set_text(self) -> None:
+        document = self.document()
+        document.setDefaultFont(self._look.theme.font(BODY))
+        document.setDocumentMargin(self._look.theme.px(8))
+        document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
+        self._set_blocks()
+        self._set_tables()
+
+    def _set_blocks(self) -> None:
+        theme, block = self._look.theme, self.document().begin()
+        cursor = QTextCursor(self.document())
+        cursor.beginEditBlock()
+        while block.isValid():
+            cursor.setPosition(block.position())
+            level, is_in_table = block.blockFormat().headingLevel(), cursor.currentTable() is not None
+            form = QTextBlockFormat(block.blockFormat())
+            height = LINE_PERCENT if not level and not is_in_table else TIGHT_LINE_PERCENT
+            form.setLineHeight(height, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
+            form.setTopMargin(theme.px(20) if level > 1 else 0)
+            form.setBottomMargin(0 if is_in_table else theme.px(4 if block.textList() is not None else 10))
+            cursor.setBlockFormat(form)
+            self._set_letters(block, theme.font(HEADING_SIZES[level], SEMIBOLD) if level else None)
+            block = block.next()
+        cursor.endEditBlock()
+
+    def _set_letters(self, block: QTextBlock, heading: QFont | None) -> None:
+        """Give a heading its size, and what is bold the weight that is bundled."""
+        pieces, parts = [], block.begin()
+        while not parts.atEnd():
+            piece = parts.fragment()
+            pieces.append((piece.position(), piece.length(), piece.charFormat().fontWeight()))
+            parts += 1
+        cursor = QTextCursor(self.document())
+        for start, length, weight in pieces:
+            if heading is None and weight <= MEDIUM:
+                continue
+            letters = QTextCharFormat()
+            letters.setFont(heading or self._look.theme.font(BODY, SEMIBOLD))
+            cursor.setPosition(start)
+            cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
+            cursor.mergeCharFormat(letters)
+
+    def _set_tables(self) -> None:
+        """Rows under hairlines, as everywhere; no cages."""
+        theme = self._look.theme
+        for frame in self.document().rootFrame().childFrames():
+            if not isinstance(frame, QTextTable):
+                continue
+            form = QTextTableFormat(frame.format())
+            form.setBorder(0)
+            form.setBorderCollapse(True)
+            form.setCellPadding(theme.px(8))
+            form.setCellSpacing(0)
+            form.setWidth(QTextLength(QTextLength.Type.PercentageLength, 100))
+            form.setTopMargin(theme.px(4))
+            form.setBottomMargin(theme.px(12))
+            frame.setFormat(form)
+            for row in range(frame.rows()):
+                for column in range(frame.columns()):
+                    cell = frame.cellAt(row, column)
+                    under = cell.format().toTableCellFormat()
+                    under.setBottomBorder(1)
+                    under.setBottomBorderStyle(QTextFrameFormat.BorderStyle.BorderStyle_Solid)
+                    under.setBottomBorderBrush(QColor(theme.colours.line))
+                    cell.setFormat(under)
+
+    def _on_look_changed(self) -> None:
+        theme = self._look.theme
+        palette = self.palette()
+        for role, colour in (
+            (QPalette.ColorRole.Base, theme.colours.surface),
+            (QPalette.ColorRole.Text, theme.colours.ink),
+        ):
+            palette.setColor(role, QColor(colour))
+        self.setPalette(palette)
+        at = self.verticalScrollBar().value()
+        self._wrap()
+        self._set_text()
+        self.mark(self._wanted)
+        self.verticalScrollBar().setValue(at)
+
+
+def _markdown(topic: Topic) -> str:
+    return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+
+
+@cache
+def _plain(topic: Topic) -> str:
+    """Give the words of a topic alone, in small letters, to search in."""
+    document = QTextDocument()
+    document.setMarkdown(_markdown(topic), QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
+    return document.toPlainText().casefold()

@@ -1,0 +1,165 @@
+"""The manual: is it whole, is it found, and does it let go of the keys it borrows?"""
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.pages.help_page import HelpPage, Topic, topic_title
+from app.theme import Look, load_fonts
+from tests.app.watchdog import Watchdog
+
+FOLDER = Path(__file__).parents[3] / "resources" / "help"
+FORBIDDEN = re.compile(
+    r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|heel strikes?|you|your)\b|!", re.IGNORECASE
+)
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def page(qtbot: QtBot, look: Look) -> HelpPage:
+    page = HelpPage(look)
+    page.resize(1064, 672)
+    qtbot.addWidget(page)
+    with qtbot.waitActive(page):
+        page.show()
+        page.activateWindow()
+    return page
+
+
+def focused() -> QWidget:
+    widget = QApplication.focusWidget()
+    assert widget is not None
+    return widget
+
+
+def search(page: HelpPage, words: str) -> None:
+    page.search.line_edit.setFocus()
+    page.search.line_edit.selectAll()
+    QTest.keyClicks(page.search.line_edit, words)
+
+
+def test_every_topic_is_written_and_nothing_else_lies_there() -> None:
+    assert {file.stem for file in FOLDER.glob("*.md")} == set(Topic)
+
+
+@pytest.mark.parametrize("topic", Topic)
+def test_a_topic_keeps_the_tone_of_the_house(topic: Topic) -> None:
+    text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+    assert text.startswith(f"# {topic_title(topic)}\n")
+    assert FORBIDDEN.findall(text.replace("measurement error", "")) == []
+
+
+@pytest.mark.parametrize("topic", Topic)
+def test_every_picture_of_a_topic_is_there(topic: Topic) -> None:
+    text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+    assert [name for name in re.findall(r"!\[[^\]]*\]\(([^)]+)\)", text) if not (FOLDER / name).exists()] == []
+
+
+@pytest.mark.parametrize("topic", Topic)
+def test_a_topic_is_read_from_its_beginning(page: HelpPage, qapp: QApplication, topic: Topic) -> None:
+    page.show_topic(topic)
+    qapp.processEvents()
+    assert page.text.verticalScrollBar().value() == 0
+    assert page.text.toPlainText().startswith(topic_title(topic))
+    assert page.text.horizontalScrollBar().maximum() == 0
+
+
+def test_a_topic_is_chosen_by_mouse_and_by_arrows(page: HelpPage) -> None:
+    rows = page.topics.rows
+    QTest.mouseClick(rows[3], Qt.MouseButton.LeftButton)
+    assert page.text.toPlainText().startswith("Stand still")
+    rows[3].setFocus()
+    QTest.keyClick(focused(), Qt.Key.Key_Down)
+    assert page.topic is Topic.FREE_MOTION
+    assert page.text.toPlainText().startswith("Free motion")
+
+
+def test_in_a_small_window_the_topics_fold_into_one_choice(page: HelpPage) -> None:
+    page.set_compact(is_compact=True)
+    assert not page.topics.isVisible()
+    page.choice.setCurrentIndex(list(Topic).index(Topic.KEYS))
+    assert page.topic is Topic.KEYS
+
+
+def test_what_is_searched_for_is_counted_in_every_topic_and_marked(page: HelpPage) -> None:
+    page.show_topic(Topic.WALKING)
+    search(page, "spAce")
+    text = page.text.toPlainText().casefold()
+    assert len(page.text.extraSelections()) == text.count("space") > 1
+    named = {row.text(): row.accessibleName() for row in page.topics.rows}
+    assert named["Walking"] == f"Walking, {text.count('space')} places"
+    assert named["Results"] == "Results, 0 places"
+
+
+def test_enter_goes_on_to_the_next_topic_and_round_again(page: HelpPage) -> None:
+    search(page, "goniometer")
+    places = [(FOLDER / f"{topic}.md").read_text(encoding="utf-8").casefold().count("goniometer") for topic in Topic]
+    came_by = []
+    for _ in range(sum(places) + 1):
+        QTest.keyClick(page.search.line_edit, Qt.Key.Key_Return)
+        came_by.append(page.topic)
+    assert Topic.STAND_STILL in came_by
+    assert page.text.textCursor().block().text().casefold().count("goniometer") > 0
+
+
+def test_what_is_nowhere_is_said(page: HelpPage) -> None:
+    search(page, "xylophone")
+    assert page.found.text() == "Nothing is found. Try another word."
+    assert page.text.extraSelections() == []
+    search(page, " ")
+    assert not page.found.isVisible()
+
+
+@pytest.mark.parametrize("where", ["text", "search"])
+def test_escape_leads_back_from_everywhere(qtbot: QtBot, page: HelpPage, where: str) -> None:
+    (page.text if where == "text" else page.search.line_edit).setFocus()
+    with qtbot.waitSignal(page.closed):
+        QTest.keyClick(focused(), Qt.Key.Key_Escape)
+
+
+def test_it_opens_on_the_text_so_that_keys_scroll(page: HelpPage) -> None:
+    page.show_topic(Topic.MESSAGES)
+    page.focus()
+    QTest.keyClick(focused(), Qt.Key.Key_PageDown)
+    assert page.text.verticalScrollBar().value() > 0
+
+
+def test_everything_that_takes_the_focus_has_a_name_and_a_place_in_the_order(page: HelpPage) -> None:
+    takers = [
+        widget
+        for widget in page.findChildren(QWidget)
+        if widget.isVisible() and widget.focusPolicy() & Qt.FocusPolicy.TabFocus
+    ]
+    assert [widget for widget in takers if not widget.accessibleName()] == []
+    assert set(takers) <= set(page.tab_order)
+
+
+def test_size_and_theme_change_what_is_shown_and_not_where(page: HelpPage, look: Look, qapp: QApplication) -> None:
+    page.show_topic(Topic.KEYS)
+    before = page.text.toPlainText()
+    look.set_dark(True)
+    look.set_scale(2.0)
+    qapp.processEvents()
+    assert page.text.toPlainText() == before
+    assert page.text.document().defaultFont().pixelSize() == 2 * 16
+
+
+def test_searching_holds_up_nobody(page: HelpPage, watchdog: Watchdog, qtbot: QtBot) -> None:
+    for topic in Topic:
+        page.show_topic(topic)
+        search(page, "sensor")
+        qtbot.wait(10)
