@@ -72,6 +72,7 @@ class BodyFigure(QWidget):
         super().__init__()
         self._look, self._is_legs_only = look, legs_only
         self._is_from_behind = False
+        self._beside = 0
         self._worn: dict[Site, SensorMark] = {}
         self._emphasised: Site | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -105,6 +106,11 @@ class BodyFigure(QWidget):
     def set_legs_only(self, is_legs_only: bool) -> None:
         self._is_legs_only = is_legs_only
         self._on_look_changed()
+
+    def keep_beside(self, width: int) -> None:
+        """Leave `width` px on either side of the legs for what stands there; the figure is as much smaller."""
+        self._beside = width
+        self.update()
 
     def site_at(self, point: QPointF) -> Site | None:
         """Which segment lies under `point` of the widget; just beside its outline counts as well."""
@@ -158,7 +164,13 @@ class BodyFigure(QWidget):
 
     def _room(self) -> QRectF:
         px = self._look.theme.px
-        return QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
+        room = QRectF(0, px(4), self.width(), self.height() - px(4 + SENTENCE_ROOM))
+        if self._beside:
+            part = LEGS if self._is_legs_only else WHOLE
+            largest = max(self.width() - 2 * self._beside, 1) / BARE_LEGS.width()
+            height = min(room.height(), largest * part.height())
+            room.adjust(0, (room.height() - height) / 2, 0, -(room.height() - height) / 2)
+        return room
 
     def _placed(self) -> QTransform:
         return _placing(LEGS if self._is_legs_only else WHOLE, self._room(), self._is_from_behind)

@@ -66,6 +66,11 @@ class Segmented(QWidget):
     def set_word(self, key: str, word: str) -> None:
         self._segments[key].set_word(word)
 
+    def set_brief(self, is_brief: bool) -> None:
+        """Leave the second lines to readers of screens, where there is no room for them; reasons are still shown."""
+        for segment in self._segments.values():
+            segment.set_brief(is_brief)
+
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         painter = QPainter(self)
@@ -90,6 +95,7 @@ class _Segment(QAbstractButton):
     def __init__(self, look: Look, word: str, note: str, height: float, parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._note, self._height, self._reason = look, note, height, ""
+        self._is_brief = False
         self.setText(word)
         self.setCheckable(True)
         self.setAutoExclusive(True)
@@ -103,6 +109,11 @@ class _Segment(QAbstractButton):
         self.setText(word)
         self._name()
         self._on_look_changed()
+
+    def set_brief(self, is_brief: bool) -> None:
+        if is_brief != self._is_brief:
+            self._is_brief = is_brief
+            self._on_look_changed()
 
     def set_reason(self, reason: str) -> None:
         self._reason = reason
@@ -146,10 +157,10 @@ class _Segment(QAbstractButton):
         painter.drawText(0, top + height, self.width(), note_height, Qt.AlignmentFlag.AlignCenter, self._second_line())
 
     def _second_line(self) -> str:
-        return self._reason or self._note
+        return self._reason or ("" if self._is_brief else self._note)
 
     def _name(self) -> None:
-        self.setAccessibleName(", ".join(filter(None, [self.text(), self._second_line()])))
+        self.setAccessibleName(", ".join(filter(None, [self.text(), self._reason or self._note])))
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()

@@ -1,0 +1,601 @@
+"""Which sensors are heard, and how are they? A row for each, with its movement, rate, battery and place."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QAction,
+    QActionGroup,
+    QColor,
+    QFocusEvent,
+    QFont,
+    QFontMetrics,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QPolygonF,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QVBoxLayout, QWidget
+
+from app.pages.sensor_places import drag_sensor, is_dragged, number_of, segment_name
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.battery import HEIGHT as CELL_HEIGHT
+from app.widgets.battery import LOW, paint_battery
+from app.widgets.battery import WIDTH as CELL_WIDTH
+from app.widgets.chip import paint_chip
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
+from app.wording import name_of, tr
+from core.body import Site
+from core.samples import FloatArray
+
+ROW = 58
+HEADING = 26
+SPACING = 8
+GRIP = 30
+COLUMN_GAP, NARROW_GAP = 12, 8
+IDENTIFY = 44
+CHIP = 20
+CHEVRON = 14
+TRACE_AT_LEAST = 48
+TRACE_SPAN_DEG_S = 120.0  # what fills the trace's height, at least: a sensor at rest draws a still line
+LOST = 0.01  # of the samples; above it the radio wants a look
+
+
+@dataclass(frozen=True, slots=True)
+class SensorRow:
+    """One sensor as it is now. `battery` 0 to 1, None: it does not tell; `silent_s` 0 while it is heard."""
+
+    name: str
+    model: str = ""
+    rate_hz: float | None = None
+    battery: float | None = None
+    site: Site | None = None
+    silent_s: float = 0.0
+    lost_share: float = 0.0
+    can_identify: bool = False
+
+    @property
+    def is_low(self) -> bool:
+        return self.battery is not None and self.battery < LOW
+
+    @property
+    def is_lossy(self) -> bool:
+        return self.lost_share > LOST
+
+    @property
+    def wants_look(self) -> bool:
+        return self.silent_s > 0 or self.is_low or self.is_lossy
+
+    @property
+    def second_line(self) -> str:
+        """What is the matter with it, or else its model."""
+        if self.silent_s > 0:
+            return tr("not heard")
+        if self.is_low:
+            return tr("charge soon")
+        if self.is_lossy:
+            return tr("{share} % lost").format(share=f"{100 * self.lost_share:.1f}")
+        return self.model
+
+    @property
+    def rate(self) -> str:
+        return tr("{rate} Hz").format(rate=round(self.rate_hz or 0)) if self.silent_s <= 0 else tr("0 Hz")
+
+    @property
+    def charge(self) -> str:
+        if self.battery is None or self.silent_s > 0:
+            return tr("unknown")
+        return tr("{percent} %").format(percent=round(100 * self.battery))
+
+
+class SensorList(QWidget):
+    """
+    Signals
+    -------
+    assigned
+        A sensor's name and the site it is worn at; None: nowhere.
+    selected
+        The name of the sensor that keys mean from now on.
+    """
+
+    assigned = Signal(str, object)
+    selected = Signal(str)
+    identify_pressed = Signal(str)
+    reconnect_pressed = Signal(str)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_narrow = look, False
+        self.selection = ""
+        self.rows: dict[str, SensorRowView] = {}
+        self._heading = _Heading(look, self)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(self._heading)
+        self._column.addStretch(1)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Minimum)
+        self.setAccessibleName(tr("Sensors"))
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def is_narrow(self) -> bool:
+        return self._is_narrow
+
+    def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
+        """Show these in this order; a row that stays keeps its focus."""
+        for name in self.rows.keys() - {sensor.name for sensor in sensors}:
+            row = self.rows.pop(name)
+            row.setParent(None)
+            row.deleteLater()
+        for place, sensor in enumerate(sensors, start=1):  # the heading is the first
+            if sensor.name not in self.rows:
+                row = self.rows[sensor.name] = SensorRowView(self._look, sensor.name, self)
+                row.setParent(self)
+                row.show()
+            row = self.rows[sensor.name]
+            if self._column.indexOf(row) != place:
+                self._column.insertWidget(place, row)
+            row.show_sensor(sensor)
+        self._heading.setVisible(bool(sensors))
+        if self.selection not in self.rows:
+            self.select(next(iter(self.rows), ""))
+        self._let_tab_reach()
+
+    def show_traces(self, traces: Mapping[str, FloatArray]) -> None:
+        """Draw how each sensor turned in the last 5 s, deg/s, oldest first; only the traces are drawn anew."""
+        for name, values in traces.items():
+            if name in self.rows:
+                self.rows[name].trace.show_values(values)
+
+    def select(self, name: str) -> None:
+        """Let keys mean this sensor."""
+        if name != self.selection:
+            self.selection = name
+            self._let_tab_reach()
+            for row in self.rows.values():
+                row.update()
+            self.selected.emit(name)
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Tell rate and battery in the second line, where there is no room for columns."""
+        if is_narrow != self._is_narrow:
+            self._is_narrow = is_narrow
+            self._on_look_changed()
+
+    def step(self, row: "SensorRowView", by: int) -> None:
+        """Go on to the row above or below."""
+        rows = list(self.rows.values())
+        at = rows.index(row) + by
+        if 0 <= at < len(rows):
+            self.select(rows[at].name)
+            rows[at].setFocus(Qt.FocusReason.TabFocusReason)
+
+    def columns(self, width: int) -> dict[str, QRect]:
+        """Where the columns lie in a row of `width`; the trace takes what is left."""
+        theme = self._look.theme
+        px = theme.px
+
+        def widest(font: QFont, words: list[str]) -> int:
+            return max((QFontMetrics(font).horizontalAdvance(word) for word in words), default=0)
+
+        shown = [row.sensor for row in self.rows.values()]
+        small, text = theme.font(12, MEDIUM), theme.font(14, MEDIUM)
+        names = max(
+            widest(theme.font(16, SEMIBOLD, is_code=True), [one.name for one in shown]),
+            widest(small, [self.second_line(one) for one in shown] + self._longest_second_lines()),
+        )
+        wanted = {
+            "name": max(names, px(64)),
+            "rate": max(widest(text, [tr("{rate} Hz").format(rate=100)]), widest(theme.font(12), [tr("Rate")])),
+            "battery": max(
+                px(CELL_WIDTH + 6) + widest(text, [tr("{percent} %").format(percent=100)]),
+                widest(text, [tr("unknown")]),
+                widest(theme.font(12), [tr("Battery")]),
+            ),
+            "worn": px(CHIP + 6 + CHEVRON + 6)
+            + max(widest(text, [tr("nowhere"), *(segment_name(site) for site in Site)]), px(50)),
+            "identify": max(px(IDENTIFY), widest(theme.font(12), [tr("Identify")])),
+        }
+        if self._is_narrow:
+            wanted["rate"] = wanted["battery"] = 0
+        gap, right = px(NARROW_GAP if self._is_narrow else COLUMN_GAP), px(6)
+        rest = width - px(GRIP) - right - sum(wanted.values()) - gap * sum(1 for one in wanted.values() if one)
+        places: dict[str, QRect] = {}
+        x = px(GRIP)
+        for key in ("name", "trace", "rate", "battery", "worn", "identify"):
+            taken = max(rest, 0) if key == "trace" else wanted[key]
+            places[key] = QRect(x, 0, taken, px(ROW))
+            x += taken + (gap if taken else 0)
+        return places
+
+    def _longest_second_lines(self) -> list[str]:
+        """What may be said of any sensor: there is room for it from the first, so that no column moves later."""
+        figures = [tr("{rate} Hz").format(rate=100), tr("{percent} %").format(percent=100)] if self._is_narrow else []
+        lost = tr("{share} % lost").format(share="10.0")
+        return [tr("charge soon"), tr("not heard"), lost, " · ".join(figures)]
+
+    def second_line(self, sensor: SensorRow) -> str:
+        """Under the name: what is the matter, or the model; in a narrow list rate and battery as well."""
+        if not self._is_narrow or sensor.silent_s > 0:
+            return sensor.second_line
+        what = sensor.second_line if sensor.is_lossy and not sensor.is_low else ""
+        charge = sensor.charge if sensor.battery is not None else ""
+        return " · ".join(filter(None, [what or sensor.rate, charge]))
+
+    def minimumSizeHint(self) -> QSize:
+        px = self._look.theme.px
+        columns = self.columns(0)
+        return QSize(
+            columns["identify"].right() + px(6 + COLUMN_GAP + TRACE_AT_LEAST), super().minimumSizeHint().height()
+        )
+
+    def _let_tab_reach(self) -> None:
+        """Let one row be in the way of the tabulator, with what can be pressed in it."""
+        for name, row in self.rows.items():
+            row.set_reached(name == self.selection)
+
+    def _on_look_changed(self) -> None:
+        self._column.setSpacing(self._look.theme.px(SPACING))
+        self._heading.update()
+        for row in self.rows.values():
+            row.arrange()
+        self.updateGeometry()
+
+
+class _Heading(QWidget):
+    """The names of the columns."""
+
+    def __init__(self, look: Look, sensors: SensorList) -> None:
+        super().__init__(sensors)
+        self._look, self._list = look, sensors
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+
+    def sizeHint(self) -> QSize:
+        return QSize(0, self._look.theme.px(HEADING - SPACING))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setPen(QColor(theme.colours.ink2))
+        painter.setFont(theme.font(12))
+        places = self._list.columns(self.width())
+        places["name"].setLeft(0)
+        is_narrow = self._list.is_narrow
+        words = {
+            "name": tr("Sensor"),
+            "trace": tr("Last 5 s") if is_narrow else tr("Movement, last 5 s"),
+            "rate": tr("Rate"),
+            "battery": tr("Battery"),
+            "worn": tr("Worn on"),
+            "identify": tr("Identify"),
+        }
+        for key, place in places.items():
+            if place.width():
+                align = Qt.AlignmentFlag.AlignRight if key == "identify" else Qt.AlignmentFlag.AlignLeft
+                painter.drawText(QRect(place.x(), 0, place.width(), self.height()), align, words[key])
+
+
+class SensorRowView(QAbstractButton):
+    """One sensor. It can be dragged onto the figure; Enter asks where it is worn, Up and Down go on."""
+
+    def __init__(self, look: Look, name: str, sensors: SensorList) -> None:
+        super().__init__()
+        self._look, self._list = look, sensors
+        self.name = name
+        self.sensor = SensorRow(name)
+        self._pressed_at: QPoint | None = None
+        self.trace = Trace(look)
+        self.trace.setParent(self)
+        self.worn = _WornOn(look, self)
+        self.identify = _Identify(look, self)
+        self.worn.clicked.connect(self.ask)
+        self.identify.clicked.connect(self._on_identify_clicked)
+        self.clicked.connect(self._on_clicked)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setAccessibleDescription(tr("1 to 6 say where it is worn, Enter opens a list of the places"))
+
+    def show_sensor(self, sensor: SensorRow) -> None:
+        if sensor == self.sensor and self.accessibleName():
+            return
+        self.sensor = sensor
+        worn = tr("worn on {site}").format(site=name_of(sensor.site)) if sensor.site else tr("worn nowhere")
+        battery = tr("battery {charge}").format(charge=sensor.charge)
+        self.setAccessibleName(", ".join([sensor.name, sensor.second_line, sensor.rate, battery, worn]))
+        self.trace.show_silence(sensor.silent_s)
+        self.worn.show_site(sensor.site)
+        self.worn.setAccessibleName(", ".join([sensor.name, worn]))
+        self.identify.show_sensor(sensor)
+        self.arrange()
+        self.update()
+
+    def set_reached(self, is_reached: bool) -> None:
+        policy = Qt.FocusPolicy.StrongFocus if is_reached else Qt.FocusPolicy.ClickFocus
+        for one in (self, self.worn, self.identify):
+            one.setFocusPolicy(policy)
+
+    def ask(self) -> None:
+        """Open the list of places under the button that says the present one."""
+        self._list.select(self.name)
+        menu = _PlaceMenu(self._look, self.sensor.site, self)
+        menu.chosen.connect(self._on_place_chosen)
+        menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
+
+    def arrange(self) -> None:
+        places = self._list.columns(self.width())
+        inset = self._look.theme.px(8)
+        self.trace.setGeometry(places["trace"].adjusted(0, inset, 0, -inset))
+        height = self._look.theme.px(44)
+        for child, key in ((self.worn, "worn"), (self.identify, "identify")):
+            child.setGeometry(QRect(places[key].x(), (self.height() - height) // 2, places[key].width(), height))
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(0, self._look.theme.px(ROW))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.arrange()
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self._list.select(self.name)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        match event.key():
+            case Qt.Key.Key_Return | Qt.Key.Key_Enter:
+                self.ask()
+            case Qt.Key.Key_Up:
+                self._list.step(self, -1)
+            case Qt.Key.Key_Down:
+                self._list.step(self, 1)
+            case _:
+                super().keyPressEvent(event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._pressed_at = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if is_dragged(self._pressed_at, event):
+            self._pressed_at = None
+            self.setDown(False)
+            drag_sensor(self, self._look, self.name)
+            return
+        super().mouseMoveEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        sensor = self.sensor
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        is_caution, is_selected = sensor.wants_look, self._list.selection == self.name
+        ink, second = (c.caution_ink, c.caution_ink) if is_caution else (c.ink, c.ink2)
+        edge = c.caution_edge if is_caution else c.control if is_selected else c.line
+        painter.setPen(theme.pen(edge, 1.75 if is_selected else 1.25))
+        painter.setBrush(QColor(c.caution if is_caution else c.surface))
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        painter.drawRoundedRect(box, radius, radius)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(box, radius, radius)
+        grip = px(20)
+        paint_icon(painter, Icon.GRIP, QRectF(px(5), (self.height() - grip) / 2, grip, grip), second)
+        places = self._list.columns(self.width())
+        align = Qt.AlignmentFlag.AlignVCenter
+        painter.setPen(QColor(ink))
+        painter.setFont(theme.font(16, SEMIBOLD, is_code=True))
+        painter.drawText(QRect(places["name"].x(), px(9), places["name"].width() + px(8), px(22)), align, sensor.name)
+        painter.setPen(QColor(second))
+        painter.setFont(theme.font(12, MEDIUM if is_caution else REGULAR))
+        under = QRect(places["name"].x(), px(31), places["name"].width() + px(8), px(18))
+        painter.drawText(under, align, self._list.second_line(sensor))
+        if places["rate"].width():
+            self._paint_rate_and_battery(painter, places, ink)
+
+    def _paint_rate_and_battery(self, painter: QPainter, places: Mapping[str, QRect], ink: str) -> None:
+        theme, sensor = self._look.theme, self.sensor
+        px = theme.px
+        painter.setPen(QColor(ink))
+        painter.setFont(theme.font(14, MEDIUM))
+        align = Qt.AlignmentFlag.AlignVCenter
+        painter.drawText(places["rate"], align, sensor.rate)
+        words = QRect(places["battery"])
+        if sensor.battery is not None and sensor.silent_s <= 0:
+            cell = QRectF(words.x(), (self.height() - px(CELL_HEIGHT)) / 2, px(CELL_WIDTH), px(CELL_HEIGHT))
+            paint_battery(painter, cell, sensor.battery, theme, ink)
+            words.setLeft(words.x() + px(CELL_WIDTH + 6))
+        painter.drawText(words, align, sensor.charge)
+
+    def _on_clicked(self) -> None:
+        self._list.select(self.name)
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+
+    def _on_identify_clicked(self) -> None:
+        if self.sensor.silent_s > 0:
+            self._list.reconnect_pressed.emit(self.name)
+        else:
+            self._list.identify_pressed.emit(self.name)
+
+    def _on_place_chosen(self, site: Site | None) -> None:
+        self._list.assigned.emit(self.name, site)
+
+
+class Trace(QWidget):
+    """How a sensor turned in the last 5 s: flat at rest, and with a word where it has fallen silent."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._values: FloatArray = np.empty(0)
+        self._silence = ""
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+
+    def show_values(self, values: FloatArray) -> None:
+        """
+        Parameters
+        ----------
+        values : (n,)
+            Angular rate, deg/s, oldest first, at even steps; NaN where nothing was heard.
+        """
+        self._values = values
+        self.update()
+
+    def show_silence(self, silent_s: float) -> None:
+        words = tr("silent {seconds} s").format(seconds=max(round(silent_s), 1)) if silent_s > 0 else ""
+        if words != self._silence:
+            self._silence = words
+            self.update()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c = theme.colours
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(theme.font(12, SEMIBOLD))
+        ink = QColor(c.caution_ink if self._silence else c.ink)
+        width = self.width()
+        if self._silence:
+            words = QFontMetrics(painter.font()).horizontalAdvance(self._silence)
+            painter.setPen(ink)
+            painter.drawText(self.rect(), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, self._silence)
+            width -= words + theme.px(8)
+        painter.setPen(theme.pen(ink, 1.25))
+        for part in _lines(self._values, width, self.height()):
+            painter.drawPolyline(part)
+
+
+def _lines(values: FloatArray, width: int, height: int) -> list[QPolygonF]:
+    """Turn values into lines that fill `width`, broken where values are missing."""
+    if width < 2 or len(values) < 2:
+        return []
+    step = max(1, len(values) // width)  # more points than pixels only cost
+    values = values[::step]
+    heard = np.isfinite(values)
+    if not heard.any():
+        return []
+    span = max(TRACE_SPAN_DEG_S, float(2 * np.abs(values[heard]).max()))
+    x = np.linspace(0.0, width - 1.0, len(values))
+    y = height / 2 - values / span * (height - 4)
+    edges = np.flatnonzero(np.diff(heard)) + 1
+    parts = np.split(np.arange(len(values)), edges)
+    return [QPolygonF([QPointF(x[i], y[i]) for i in part]) for part in parts if heard[part[0]] and len(part) > 1]
+
+
+class _WornOn(QAbstractButton):
+    """Says the place, and opens the list of places."""
+
+    def __init__(self, look: Look, row: SensorRowView) -> None:
+        super().__init__(row)
+        self._look, self._row = look, row
+        self._site: Site | None = None
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def show_site(self, site: Site | None) -> None:
+        self._site = site
+        self.update()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Down):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        ink = c.caution_ink if self._row.sensor.wants_look else c.ink
+        words = self.rect()
+        if self._site is not None:
+            chip = px(CHIP)
+            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
+            words.setLeft(chip + px(6))
+        painter.setPen(QColor(ink))
+        painter.setFont(theme.font(14, MEDIUM if self._site is not None else REGULAR))
+        word = segment_name(self._site) if self._site is not None else tr("nowhere")
+        painter.drawText(words, Qt.AlignmentFlag.AlignVCenter, word)
+        side, end = px(CHEVRON), words.left() + painter.fontMetrics().horizontalAdvance(word) + px(6)
+        paint_icon(painter, Icon.CHEVRON, QRectF(end, (self.height() - side) / 2 + 1, side, side), ink)
+
+
+class _Identify(QAbstractButton):
+    """Lights the sensor's LED; where the sensor is silent, looks for it again."""
+
+    def __init__(self, look: Look, row: SensorRowView) -> None:
+        super().__init__(row)
+        self._look, self._row = look, row
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def show_sensor(self, sensor: SensorRow) -> None:
+        is_silent = sensor.silent_s > 0
+        name = tr("Look for {sensor} again") if is_silent else tr("Light the LED of {sensor}")
+        self.setAccessibleName(name.format(sensor=sensor.name))
+        self.setToolTip(self.accessibleName())
+        self.setVisible(is_silent or sensor.can_identify)
+        self.update()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        sensor = self._row.sensor
+        side = px(22)
+        box = QRectF(self.width() - px(10) - side, (self.height() - side) / 2, side, side)
+        icon = Icon.REPEAT if sensor.silent_s > 0 else Icon.LIGHT
+        paint_icon(painter, icon, box, c.caution_ink if sensor.wants_look else c.ink)
+
+
+class _PlaceMenu(QMenu):
+    """The six places and nowhere; the present one is checked, and their numbers are keys."""
+
+    chosen = Signal(object)
+
+    def __init__(self, look: Look, site: Site | None, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setAccessibleName(tr("Worn on"))
+        self.setFont(look.theme.font(16))
+        group = QActionGroup(self)
+        for one in (*Site, None):
+            words = tr("Nowhere") if one is None else f"&{number_of(one)}  {name_of(one)}"
+            action = QAction(words, self)
+            action.setCheckable(True)
+            action.setChecked(one is site)
+            action.setData(None if one is None else one.value)
+            group.addAction(action)
+            self.addAction(action)
+            if one is site:
+                self.setActiveAction(action)
+        self.triggered.connect(self._on_triggered)
+
+    def _on_triggered(self, action: QAction) -> None:
+        self.chosen.emit(None if action.data() is None else Site(action.data()))

@@ -1,0 +1,388 @@
+"""Which sensor is worn where? The figure with a tile for each place, tied to it by a line; sensors are dropped here."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from PySide6.QtCore import QMimeData, QPoint, QPointF, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QColor,
+    QDrag,
+    QDragEnterEvent,
+    QDragLeaveEvent,
+    QDragMoveEvent,
+    QDropEvent,
+    QFontMetrics,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QAbstractButton, QApplication, QSizePolicy, QWidget
+
+from app.theme import CARD_RADIUS, CONTROL_RADIUS, Look
+from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
+from app.widgets.chip import LETTERS, paint_chip
+from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wording import name_of, tr
+from core.body import Segment, Side, Site
+
+DRAGGED = "application/x-gaitwright-sensor"
+TILE = (112, 50)
+NARROW_TILE = 92
+CHIP = 16
+PADDING = 8
+EDGE, NARROW_EDGE = 16, 8  # between the tiles and the card's edge
+BESIDE_LEGS = 8
+LEGS_AT_LEAST = 84
+GAP = 8
+ELBOW = 10  # the line leaves its tile straight
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceShown:
+    """One place as it is now: the sensor there, its state in a word or two, and how it looks."""
+
+    sensor: str = ""
+    note: str = ""
+    mark: SensorMark | None = None
+    is_next: bool = False
+    is_flashing: bool = False
+
+
+class SensorPlaces(QWidget):
+    """
+    Signals
+    -------
+    dropped
+        A sensor's name and the site it was let go over.
+    hovered
+        A sensor is being dragged over a site; "" and None: no longer.
+    pressed
+        The tile of a site.
+    """
+
+    dropped = Signal(str, Site)
+    hovered = Signal(str, object)
+    pressed = Signal(Site)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_narrow = look, False
+        self._hovered: Site | None = None
+        self._next: Site | None = None
+        self._names: tuple[str, ...] = ()
+        self.setAcceptDrops(True)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.figure = BodyFigure(look)
+        self.figure.setParent(self)
+        self._lines = _Lines(look, self)
+        self.tiles = {site: _Tile(look, site, self) for site in Site}
+        for tile in self.tiles.values():
+            tile.clicked.connect(self._on_tile_clicked)
+        look.changed.connect(self._arrange)
+
+    def show_places(self, places: Mapping[Site, PlaceShown]) -> None:
+        """Show what is worn at each of the six sites."""
+        self.figure.show_worn({site: place.mark for site, place in places.items() if place.mark is not None})
+        self._next = next((site for site, place in places.items() if place.is_next), None)
+        self.figure.emphasise(self._hovered or self._next)
+        for site, place in places.items():
+            self.tiles[site].show_place(place)
+        self._arrange()
+
+    def set_names(self, names: tuple[str, ...]) -> None:
+        """Make room on the tiles for these sensors with whatever may be said of them, so that no tile grows later."""
+        if names != self._names:
+            self._names = names
+            self._arrange()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Show the legs alone, between smaller tiles."""
+        self._is_narrow = is_narrow
+        self.figure.set_legs_only(is_narrow)
+        self._arrange()
+
+    def set_from_behind(self, is_from_behind: bool) -> None:
+        """Turn the figure's back to you; its tiles turn with it."""
+        self.figure.set_from_behind(is_from_behind)
+        self._arrange()
+
+    def site_at(self, point: QPoint) -> Site | None:
+        """The site whose tile or segment lies under `point`."""
+        for site, tile in self.tiles.items():
+            if tile.geometry().contains(point):
+                return site
+        return self.figure.site_at(QPointF(self.figure.mapFrom(self, point)))
+
+    def minimumSizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(2 * self._beside_legs() + px(LEGS_AT_LEAST), px(300))
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._arrange()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.line, 1))
+        painter.setBrush(QColor(theme.colours.surface))
+        radius = CARD_RADIUS * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+
+    def dragEnterEvent(self, event: QDragEnterEvent) -> None:
+        if event.mimeData().hasFormat(DRAGGED):
+            event.acceptProposedAction()
+
+    def dragMoveEvent(self, event: QDragMoveEvent) -> None:
+        site = self.site_at(event.position().toPoint())
+        self._hover(sensor_in(event.mimeData()), site)
+        if site is None:
+            event.ignore()
+        else:
+            event.acceptProposedAction()
+
+    def dragLeaveEvent(self, _event: QDragLeaveEvent) -> None:
+        self._hover("", None)
+
+    def dropEvent(self, event: QDropEvent) -> None:
+        site, sensor = self.site_at(event.position().toPoint()), sensor_in(event.mimeData())
+        self._hover("", None)
+        if site is not None and sensor:
+            event.acceptProposedAction()
+            self.dropped.emit(sensor, site)
+
+    def _hover(self, sensor: str, site: Site | None) -> None:
+        if site == self._hovered:
+            return
+        self._hovered = site
+        self.figure.emphasise(site or self._next)
+        for one, tile in self.tiles.items():
+            tile.set_welcome(one is site)
+        self.hovered.emit(sensor, site)
+
+    def _tile_width(self) -> int:
+        theme = self._look.theme
+        least = theme.px(NARROW_TILE if self._is_narrow else TILE[0])
+        metrics = QFontMetrics(theme.font(12, SEMIBOLD, is_code=True))
+        notes = (tr("silent"), tr("charge"), tr("losses"))
+        lines = [tr("no sensor"), tr("shake it now"), tr("found later")]
+        lines += [" · ".join((name, note)) for name in self._names for note in notes]
+        widest = max(metrics.horizontalAdvance(line) for line in lines) + theme.px(2 * PADDING + 2)
+        return max(least, widest, *(tile.first_line_width for tile in self.tiles.values()))
+
+    def _edge(self) -> int:
+        return self._look.theme.px(NARROW_EDGE if self._is_narrow else EDGE)
+
+    def _beside_legs(self) -> int:
+        return self._edge() + self._tile_width() + self._look.theme.px(BESIDE_LEGS)
+
+    def _arrange(self) -> None:
+        """Put the figure in the middle and each tile beside its place, none over another."""
+        px = self._look.theme.px
+        self.figure.keep_beside(self._beside_legs())
+        self.figure.setGeometry(self.rect().adjusted(1, 1, -1, -1))
+        width, height = self._tile_width(), px(TILE[1])
+        lowest = self.height() - px(SENTENCE_ROOM) + px(4)
+        for side in Side:
+            is_right = (side is Side.LEFT) != self.figure.is_from_behind
+            x = self.width() - self._edge() - width if is_right else self._edge()
+            bottom = lowest
+            for segment in reversed(Segment):
+                site = Site(f"{side}_{segment}")
+                wanted = round(self.figure.anchor(site).y()) - (0 if segment is Segment.FOOT else height // 2)
+                top = min(wanted, bottom - height)
+                self.tiles[site].setGeometry(x, top, width, height)
+                bottom = top - px(GAP)
+        self._lines.setGeometry(self.rect())
+        self._lines.update()
+        self.updateGeometry()
+
+    def _on_tile_clicked(self) -> None:
+        tile = self.sender()
+        assert isinstance(tile, _Tile)
+        self.pressed.emit(tile.site)
+
+
+class _Lines(QWidget):
+    """From each tile to its place on the figure; lies over both and takes no clicks."""
+
+    def __init__(self, look: Look, places: SensorPlaces) -> None:
+        super().__init__(places)
+        self._look, self._places = look, places
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(theme.pen(theme.colours.control, 1))
+        figure = self._places.figure
+        for site, tile in self._places.tiles.items():
+            to = figure.anchor(site) + QPointF(figure.pos())
+            is_right = tile.x() > to.x()
+            sign = 1 if is_right else -1
+            start = QPointF(tile.x() if is_right else tile.geometry().right() + 1, tile.geometry().center().y())
+            end = to + QPointF(sign * theme.px(12), 0)
+            elbow = start - QPointF(sign * theme.px(ELBOW), 0)
+            if (elbow.x() - end.x()) * sign < 0:  # the place lies further out than the elbow
+                elbow.setX(end.x())
+            painter.drawPolyline([start, elbow, end])
+
+
+class _Tile(QAbstractButton):
+    """The place in two lines: which it is, and who is there. A sensor can be dragged away from it."""
+
+    def __init__(self, look: Look, site: Site, places: SensorPlaces) -> None:
+        super().__init__(places)
+        self._look, self.site = look, site
+        self._place = PlaceShown()
+        self._is_welcome = False
+        self._pressed_at: QPoint | None = None
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.show_place(PlaceShown())
+
+    def show_place(self, place: PlaceShown) -> None:
+        self._place = place
+        words = [name_of(self.site), place.sensor or tr("no sensor"), place.note]
+        name = ", ".join(filter(None, words))
+        if name != self.accessibleName():
+            self.setAccessibleName(name)
+        self.update()
+
+    def set_welcome(self, is_welcome: bool) -> None:
+        """Show that what is dragged would land here."""
+        if is_welcome != self._is_welcome:
+            self._is_welcome = is_welcome
+            self.update()
+
+    @property
+    def second_line(self) -> str:
+        place = self._place
+        return " · ".join(filter(None, [place.sensor, place.note])) or tr("no sensor")
+
+    @property
+    def first_line_width(self) -> int:
+        theme = self._look.theme
+        word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site))
+        return word + theme.px(CHIP + 6 + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._pressed_at = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if self._place.sensor and is_dragged(self._pressed_at, event):
+            self._pressed_at = None
+            self.setDown(False)
+            drag_sensor(self, self._look, self._place.sensor)
+            return
+        super().mouseMoveEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        place = self._place
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        is_caution = place.mark in (SensorMark.LOOK, SensorMark.SILENT)
+        fill, ink, edge = (c.caution, c.caution_ink, c.caution_edge) if is_caution else (c.surface, c.ink, c.control)
+        second = ink if is_caution else c.ink2
+        if place.is_flashing:
+            fill, ink, edge, second = c.inv, c.inv_ink, c.inv, c.inv_ink
+        is_bold = self._is_welcome or place.is_next
+        pen = theme.pen(c.ink if is_bold else edge, 2.5 if self._is_welcome else 1.75 if place.is_next else 1.25)
+        if not place.sensor and not is_bold:
+            pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+            pen.setDashPattern([2.0, 2.0])
+        painter.setPen(pen)
+        painter.setBrush(QColor(fill))
+        radius = CONTROL_RADIUS * theme.scale
+        box = QRectF(self.rect()).adjusted(1.25, 1.25, -1.25, -1.25)
+        painter.drawRoundedRect(box, radius, radius)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(box, radius, radius)
+        chip = px(CHIP)
+        first = QRect(px(PADDING), px(7), self.width() - 2 * px(PADDING), px(18))
+        painter.setPen(QColor(ink))
+        painter.setFont(theme.font(14, SEMIBOLD))
+        align = Qt.AlignmentFlag.AlignVCenter
+        where = QRectF(first.left(), first.center().y() - chip / 2 + 1, chip, chip)
+        if place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
+            painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[self.site.side])
+        else:
+            paint_chip(painter, where, self.site.side, theme)
+        painter.setPen(QColor(ink))
+        painter.setFont(theme.font(14, SEMIBOLD))
+        painter.drawText(first.adjusted(chip + px(6), 0, 0, 0), align, segment_name(self.site))
+        painter.setPen(QColor(second))
+        painter.setFont(theme.font(12))
+        painter.drawText(first, align | Qt.AlignmentFlag.AlignRight, str(number_of(self.site)))
+        painter.setFont(theme.font(12, MEDIUM if is_caution else SEMIBOLD if place.is_next else MEDIUM, is_code=True))
+        painter.drawText(first.translated(0, px(19)), align, self.second_line)
+
+
+def segment_name(site: Site) -> str:
+    """Name the segment alone, where a chip says the side."""
+    return {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}[site.segment]
+
+
+def number_of(site: Site) -> int:
+    """The key that says this place: 1 to 6, left leg first."""
+    return list(Site).index(site) + 1
+
+
+def sensor_in(data: QMimeData) -> str:
+    return bytes(data.data(DRAGGED).data()).decode()
+
+
+def is_dragged(pressed_at: QPoint | None, event: QMouseEvent) -> bool:
+    """Whether the mouse, with its button down, has moved so far that a drag is meant."""
+    if pressed_at is None or not event.buttons() & Qt.MouseButton.LeftButton:
+        return False
+    return (event.position().toPoint() - pressed_at).manhattanLength() >= QApplication.startDragDistance()
+
+
+def drag_sensor(source: QWidget, look: Look, sensor: str) -> None:
+    """Let the mouse carry `sensor` until it is let go; returns then."""
+    data = QMimeData()
+    data.setData(DRAGGED, sensor.encode())
+    drag = QDrag(source)
+    drag.setMimeData(data)
+    label = _Carried(look, sensor)
+    drag.setPixmap(label.grab())
+    drag.setHotSpot(QPoint(label.width() // 2, label.height() // 2))
+    label.deleteLater()
+    drag.exec(Qt.DropAction.MoveAction)
+
+
+class _Carried(QWidget):
+    """What hangs at the mouse while a sensor is dragged."""
+
+    def __init__(self, look: Look, sensor: str) -> None:
+        super().__init__()
+        self._look, self._sensor = look, sensor
+        width = QFontMetrics(look.theme.font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)
+        self.resize(width + look.theme.px(32), look.theme.px(40))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(theme.colours.inv))
+        painter.setPen(QColor(theme.colours.inv_ink))
+        painter.setFont(theme.font(16, SEMIBOLD, is_code=True))
+        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._sensor)

@@ -1,0 +1,602 @@
+"""Are six sensors on, and which is where? Dragged onto the figure, shaken in turn, or left to the motion."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from PySide6.QtCore import QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QHideEvent, QResizeEvent
+from PySide6.QtWidgets import (
+    QBoxLayout,
+    QFrame,
+    QHBoxLayout,
+    QProgressBar,
+    QScrollArea,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.pages.sensor_list import SensorList, SensorRow
+from app.pages.sensor_places import PlaceShown, SensorPlaces
+from app.theme import Look
+from app.widgets.body_figure import SensorMark
+from app.widgets.button import Button, Kind
+from app.widgets.choice import Choice
+from app.widgets.icons import Icon
+from app.widgets.notice import Notice
+from app.widgets.segmented import Segmented
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import name_of, tr
+from core.body import Segment, Side, Site
+from core.samples import FloatArray
+
+FLASH_MS = 700
+OFFERED_AT_ONCE = 3  # sources that have a button of their own where there is none yet
+FIGURE_WIDTH = (414, 560)  # as the window grows
+USUAL_WIDTH = 1016
+WIDEST = 1400  # further apart, a row and its place on the figure no longer meet the eye together
+
+
+class Way(StrEnum):
+    DRAG = "drag"
+    SHAKE = "shake"
+    MOTION = "motion"
+
+
+@dataclass(frozen=True, slots=True)
+class SourceOption:
+    """Something that sensors can be heard through; `note` is what was found there: "6 found"."""
+
+    key: str
+    name: str
+    note: str = ""
+
+
+class SensorsPage(QWidget):
+    """
+    Signals
+    -------
+    assigned
+        A sensor's name, and the site it is worn at; None: nowhere. On a worn site the two change places.
+    way_chosen
+        A `Way`.
+    source_chosen
+        The key of a `SourceOption`.
+    identify_pressed, reconnect_pressed
+        A sensor's name.
+    stop_pressed
+        Look for sensors no longer.
+    """
+
+    assigned = Signal(str, object)
+    way_chosen = Signal(str)
+    source_chosen = Signal(str)
+    identify_pressed = Signal(str)
+    reconnect_pressed = Signal(str)
+    stop_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_compact = look, False
+        self._sensors: tuple[SensorRow, ...] = ()
+        self._names: tuple[str, ...] = ()
+        self._told = ("", "")
+        self._shaken_together: tuple[str, ...] = ()
+        self._hovered: tuple[str, Site] | None = None
+        self._bared: set[Site] = set()
+        self._wanted_next: Site | None = None
+        self._flashing: Site | None = None
+        self._flash_end = QTimer(self)
+        self._flash_end.setSingleShot(True)
+        self._flash_end.setInterval(FLASH_MS)
+        self._title = Text(look, tr("Six sensors, any way round"), size=26, weight=SEMIBOLD, wraps=True)
+        self._subtitle = Text(
+            look, tr("Strap them on thigh, shank and foot. Direction does not matter."), 15, tone="ink2", wraps=True
+        )
+        self.sources = Choice(look, tr("Source of the sensors"))
+        self.places = SensorPlaces(look)
+        self.ways = Segmented(
+            look,
+            tr("How it is told which sensor is where"),
+            [
+                (Way.DRAG, tr("Drag"), tr("onto the figure")),
+                (Way.SHAKE, tr("Shake"), tr("each sensor in turn")),
+                (Way.MOTION, tr("Movement decides"), tr("found in the free motion")),
+            ],
+        )
+        self.list = SensorList(look)
+        self.notice = Notice(look, size=16)
+        self.nothing = _NoSource(look)
+        self.searching = _Searching(look)
+        self._build()
+        self._connect()
+        self.show_no_source()
+
+    @property
+    def way(self) -> Way:
+        return Way(self.ways.choice)
+
+    @property
+    def next_place(self) -> Site | None:
+        """Where the sensor that is shaken next goes: the place that was pressed, or the first that is free."""
+        worn = {sensor.site for sensor in self._sensors}
+        if self._wanted_next is not None and self._wanted_next not in worn:
+            return self._wanted_next
+        return next((site for site in Site if site not in worn), None)
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
+        return [self.sources, *self.nothing.buttons, self.searching.stop, *self._tiles, *self.ways.segments, *rows]
+
+    def focus(self) -> None:
+        if self._pages.currentWidget() is self.nothing and self.nothing.buttons:
+            self.nothing.buttons[0].setFocus()
+        elif self._pages.currentWidget() is self.searching:
+            self.searching.stop.setFocus()
+        elif row := self.list.rows.get(self.list.selection):
+            row.setFocus()
+
+    def set_compact(self, is_compact: bool) -> None:
+        """Show legs instead of the whole person, and rows without columns, where the window is small."""
+        self._is_compact = is_compact
+        self.places.set_narrow(is_compact)
+        self.ways.set_brief(is_compact)
+        self.list.set_narrow(is_compact)
+        self._subtitle.setVisible(not is_compact)
+        self._fit()
+
+    def set_from_behind(self, is_from_behind: bool) -> None:
+        self.places.set_from_behind(is_from_behind)
+
+    def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
+        """Offer what sensors can be heard through; `chosen` is the key of the one in force."""
+        with QSignalBlocker(self.sources):
+            self.sources.clear()
+            for option in options:
+                words = tr("{source}: {found}").format(source=option.name, found=option.note)
+                self.sources.addItem(words if option.note else option.name, option.key)
+            self.sources.setCurrentIndex(self.sources.findData(chosen))
+        self.sources.updateGeometry()
+        self.nothing.show_options(options[:OFFERED_AT_ONCE])
+
+    def show_no_source(self) -> None:
+        """Say that nothing is connected, and offer the sources."""
+        self._sensors = ()
+        self._bared.clear()
+        self._wanted_next = None
+        self._show(self.nothing)
+        self._refresh()
+
+    def show_searching(self, source: str) -> None:
+        """Say that sensors are looked for through `source`."""
+        self.searching.begin(source)
+        self._show(self.searching)
+
+    def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
+        """Show how the sensors are; four times a second is enough."""
+        if tuple(sensors) == self._sensors and self._pages.currentWidget() is self._lists:
+            return
+        self._sensors = tuple(sensors)
+        self._bared -= {sensor.site for sensor in sensors if sensor.site is not None}
+        self.list.show_sensors(sensors)
+        names = tuple(sorted(sensor.name for sensor in sensors))
+        if names != self._names:
+            self._names = names
+            self.places.set_names(names)
+            self._fit()
+        self._show(self._lists)
+        self._refresh()
+
+    def show_traces(self, traces: Mapping[str, FloatArray]) -> None:
+        """Draw how each sensor turned in the last 5 s, deg/s, oldest first; ten times a second is enough."""
+        if self._pages.currentWidget() is self._lists:
+            self.list.show_traces(traces)
+
+    def show_way(self, way: Way) -> None:
+        with QSignalBlocker(self.ways):
+            self.ways.choose(way)
+        self._refresh()
+
+    def show_shaken(self, sensor: str) -> None:
+        """Take the shaken sensor for the place that is next, if it has none yet; flash the place it has then."""
+        self._shaken_together = ()
+        known = next((one for one in self._sensors if one.name == sensor), None)
+        if known is None:
+            return
+        self.list.select(sensor)
+        site = known.site or self.next_place
+        self._flash(site)
+        if known.site is None and site is not None and self.way is Way.SHAKE:
+            self._wanted_next = None
+            self.assigned.emit(sensor, site)
+        self._refresh()
+
+    def show_shaken_together(self, sensors: Sequence[str]) -> None:
+        """Say that several were shaken at once, which tells nothing; none takes it back."""
+        if tuple(sensors) != self._shaken_together:
+            self._shaken_together = tuple(sensors)
+            self._refresh()
+
+    def tell(self, what: str, then: str = "") -> None:
+        """Say what happened and what to do, before anything the page would say itself; "" takes it back."""
+        self._told = (what, then)
+        self._refresh()
+
+    def place_selected(self, number: int) -> bool:
+        """Wear the selected sensor at place 1 to 6; returns whether there is such a place and a sensor."""
+        if not self.list.selection or not 1 <= number <= len(Site) or self._pages.currentWidget() is not self._lists:
+            return False
+        self._assign(self.list.selection, list(Site)[number - 1])
+        return True
+
+    def identify_selected(self) -> bool:
+        """Light the LED of the selected sensor; returns whether it has one."""
+        row = self.list.rows.get(self.list.selection)
+        if row is None or not row.sensor.can_identify:
+            return False
+        self.identify_pressed.emit(row.name)
+        return True
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        super().hideEvent(event)
+        self._flash_end.stop()
+        self._end_flash()
+
+    @property
+    def _tiles(self) -> list[QWidget]:
+        return [self.places.tiles[site] for site in Site]
+
+    def _build(self) -> None:
+        words = QVBoxLayout()
+        words.addWidget(self._title)
+        words.addWidget(self._subtitle)
+        self._words = words
+        self._head = QHBoxLayout()
+        self._head.addLayout(words, 1)
+        self._head.addWidget(self.sources, 0, Qt.AlignmentFlag.AlignVCenter)
+        self._rows = _scrolling(self.list)
+        self._beside = QVBoxLayout()
+        self._beside.addWidget(self.ways)
+        self._beside.addWidget(self._rows, 1)
+        self._beside.addWidget(self.notice)
+        self._lists = QWidget()
+        self._body = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._lists)
+        self._body.setContentsMargins(0, 0, 0, 0)
+        self._body.addWidget(self.places, 0)
+        self._body.addLayout(self._beside, 1)
+        self._pages = QStackedWidget()
+        for page in (self.nothing, self.searching, self._lists):
+            self._pages.addWidget(page)
+        content = QWidget()
+        self._column = QVBoxLayout(content)
+        self._column.addLayout(self._head)
+        self._column.addWidget(self._pages, 1)
+        whole = QVBoxLayout(self)
+        whole.setContentsMargins(0, 0, 0, 0)
+        whole.addWidget(_scrolling(content))
+
+    def _connect(self) -> None:
+        self.sources.activated.connect(self._on_source_activated)
+        self.nothing.chosen.connect(self.source_chosen)
+        self.searching.stop.clicked.connect(self.stop_pressed)
+        self.ways.chosen.connect(self._on_way_chosen)
+        self.places.dropped.connect(self._assign)
+        self.places.hovered.connect(self._on_hovered)
+        self.places.pressed.connect(self._on_place_pressed)
+        self.list.assigned.connect(self._assign)
+        self.list.identify_pressed.connect(self.identify_pressed)
+        self.list.reconnect_pressed.connect(self.reconnect_pressed)
+        self._flash_end.timeout.connect(self._end_flash)
+        self._look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def _show(self, page: QWidget) -> None:
+        """Change over to `page`; a focus that was on the page before goes on with it."""
+        before = self._pages.currentWidget()
+        if page is before:
+            return
+        had_focus = before is not None and before.isAncestorOf(self.focusWidget() or self)
+        self._pages.setCurrentWidget(page)
+        if had_focus:
+            self.focus()
+
+    def _assign(self, sensor: str, site: Site | None) -> None:
+        before = next((one.site for one in self._sensors if one.name == sensor), None)
+        if site is None and before is not None:
+            self._bared.add(before)
+        self._wanted_next = None
+        self._told, self._shaken_together = ("", ""), ()
+        if site != before:
+            self.assigned.emit(sensor, site)
+        self._refresh()
+
+    def _flash(self, site: Site | None) -> None:
+        self._flashing = site
+        if site is not None and self.isVisible():
+            self._flash_end.start()
+
+    def _end_flash(self) -> None:
+        if self._flashing is not None:
+            self._flashing = None
+            self._refresh()
+
+    def _refresh(self) -> None:
+        """Show the places and the one sentence that matters most."""
+        worn = {sensor.site: sensor for sensor in self._sensors if sensor.site is not None}
+        self.places.show_places({site: self._place(site, worn.get(site)) for site in Site})
+        self.notice.tell(*self._sentence(worn))
+        self.nothing.tell(*self._told)
+
+    def _place(self, site: Site, sensor: SensorRow | None) -> PlaceShown:
+        is_next = self.way is Way.SHAKE and bool(self._sensors) and site is self.next_place
+        is_flashing = site is self._flashing
+        if sensor is None:
+            note = tr("shake it now") if is_next else tr("found later") if self.way is Way.MOTION else ""
+            mark = None if self.way is Way.MOTION else SensorMark.GAP
+            return PlaceShown("", note, mark, is_next, is_flashing)
+        if sensor.silent_s > 0:
+            return PlaceShown(sensor.name, tr("silent"), SensorMark.SILENT, is_next, is_flashing)
+        if sensor.is_low:
+            return PlaceShown(sensor.name, tr("charge"), SensorMark.LOOK, is_next, is_flashing)
+        if sensor.is_lossy:
+            return PlaceShown(sensor.name, tr("losses"), SensorMark.LOOK, is_next, is_flashing)
+        return PlaceShown(sensor.name, "", SensorMark.WORN, is_next, is_flashing)
+
+    def _sentence(self, worn: Mapping[Site, SensorRow]) -> tuple[Icon | None, str, str, bool]:
+        """Icon, what is so, what to do, and whether it wants a look; the most urgent of all that could be said."""
+        if self._told[0]:
+            return Icon.WARNING, *self._told, True
+        if self._hovered is not None:
+            sensor, site = self._hovered
+            other = worn.get(site)
+            if other is not None and other.name != sensor:
+                what = tr("{site} is already worn by {sensor}.").format(site=name_of(site), sensor=other.name)
+                return Icon.INFO, what, tr("Drop here to swap the two."), False
+            return Icon.INFO, name_of(site), tr("Drop {sensor} here.").format(sensor=sensor), False
+        if self._shaken_together:
+            first, *_, last = self._shaken_together
+            what = (
+                tr("Both {first} and {last} were shaken.").format(first=first, last=last)
+                if len(self._shaken_together) == 2
+                else tr("{count} sensors were shaken.").format(count=len(self._shaken_together))
+            )
+            return Icon.WARNING, what, tr("Shake one at a time."), True
+        return self._state_of_sensors(worn)
+
+    def _state_of_sensors(self, worn: Mapping[Site, SensorRow]) -> tuple[Icon | None, str, str, bool]:
+        if silent := [sensor for sensor in self._sensors if sensor.silent_s > 0]:
+            return Icon.WARNING, *_said_of_silent(silent[0]), True
+        if (foot := self._missing_foot(worn)) is not None:
+            return Icon.WARNING, *_said_of_missing_foot(foot), True
+        if low := [sensor for sensor in self._sensors if sensor.is_low]:
+            what = tr("{name} has {charge} battery.").format(name=_called(low[0]), charge=low[0].charge)
+            return Icon.WARNING, what, tr("Charge it after this patient."), True
+        if lossy := [sensor for sensor in self._sensors if sensor.is_lossy]:
+            what = tr("{name}: {share} % of the samples were lost.").format(
+                name=_called(lossy[0]), share=f"{100 * lossy[0].lost_share:.1f}"
+            )
+            return Icon.WARNING, what, tr("Bring the receiver nearer to the patient."), True
+        if self.way is Way.MOTION and not worn:
+            what = tr("The free motion tells which sensor is where.")
+            return Icon.INFO, what, tr("Strap one on each thigh, shank and foot, in any order."), False
+        if len(worn) == len(Site):
+            return Icon.CHECK, tr("All six are worn and heard."), "", False
+        if self._sensors and len(worn) == len(self._sensors):
+            return Icon.INFO, tr("All sensors have their place."), "", False
+        if self.way is Way.SHAKE and (place := self.next_place) is not None:
+            what = tr("Shake the sensor of the {site}.").format(site=_in_sentence(place))
+            return Icon.NEXT, what, tr("Its place goes dark when it is known."), False
+        return Icon.NEXT, tr("Drag each sensor to its place."), tr("Or choose one and press 1 to 6."), False
+
+    def _missing_foot(self, worn: Mapping[Site, SensorRow]) -> Site | None:
+        """A foot that goes without a sensor: it was taken off, or none is left for it, while its shank has one."""
+        if self.way is Way.MOTION and not worn:
+            return None
+        is_any_left = any(sensor.site is None for sensor in self._sensors)
+        for side in Side:
+            foot, shank = Site(f"{side}_{Segment.FOOT}"), Site(f"{side}_{Segment.SHANK}")
+            if foot not in worn and shank in worn and (foot in self._bared or not is_any_left):
+                return foot
+        return None
+
+    def _fit(self) -> None:
+        """Lay figure and list side by side while both have room."""
+        px = self._look.theme.px
+        side = max(px(24), (self.width() - px(WIDEST)) // 2)
+        above = px(12 if self._is_compact else 20)
+        self._column.setContentsMargins(side, above, side, above)
+        room = self.width() - 2 * side
+        figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
+        rows = max(rows, self.ways.minimumSizeHint().width())
+        is_stacked = figure + px(16) + rows > room
+        way = QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight
+        self._body.setDirection(way)
+        if is_stacked:
+            self.places.setFixedWidth(room)
+        elif self._is_compact:
+            spare = max(0, room - px(16) - rows - figure)
+            self.places.setFixedWidth(min(figure + spare // 2, max(figure, px(FIGURE_WIDTH[0]))))
+        else:
+            usual, widest = FIGURE_WIDTH
+            grown = px(usual) + max(0, room - px(USUAL_WIDTH)) // 2
+            self.places.setFixedWidth(max(figure, min(grown, px(widest), room - px(16) - rows)))
+        self._rows.setMinimumHeight(self.list.minimumSizeHint().height() if is_stacked else 0)
+
+    def _on_source_activated(self, index: int) -> None:
+        self.source_chosen.emit(self.sources.itemData(index))
+
+    def _on_way_chosen(self, way: str) -> None:
+        self._shaken_together = ()
+        self._refresh()
+        self.way_chosen.emit(way)
+
+    def _on_hovered(self, sensor: str, site: Site | None) -> None:
+        self._hovered = (sensor, site) if site is not None else None
+        self._refresh()
+
+    def _on_place_pressed(self, site: Site) -> None:
+        """While shaking, the place that is pressed is next; else it takes the selected sensor."""
+        is_worn = any(sensor.site is site for sensor in self._sensors)
+        if self.way is Way.SHAKE and not is_worn:
+            self._wanted_next = site
+            self._refresh()
+        elif self.list.selection:
+            self._assign(self.list.selection, site)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(16))
+        self._words.setSpacing(px(4))
+        self._head.setSpacing(px(16))
+        self._body.setSpacing(px(16))
+        self._beside.setSpacing(px(8))
+        self.notice.setMinimumHeight(px(66))
+        self._fit()
+
+
+class _NoSource(QWidget):
+    """One sentence, and the sources that can be opened."""
+
+    chosen = Signal(str)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.buttons: list[Button] = []
+        self._keys: list[str] = []
+        self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
+        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._notice = Notice(look, size=16)
+        self._row = QVBoxLayout()
+        self._column = QVBoxLayout(self)
+        self._column.addWidget(self._notice)
+        self._column.addStretch(1)
+        self._column.addWidget(self._sentence)
+        self._column.addLayout(self._row)
+        self._column.addStretch(2)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def tell(self, what: str, then: str) -> None:
+        """Say why nothing is connected, above the sources that may be tried instead."""
+        self._notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+
+    def show_options(self, options: Sequence[SourceOption]) -> None:
+        if [option.key for option in options] == self._keys:
+            return
+        for button in self.buttons:
+            button.setParent(None)
+            button.deleteLater()
+        self.buttons, self._keys = [], [option.key for option in options]
+        for number, option in enumerate(options):
+            button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
+            button.clicked.connect(self._on_clicked)
+            self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
+            self.buttons.append(button)
+        self._on_look_changed()
+
+    def _on_clicked(self) -> None:
+        button = self.sender()
+        assert isinstance(button, Button)
+        self.chosen.emit(self._keys[self.buttons.index(button)])
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(24))
+        self._row.setSpacing(px(12))
+        for button in self.buttons:
+            button.setMinimumWidth(px(320))
+
+
+class _Searching(QWidget):
+    """What is looked for, and the way out."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._sentence = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._line = QProgressBar()
+        self._line.setTextVisible(False)
+        self._line.setRange(0, 0)
+        self._line.setAccessibleName(tr("Looking for sensors"))
+        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP)
+        self._column = QVBoxLayout(self)
+        self._column.addStretch(1)
+        self._column.addWidget(self._sentence)
+        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addStretch(2)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def begin(self, source: str) -> None:
+        self._sentence.setText(tr("Looking for sensors: {source}").format(source=source))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(20))
+        self._line.setFixedSize(px(320), px(8))
+
+
+class _Scroll(QScrollArea):
+    """Takes the room that is left and asks for none."""
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
+
+
+def _scrolling(content: QWidget) -> QScrollArea:
+    area = _Scroll()
+    area.setWidgetResizable(True)
+    area.setFrameShape(QFrame.Shape.NoFrame)
+    area.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+    area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+    area.setWidget(content)
+    return area
+
+
+def _called(sensor: SensorRow) -> str:
+    """A sensor by its place, or by its name while it has none."""
+    return name_of(sensor.site) if sensor.site is not None else sensor.name
+
+
+def _in_sentence(site: Site) -> str:
+    return {
+        Site.LEFT_THIGH: tr("left thigh"),
+        Site.LEFT_SHANK: tr("left shank"),
+        Site.LEFT_FOOT: tr("left foot"),
+        Site.RIGHT_THIGH: tr("right thigh"),
+        Site.RIGHT_SHANK: tr("right shank"),
+        Site.RIGHT_FOOT: tr("right foot"),
+    }[site]
+
+
+def _said_of_silent(sensor: SensorRow) -> tuple[str, str]:
+    seconds = max(round(sensor.silent_s), 1)
+    what = tr("{name} has been silent for {seconds} s.").format(name=_called(sensor), seconds=seconds)
+    if sensor.site is None:
+        return what, tr("Switch it off and on.")
+    lost = {
+        Site.LEFT_THIGH: tr("left knee angles"),
+        Site.LEFT_SHANK: tr("left knee and ankle angles"),
+        Site.LEFT_FOOT: tr("left ankle angles"),
+        Site.RIGHT_THIGH: tr("right knee angles"),
+        Site.RIGHT_SHANK: tr("right knee and ankle angles"),
+        Site.RIGHT_FOOT: tr("right ankle angles"),
+    }[sensor.site]
+    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost)
+
+
+def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
+    if foot.side is Side.LEFT:
+        what = tr("No left foot sensor: no left ankle angles.")
+    else:
+        what = tr("No right foot sensor: no right ankle angles.")
+    return what, tr("Steps come from the shank. It will be printed.")

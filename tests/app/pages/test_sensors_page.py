@@ -1,0 +1,283 @@
+"""The page of the sensors: by mouse, by keys and by shaking each sensor comes to one place, and is said to be there."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt
+from PySide6.QtGui import QDragMoveEvent, QDropEvent
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication, QMenu, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.pages.sensor_list import SensorRow, _lines
+from app.pages.sensor_places import DRAGGED
+from app.pages.sensors_page import SensorsPage, SourceOption, Way
+from app.theme import Look
+from core.body import Side, Site
+
+NAMES = ("0A09", "0A31", "0A2C", "0A17", "0A1B", "0A22")
+OPTIONS = (
+    SourceOption("serial", "Serial ports", "6 found"),
+    SourceOption("replay", "Replay of a session"),
+    SourceOption("demonstration", "Demonstration"),
+    SourceOption("network", "Network"),
+)
+
+
+def rows(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, ...]:
+    """Sensors worn at `sites`, the others nowhere; `changes` by name, with an underscore before the figure."""
+    worn = (*sites, *[None] * (len(NAMES) - len(sites)))
+    made = []
+    for name, site in zip(NAMES, worn, strict=True):
+        facts: dict[str, object] = {"rate_hz": 100.0, "battery": 0.8, "can_identify": True, "site": site}
+        made.append(SensorRow(name, "x-IMU3", **(facts | changes.get(f"s{name}", {}))))  # type: ignore[arg-type]  # test
+    return tuple(made)
+
+
+@pytest.fixture
+def page(qtbot: QtBot) -> Iterator[SensorsPage]:
+    page = SensorsPage(Look())
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    page.show_sources(OPTIONS, "serial")
+    page.show_sensors(rows())
+    page.show()
+    yield page
+    page.hide()
+
+
+@pytest.fixture
+def assigned(page: SensorsPage) -> list[tuple[str, Site | None]]:
+    heard: list[tuple[str, Site | None]] = []
+    page.assigned.connect(lambda sensor, site: heard.append((sensor, site)))
+    return heard
+
+
+def data_of(sensor: str) -> QMimeData:
+    data = QMimeData()
+    data.setData(DRAGGED, sensor.encode())
+    return data
+
+
+def drop(page: SensorsPage, sensor: str, at: QPoint) -> None:
+    data, nothing = data_of(sensor), Qt.KeyboardModifier.NoModifier
+    places = page.places
+    move = QDragMoveEvent(at, Qt.DropAction.MoveAction, data, Qt.MouseButton.LeftButton, nothing)
+    places.dragMoveEvent(move)
+    event = QDropEvent(QPointF(at), Qt.DropAction.MoveAction, data, Qt.MouseButton.LeftButton, nothing)
+    places.dropEvent(event)
+
+
+def test_a_sensor_is_dropped_on_a_tile_or_on_the_figure(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+) -> None:
+    for number, site in enumerate(Site):
+        drop(page, NAMES[number], page.places.tiles[site].geometry().center())
+        drop(page, NAMES[number], page.places.figure.anchor(site).toPoint() + page.places.figure.pos())
+    assert assigned == [(NAMES[number], site) for number, site in enumerate(Site) for _ in range(2)]
+
+
+def test_a_drop_beside_the_figure_is_none(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
+    drop(page, "0A09", QPoint(20, 20))
+    assert assigned == []
+
+
+def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
+    page.show_sensors(rows(Site.LEFT_THIGH))
+    at = page.places.tiles[Site.LEFT_THIGH].geometry().center()
+    data = data_of("0A31")  # the event does not keep it alive
+    move = QDragMoveEvent(at, Qt.DropAction.MoveAction, data, Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier)
+    page.places.dragMoveEvent(move)
+    assert page.notice.text == "L thigh is already worn by 0A09. Drop here to swap the two."
+
+
+def test_the_mouse_carries_a_sensor_by_its_name(page: SensorsPage, monkeypatch: pytest.MonkeyPatch) -> None:
+    carried: list[str] = []
+    monkeypatch.setattr("app.pages.sensor_list.drag_sensor", lambda _source, _look, sensor: carried.append(sensor))
+    row = page.list.rows["0A2C"]
+    QTest.mousePress(row, Qt.MouseButton.LeftButton, pos=QPoint(60, 20))
+    QTest.mouseMove(row, QPoint(62, 20))
+    QTest.mouseMove(row, QPoint(100, 60))
+    QTest.mouseRelease(row, Qt.MouseButton.LeftButton, pos=QPoint(100, 60))
+    assert carried == ["0A2C"]
+
+
+def test_a_row_and_a_number_say_the_place(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
+    page.focus()
+    assert page.list.rows["0A09"].hasFocus()
+    QTest.keyClick(page.list.rows["0A09"], Qt.Key.Key_Down)
+    assert page.list.rows["0A31"].hasFocus()
+    assert page.place_selected(5)
+    assert assigned == [("0A31", Site.RIGHT_SHANK)]
+    assert not page.place_selected(7)
+
+
+@pytest.mark.qt_log_ignore("This plugin does not support", extend=True)  # offscreen has no popups of its own
+def test_the_list_of_places_opens_by_enter_and_is_chosen_by_arrows(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+) -> None:
+    page.show_sensors(rows(Site.LEFT_THIGH))
+    page.focus()
+    QTest.keyClick(page.list.rows["0A09"], Qt.Key.Key_Return)
+    menu = page.findChild(QMenu)
+    assert isinstance(menu, QMenu)
+    assert menu.isVisible()
+    QTest.keyClick(menu, Qt.Key.Key_Down)
+    QTest.keyClick(menu, Qt.Key.Key_Return)
+    assert assigned == [("0A09", Site.LEFT_SHANK)]
+
+
+def test_a_tile_takes_the_selected_sensor(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
+    page.list.select("0A17")
+    tile = page.places.tiles[Site.RIGHT_THIGH]
+    tile.setFocus()
+    QTest.keyClick(tile, Qt.Key.Key_Return)
+    assert assigned == [("0A17", Site.RIGHT_THIGH)]
+
+
+def test_shaken_sensors_take_the_places_in_turn(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
+    page.show_way(Way.SHAKE)
+    assert "Shake the sensor of the left thigh." in page.notice.text
+    page.show_shaken("0A22")
+    assert assigned == [("0A22", Site.LEFT_THIGH)]
+    page.show_sensors(rows(None, None, None, None, None, Site.LEFT_THIGH))
+    assert "Shake the sensor of the left shank." in page.notice.text
+    page.places.tiles[Site.RIGHT_FOOT].click()
+    assert "Shake the sensor of the right foot." in page.notice.text
+    page.show_shaken("0A22")
+    assert len(assigned) == 1, "one that has its place only flashes it"
+    page.show_shaken("0A31")
+    assert assigned[-1] == ("0A31", Site.RIGHT_FOOT)
+
+
+def test_two_shaken_at_once_tell_nothing(page: SensorsPage) -> None:
+    page.show_way(Way.SHAKE)
+    page.show_shaken_together(["0A22", "0A2C"])
+    assert page.notice.text == "Both 0A22 and 0A2C were shaken. Shake one at a time."
+    page.show_shaken_together([])
+    assert "Shake the sensor of the left thigh." in page.notice.text
+
+
+def test_shaking_assigns_nothing_unless_that_way_is_chosen(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+) -> None:
+    page.show_shaken("0A22")
+    assert assigned == []
+
+
+def test_a_foot_taken_off_costs_the_ankle_at_once(page: SensorsPage) -> None:
+    page.show_sensors(rows(*Site))
+    assert page.notice.text == "All six are worn and heard."
+    page.list.assigned.emit("0A22", None)
+    page.show_sensors(rows(*list(Site)[:5]))
+    assert page.notice.text.startswith("No right foot sensor: no right ankle angles.")
+
+
+def test_a_foot_that_no_sensor_is_left_for_costs_the_ankle(page: SensorsPage) -> None:
+    page.show_sensors(rows(*Site)[:5])
+    assert page.notice.text.startswith("No right foot sensor")
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"silent_s": 3.2}, "R foot has been silent for 3 s. Switch it off and on, or go on without right ankle"),
+        ({"battery": 0.11}, "R foot has 11 % battery. Charge it after this patient."),
+        ({"lost_share": 0.024}, "R foot: 2.4 % of the samples were lost."),
+    ],
+)
+def test_what_wants_a_look_is_said(page: SensorsPage, changes: dict[str, object], words: str) -> None:
+    page.show_sensors(rows(*Site, s0A22=changes))
+    assert page.notice.text.startswith(words)
+    assert page.list.rows["0A22"].sensor.wants_look
+    assert page.places.figure.accessibleDescription().count("worn") == 5
+
+
+def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: SensorsPage) -> None:
+    page.show_no_source()
+    page.tell("COM7 is used by another program.", "Close that program, then search again.")
+    assert page.nothing.isVisible()
+    assert "COM7 is used by another program. Close that program, then search again." in _texts_of(page.nothing)
+
+
+def test_without_a_source_three_are_offered_and_pressed_by_keys(page: SensorsPage, qtbot: QtBot) -> None:
+    page.show_no_source()
+    assert [button.text() for button in page.nothing.buttons] == [option.name for option in OPTIONS[:3]]
+    page.focus()
+    with qtbot.waitSignal(page.source_chosen, timeout=1000) as heard:
+        QTest.keyClick(page.nothing.buttons[0], Qt.Key.Key_Return)
+    assert heard.args == ["serial"]
+    page.show_searching("Serial ports")
+    assert page.searching.isVisible()
+    with qtbot.waitSignal(page.stop_pressed, timeout=1000):
+        QTest.keyClick(page.searching.stop, Qt.Key.Key_Space)
+
+
+def test_rows_keep_the_focus_while_they_are_shown_anew(page: SensorsPage) -> None:
+    page.focus()
+    page.show_sensors(rows(Site.LEFT_FOOT))
+    assert page.list.rows["0A09"].hasFocus()
+    assert "worn on L foot" in page.list.rows["0A09"].accessibleName()
+
+
+def test_a_silent_sensor_is_looked_for_and_a_heard_one_lit(page: SensorsPage, qtbot: QtBot) -> None:
+    page.show_sensors(rows(*Site, s0A22={"silent_s": 4.0}))
+    with qtbot.waitSignal(page.reconnect_pressed, timeout=1000):
+        page.list.rows["0A22"].identify.click()
+    with qtbot.waitSignal(page.identify_pressed, timeout=1000):
+        assert page.identify_selected()
+
+
+def test_left_to_the_motion_no_place_is_a_gap(page: SensorsPage) -> None:
+    chosen: list[str] = []
+    page.way_chosen.connect(chosen.append)
+    page.ways.segments[2].click()
+    assert chosen == [Way.MOTION]
+    assert page.notice.text.startswith("The free motion tells which sensor is where.")
+    assert page.places.figure.accessibleDescription() == ""
+
+
+def test_tiles_turn_with_the_figure(page: SensorsPage) -> None:
+    for is_from_behind in (False, True):
+        page.set_from_behind(is_from_behind)
+        for site, tile in page.places.tiles.items():
+            is_right_half = tile.geometry().center().x() > page.places.width() / 2
+            assert is_right_half == ((site.side is Side.LEFT) != is_from_behind)
+
+
+@pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
+@pytest.mark.parametrize(("size", "is_compact"), [((1064, 672), False), ((736, 432), True), ((896, 472), True)])
+def test_nothing_lies_over_another_or_outside(
+    page: SensorsPage, scale: float, size: tuple[int, int], is_compact: bool
+) -> None:
+    page._look.set_scale(scale)
+    page.resize(round(size[0] * scale), round(size[1] * scale))
+    page.set_compact(is_compact)
+    page.show_sensors(rows(*Site, s0A22={"silent_s": 3.0}, s0A2C={"battery": 0.1}))
+    for _ in range(10):  # from layout to layout up to the area that scrolls
+        QApplication.processEvents()
+    tiles = [tile.geometry() for tile in page.places.tiles.values()]
+    for number, tile in enumerate(tiles):
+        assert page.places.rect().contains(tile)
+        assert not any(tile.intersects(other) for other in tiles[number + 1 :])
+        assert not any(tile.contains(page.places.figure.anchor(site).toPoint()) for site in Site)
+    for control in page.tab_order:
+        if control.isVisible():
+            assert control.accessibleName(), control
+            left = control.mapTo(page, QPoint(0, 0)).x()
+            assert left >= 0
+            assert left + control.width() <= page.width()
+
+
+def test_a_trace_breaks_where_nothing_was_heard() -> None:
+    values = np.sin(np.arange(500) / 10)
+    values[200:300] = np.nan
+    first, last = _lines(values, 600, 40)
+    assert first.count() == last.count() == 200
+    assert _lines(np.full(500, np.nan), 600, 40) == []
+    assert _lines(np.empty(0), 600, 40) == []
+
+
+def _texts_of(widget: QWidget) -> str:
+    return " ".join(child.accessibleName() for child in widget.findChildren(QWidget))
