@@ -1,0 +1,304 @@
+"""The frame of the wizard: its forms at every size, regions, folding, banner and toast, and room for every word."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.theme import Look, load_fonts
+from app.widgets.action_bar import BarState, RecordingNote, Verb
+from app.widgets.icons import Icon
+from app.widgets.sensor_strip import SensorStrip, SensorTile
+from app.widgets.step_rail import RailForm, RailRow, StepState, wizard_below
+from app.wizard import shell as shell_module
+from app.wizard.shell import StripMode, WizardShell
+from app.wording import tr, use_language
+from core.body import Site
+from tests.app.room import settle, words_cut
+
+RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
+
+
+class Page(QWidget):
+    def __init__(self) -> None:
+        super().__init__()
+        self.first, self.second = QPushButton("one"), QPushButton("two")
+        column = QVBoxLayout(self)
+        column.addWidget(self.second)
+        column.addWidget(self.first)
+        self.tab_order = [self.first, self.second]
+
+    def focus(self) -> None:
+        self.first.setFocus()
+
+
+def tile(site: Site, silent_s: float = 0.0, battery: float = 0.84, lost_share: float = 0.0) -> SensorTile:
+    return SensorTile(site, "0A22", battery, 100.0, lost_share, silent_s, is_moving=True, is_worn=True)
+
+
+def fine() -> dict[Site, SensorTile]:
+    return {site: tile(site) for site in Site}
+
+
+def stop_early() -> BarState:
+    note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
+    stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    return BarState(stop, quiet=(Verb(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
+
+
+def recording() -> BarState:
+    title, note = (tr(words) for words in RECORDING)
+    return BarState(
+        Verb(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
+    )
+
+
+def reconnect() -> BarState:
+    wished = Verb(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
+    return BarState(wished, others=(Verb(tr("Go on without right ankle")),))
+
+
+def filled(look: Look) -> WizardShell:
+    shell = WizardShell(look)
+    rows = [
+        ("Patient", "Left prosthetic", StepState.DONE),
+        ("Sensors", "6 of 6 assigned", StepState.DONE),
+        ("Stand still", "skipped, printed", StepState.SKIPPED),
+        ("Free motion", "All four ready", StepState.ATTENTION),
+        ("Walking", "3 walks, L 52, R 49", StepState.CURRENT),
+        ("Results", "", StepState.TODO),
+        ("Report", "", StepState.TODO),
+    ]
+    shell.rail.show_rows(tuple(RailRow(tr(title), tr(note), state) for title, note, state in rows))
+    shell.rail.show_below(wizard_below())
+    shell.header.show_session("P-0147", tr("1968, male · left prosthetic"), is_simulated=True)
+    shell.header.show_elapsed(301.0)
+    shell.strip.show_tiles(fine())
+    shell.bar.show_state(stop_early())
+    return shell
+
+
+@pytest.fixture(autouse=True)
+def _fonts(qapp: object) -> Iterator[None]:
+    load_fonts()
+    yield
+    use_language("en")
+
+
+@pytest.fixture
+def look() -> Look:
+    return Look()
+
+
+@pytest.fixture
+def shell(look: Look, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
+    monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms: 0)
+    shell = filled(look)
+    qtbot.addWidget(shell)
+    shell.resize(1280, 800)
+    shell.show()
+    shell.show_page(0, Page())
+    settle()
+    return shell
+
+
+@pytest.mark.parametrize(
+    ("size", "scale", "is_compact", "form"),
+    [
+        ((1280, 800), 1.0, False, RailForm.USUAL),
+        ((1179, 800), 1.0, True, RailForm.COMPACT),
+        ((1280, 719), 1.0, True, RailForm.COMPACT),
+        ((1920, 1200), 2.0, True, RailForm.COMPACT),
+        ((960, 600), 0.8, False, RailForm.USUAL),
+        ((1920, 1080), 1.0, False, RailForm.WIDE),
+    ],
+)
+def test_the_frame_takes_the_form_that_the_window_has_room_for(
+    shell: WizardShell, look: Look, size: tuple[int, int], scale: float, is_compact: bool, form: RailForm
+) -> None:
+    look.set_scale(scale)
+    shell.resize(*size)
+    settle()
+    assert (shell.is_compact, shell.rail.form) == (is_compact, form)
+    assert shell.rail.width() == look.theme.px(form.value)
+
+
+def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: WizardShell) -> None:
+    shell.resize(2400, 1080)
+    settle()
+    page = shell.page
+    assert page is not None
+    left = page.mapTo(shell, page.rect().topLeft()).x() - shell.rail.width()
+    assert page.width() == 1600
+    assert left == (2400 - shell.rail.width() - 1600) // 2
+
+
+def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: Look) -> None:
+    told: list[tuple[bool, float, float]] = []
+    shell.room_changed.connect(lambda *room: told.append(room))
+    look.set_scale(2.0)
+    shell.resize(1920, 1200)
+    settle()
+    page = shell.page
+    assert page is not None
+    assert told[-1] == (True, page.width() / 2, page.height() / 2)
+    told.clear()
+    shell.show_page(1, Page())
+    assert told
+
+
+def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: WizardShell) -> None:
+    page = Page()
+    shell.show_page(3, page)
+    assert shell.page is page
+    assert shell.focusWidget() is page.first
+
+
+def test_the_page_that_was_there_fades_and_leaves_nothing(look: Look, qtbot: QtBot) -> None:
+    shell = filled(look)
+    qtbot.addWidget(shell)
+    shell.resize(900, 600)
+    shell.show()
+    shell.show_page(0, Page())
+    shell.show_page(1, Page())
+    qtbot.waitUntil(lambda: not shell._fade.isVisible(), timeout=2000)
+
+
+def test_tab_goes_through_the_page_in_its_own_order_and_then_to_the_bar(shell: WizardShell) -> None:
+    page = shell.page
+    assert isinstance(page, Page)
+    page.focus()
+    seen = []
+    for _ in range(4):
+        QTest.keyClick(shell.focusWidget() or shell, Qt.Key.Key_Tab)
+        seen.append(shell.focusWidget())
+    assert seen == [page.second, shell.bar.back, shell.bar.quiet[0], shell.bar.primary]
+
+
+def test_the_regions_are_gone_round_forwards_and_back(shell: WizardShell) -> None:
+    shell.set_strip_mode(StripMode.SHOWN)
+    page = shell.page
+    assert isinstance(page, Page)
+    page.focus()
+    seen = []
+    for _ in range(4):
+        shell.focus_next_region(1)
+        seen.append(shell.focusWidget())
+    first_tile = shell.strip.widgets[Site.RIGHT_THIGH]
+    assert seen == [shell.bar.primary, shell.rail.rows[4], first_tile, page.first]
+    shell.focus_next_region(-1)
+    assert shell.focusWidget() is first_tile
+
+
+def test_the_folded_strip_is_a_region_of_its_own_and_a_hidden_one_is_none(shell: WizardShell) -> None:
+    shell.set_strip_mode(StripMode.FOLDED)
+    shell.rail.focus()
+    shell.focus_next_region(1)
+    assert shell.focusWidget() is shell.header.fold
+    shell.set_strip_mode(StripMode.HIDDEN)
+    shell.rail.focus()
+    shell.focus_next_region(1)
+    assert isinstance(shell.page, Page)
+    assert shell.focusWidget() is shell.page.first
+
+
+def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
+    shell.set_strip_mode(StripMode.FOLDED)
+    assert not shell.strip.isVisible()
+    assert shell.header.fold.text() == "6 sensors, all heard"
+    QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
+    assert shell.strip.isVisible()
+    QTest.mouseClick(shell.header.fold, Qt.MouseButton.LeftButton)
+    assert not shell.strip.isVisible()
+
+
+def test_the_folded_strip_opens_by_itself_when_a_sensor_turns_bad_and_only_then(
+    shell: WizardShell, qtbot: QtBot
+) -> None:
+    shell.set_strip_mode(StripMode.FOLDED)
+    shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=3.4)})
+    qtbot.waitUntil(shell.strip.isVisible, timeout=2000)
+    assert shell.header.fold.text() == "R foot: silent 3 s"
+    shell.header.fold.setChecked(False)
+    shell.strip.show_tiles(fine() | {Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=4.4)})
+    qtbot.waitUntil(lambda: shell.header.fold.text() == "R foot: silent 4 s", timeout=2000)
+    assert not shell.strip.isVisible()
+
+
+def test_a_low_window_has_no_room_for_tiles_and_says_it_in_the_header(shell: WizardShell) -> None:
+    shell.set_strip_mode(StripMode.SHOWN)
+    shell.resize(1280, 470)
+    settle()
+    assert not shell.strip.isVisible()
+    assert shell.header.fold.isVisible()
+    shell.resize(1280, 800)
+    settle()
+    assert shell.strip.isVisible()
+    assert not shell.header.fold.isVisible()
+
+
+def test_a_banner_that_comes_while_recording_pushes_nothing(shell: WizardShell) -> None:
+    page = shell.page
+    assert page is not None
+    shell.bar.show_state(recording())
+    settle()
+    before = page.mapTo(shell, page.rect().topLeft())
+    shell.banner.tell("R foot has been silent for 2 s", "Recording goes on.")
+    settle()
+    assert page.mapTo(shell, page.rect().topLeft()) == before
+    shell.banner.hide()
+    shell.bar.show_state(stop_early())
+    settle()
+    assert page.mapTo(shell, page.rect().topLeft()).y() < before.y()
+
+
+def test_the_toast_stands_above_the_bar_at_its_left(shell: WizardShell) -> None:
+    shell.toast.offer("Walk 2 discarded.")
+    settle()
+    assert shell.toast.geometry().bottom() < shell.bar.geometry().top()
+    assert shell.toast.x() == shell.bar.x() + 24
+    shell.resize(900, 600)
+    settle()
+    assert shell.toast.geometry().bottom() < shell.bar.geometry().top()
+
+
+def test_pages_that_are_given_up_are_gone(shell: WizardShell) -> None:
+    shell.clear_pages()
+    settle()
+    assert shell.page is None
+    assert shell.findChildren(Page) == [] or all(not page.isVisible() for page in shell.findChildren(Page))
+
+
+SIZES = [((800, 560), 0.8), ((800, 560), 1.0), ((1280, 800), 1.0), ((1280, 800), 2.0), ((1920, 1080), 1.0)]
+
+
+@pytest.mark.parametrize("language", ["en", "pseudo"])
+@pytest.mark.parametrize(("size", "scale"), SIZES)
+@pytest.mark.parametrize("mode", [StripMode.SHOWN, StripMode.FOLDED])
+def test_no_word_of_the_frame_is_cut(
+    look: Look, qtbot: QtBot, size: tuple[int, int], scale: float, mode: StripMode, language: str
+) -> None:
+    use_language(language)
+    look.set_scale(scale)
+    shell = filled(look)
+    qtbot.addWidget(shell)
+    shell.set_strip_mode(mode)
+    shell.resize(*size)
+    shell.show()
+    bad = fine() | {
+        Site.RIGHT_FOOT: tile(Site.RIGHT_FOOT, silent_s=12.0),
+        Site.LEFT_FOOT: tile(Site.LEFT_FOOT, battery=0.11),
+        Site.LEFT_SHANK: tile(Site.LEFT_SHANK, lost_share=0.124),
+        Site.RIGHT_THIGH: SensorTile(Site.RIGHT_THIGH, "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False),
+    }
+    assert isinstance(shell.strip, SensorStrip)
+    shell.strip._show(bad)
+    for state in (stop_early(), recording(), reconnect()):
+        shell.bar.show_state(state)
+        shell.toast.offer(tr("Walk 2 discarded."))
+        assert words_cut(shell) == []
+    shell.toast.hide()
+    assert shell.findChild(QLabel) is not None
