@@ -36,7 +36,7 @@ from core.samples import FloatArray
 ROW = 58
 HEADING = 26
 SPACING = 8
-GRIP = 30
+GRIP, NARROW_GRIP = 30, 24
 COLUMN_GAP, NARROW_GAP = 12, 8
 IDENTIFY = 44
 CHIP = 20
@@ -204,10 +204,11 @@ class SensorList(QWidget):
         }
         if self._is_narrow:
             wanted["rate"] = wanted["battery"] = 0
+        grip = px(NARROW_GRIP if self._is_narrow else GRIP)
         gap, right = px(NARROW_GAP if self._is_narrow else COLUMN_GAP), px(6)
-        rest = width - px(GRIP) - right - sum(wanted.values()) - gap * sum(1 for one in wanted.values() if one)
+        rest = width - grip - right - sum(wanted.values()) - gap * sum(1 for one in wanted.values() if one)
         places: dict[str, QRect] = {}
-        x = px(GRIP)
+        x = grip
         for key in ("name", "trace", "rate", "battery", "worn", "identify"):
             taken = max(rest, 0) if key == "trace" else wanted[key]
             places[key] = QRect(x, 0, taken, px(ROW))
@@ -391,9 +392,10 @@ class SensorRowView(QAbstractButton):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(theme.veil(self.isDown()))
             painter.drawRoundedRect(box, radius, radius)
-        grip = px(20)
-        paint_icon(painter, Icon.GRIP, QRectF(px(5), (self.height() - grip) / 2, grip, grip), second)
         places = self._list.columns(self.width())
+        grip = px(20)
+        middle = QRectF((places["name"].x() - grip) / 2, (self.height() - grip) / 2, grip, grip)
+        paint_icon(painter, Icon.GRIP, middle, second)
         align = Qt.AlignmentFlag.AlignVCenter
         painter.setPen(QColor(ink))
         painter.setFont(theme.font(16, SEMIBOLD, is_code=True))

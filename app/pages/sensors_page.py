@@ -35,6 +35,7 @@ FLASH_MS = 700
 OFFERED_AT_ONCE = 3  # sources that have a button of their own where there is none yet
 FIGURE_WIDTH = (414, 560)  # as the window grows
 USUAL_WIDTH = 1016
+SCROLL_BAR = 12
 WIDEST = 1400  # further apart, a row and its place on the figure no longer meet the eye together
 
 
@@ -413,19 +414,21 @@ class SensorsPage(QWidget):
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
-        rows = max(rows, self.ways.minimumSizeHint().width())
-        is_stacked = figure + px(16) + rows > room
+        rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
+        gap = px(12 if self._is_compact else 16)
+        self._body.setSpacing(gap)
+        is_stacked = figure + gap + rows > room
         way = QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight
         self._body.setDirection(way)
         if is_stacked:
             self.places.setFixedWidth(room)
         elif self._is_compact:
-            spare = max(0, room - px(16) - rows - figure)
+            spare = max(0, room - gap - rows - figure)
             self.places.setFixedWidth(min(figure + spare // 2, max(figure, px(FIGURE_WIDTH[0]))))
         else:
             usual, widest = FIGURE_WIDTH
             grown = px(usual) + max(0, room - px(USUAL_WIDTH)) // 2
-            self.places.setFixedWidth(max(figure, min(grown, px(widest), room - px(16) - rows)))
+            self.places.setFixedWidth(max(figure, min(grown, px(widest), room - gap - rows)))
         self._rows.setMinimumHeight(self.list.minimumSizeHint().height() if is_stacked else 0)
 
     def _on_source_activated(self, index: int) -> None:
@@ -454,7 +457,6 @@ class SensorsPage(QWidget):
         self._column.setSpacing(px(16))
         self._words.setSpacing(px(4))
         self._head.setSpacing(px(16))
-        self._body.setSpacing(px(16))
         self._beside.setSpacing(px(8))
         self.notice.setMinimumHeight(px(66))
         self._fit()
