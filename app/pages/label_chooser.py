@@ -92,12 +92,15 @@ class LabelChooser(QWidget):
         self.chosen.emit(label)
 
     def _mark(self) -> None:
-        """Mark the choice, and let the tabulator stop there, or at the first label."""
+        """Mark the choice, and let the tabulator stop there, or at the first label.
+
+        The mouse leaves the focus where it is: Space must start the walk, not press the label again.
+        """
         chosen = [option for option in self._options if option.text() == self._choice]
         stops = (chosen or self._options)[:1]
         for option in self._options:
             option.setChecked(option in chosen)
-            option.setFocusPolicy(Qt.FocusPolicy.StrongFocus if option in stops else Qt.FocusPolicy.ClickFocus)
+            option.setFocusPolicy(Qt.FocusPolicy.TabFocus if option in stops else Qt.FocusPolicy.NoFocus)
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each label lies, and the field last, in lines of `width`."""

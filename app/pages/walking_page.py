@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
+    QApplication,
     QBoxLayout,
     QFrame,
     QHBoxLayout,
@@ -122,14 +123,8 @@ class WalkingPage(QWidget):
         return [one for one in controls if one.isVisibleTo(self)]
 
     def focus(self) -> None:
-        """Put the focus where reading starts: on the question, or on the label."""
-        if self._asked is not None:
-            self.stopped.keep.setFocus()
-        elif not self.is_recording and self.next.chooser.buttons:
-            chosen = [one for one in self.next.chooser.buttons if one.focusPolicy() is Qt.FocusPolicy.StrongFocus]
-            chosen[0].setFocus()
-        else:
-            self.charts.setFocus()
+        """Put the focus where reading starts, and on no button: Space is to start and stop the walk."""
+        (self.empty if self.empty.isVisibleTo(self) else self.charts).setFocus()
 
     def show_view(self, live: LiveWalk) -> None:
         """Draw the present, up to thirty times a second."""
@@ -149,18 +144,20 @@ class WalkingPage(QWidget):
         facts
             Of the walk that is asked about, in words: its length, its cadence.
         """
-        was_recording, before = self.is_recording, self._asked
+        was_recording = self.is_recording
         self._rows = rows
         asked = [row for row in rows if row.state in (WalkState.ASKING, WalkState.RECOVERED)]
         self._asked = next((row for row in reversed(asked) if row.state is WalkState.ASKING), next(iter(asked), None))
         self.walks.show_walks(rows)
         self.stopped.show_walk(self._asked, facts)
         self._name_next()
+        if self.is_recording and not was_recording:
+            self.charts.clear()
         if self.is_recording != was_recording:
             self.tabs.choose("curves" if self.is_recording else "walks")
-        had_focus = self.stopped.isAncestorOf(self.focusWidget()) if self.focusWidget() is not None else False
+        has_focus = self.isAncestorOf(QApplication.focusWidget()) if QApplication.focusWidget() else False
         self._arrange()
-        if had_focus and before is not None and self._asked is None:
+        if has_focus and not self.isAncestorOf(QApplication.focusWidget() or self.window()):
             self.focus()
 
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
@@ -456,6 +453,8 @@ class _EmptyCard(Card):
             wraps=True,
         )
         super().__init__(look)
+        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self.column.addStretch(1)

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -134,16 +135,29 @@ def test_keys_choose_the_label_with_their_digit(page: WalkingPage, qtbot: QtBot)
 
 
 def test_arrows_go_from_label_to_label(page: WalkingPage) -> None:
-    page.focus()
-    first = QApplication.focusWidget()
-    assert isinstance(first, QAbstractButton)
+    (first,) = (one for one in page.next.chooser.buttons if one.focusPolicy() is Qt.FocusPolicy.TabFocus)
     assert (first.text(), first.isChecked()) == ("Shoes", True)
+    first.setFocus()
     QTest.keyClick(first, Qt.Key.Key_Right)
     assert page.next.chooser.choice == "AFO"
     second = QApplication.focusWidget()
     assert second is not None
     QTest.keyClick(second, Qt.Key.Key_Right)
     assert page.next.chooser.choice == "Barefoot"
+
+
+def test_the_focus_lies_on_no_button_so_that_space_starts_and_stops(page: WalkingPage) -> None:
+    page.activateWindow()
+    page.focus()
+    assert QApplication.focusWidget() is page.empty
+    QTest.mouseClick(page.next.chooser.buttons[0], Qt.MouseButton.LeftButton)
+    assert QApplication.focusWidget() is page.empty
+    page.show_walks((RECORDING,))
+    assert QApplication.focusWidget() is page.charts
+    page.show_walks((ASKING,))
+    page.stopped.keep.setFocus()
+    page.show_walks((replace(ASKING, state=WalkState.KEPT),))
+    assert QApplication.focusWidget() is page.charts
 
 
 def test_other_words_are_a_label_too(page: WalkingPage, qtbot: QtBot) -> None:
