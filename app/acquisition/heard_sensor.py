@@ -62,10 +62,10 @@ class HeardSensor:
         """Take a block's samples, stamped `time_s` (n,); those that come late are counted, and not shown."""
         self._heard_at_s = now_s
         last_s = self.ring.last_s
-        step_s = np.diff(time_s, prepend=last_s)
+        step_s = _steps_s(time_s, last_s)
         if not (step_s > 0).all():  # neither of NaN
             is_new = _is_later(time_s, last_s)
-            self._count(np.diff(time_s[is_new], prepend=last_s))
+            self._count(_steps_s(time_s[is_new], last_s))
             self._count_others(time_s, is_new)
             self.ring.add(time_s[is_new], block.gyr_rad_s[is_new], block.acc_m_s2[is_new])
             return
@@ -115,6 +115,13 @@ class HeardSensor:
                 self._late += 1
                 self._received += 1
                 self._lost = max(self._lost - 1, 0)  # it was taken for lost
+
+
+def _steps_s(time_s: FloatArray, last_s: float) -> FloatArray:
+    """From each sample (n,) to the one before, the first one's from `last_s`; `np.diff` takes five times as long."""
+    step_s = time_s - last_s
+    step_s[1:] = time_s[1:] - time_s[:-1]
+    return step_s
 
 
 def _is_later(time_s: FloatArray, last_s: float) -> BoolArray:

@@ -11,7 +11,7 @@ from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from app.acquisition.source_tape import SourceTape
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
-from devices.live import LiveSource, SensorTold, SourceRefusedError
+from devices.live import LiveSource, SensorTold, SourceLostError, SourceRefusedError
 
 REOPEN_S = 1.0
 RECALLED_S = 2.0  # a journal may be opened so long before it is handed over
@@ -135,10 +135,12 @@ class Reader:
                 self._tape.come_back()
 
     def _note_lost(self, error: Exception) -> None:
+        is_expected = isinstance(error, SourceLostError | SourceRefusedError)
+        details = None if is_expected else error
         if self._is_open:
-            _log.warning("%s was lost", self.source.info.driver, exc_info=error)
-        elif not isinstance(error, SourceRefusedError):
-            _log.debug("%s does not open", self.source.info.driver, exc_info=error)
+            _log.warning("%s was lost", self.source.info.driver, exc_info=details)
+        elif details:
+            _log.debug("%s does not open", self.source.info.driver, exc_info=details)
 
     def _read(self) -> None:
         self._begun_reads += 1

@@ -60,8 +60,9 @@ class SourceTape:
 def _from(block: ImuBlock, begin_s: float) -> ImuBlock:
     """The samples that are not older than `begin_s`, stamped in seconds since then; those without a stamp, too."""
     time_s = block.time_s - begin_s
-    is_old = time_s < 0
-    rows: slice | BoolArray = ~is_old if is_old.any() else slice(None)
+    rows: slice | BoolArray = slice(None)
+    if len(time_s) and not time_s.min() >= 0:  # the recording has just begun, or a stamp is missing
+        rows = ~(time_s < 0)
     return ImuBlock(
         sensor=block.sensor,
         time_s=time_s[rows],

@@ -414,7 +414,10 @@ def test_a_clock_that_is_set_by_a_day_changes_nothing(
 
 @pytest.mark.parametrize("slept_s", [20.0, 8 * 3600.0])
 @pytest.mark.parametrize("is_lost", [False, True])
-def test_a_machine_that_slept_leaves_one_gap(start: Start, tmp_path: Path, slept_s: float, is_lost: bool) -> None:
+def test_a_machine_that_slept_leaves_one_gap(
+    start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, slept_s: float, is_lost: bool
+) -> None:
+    monkeypatch.setattr("app.acquisition.reader.REOPEN_S", 0.01)
     clock = Clock()
     source = ReplaySource(
         numbered_session("a", 2), faults=ReplayFaults(lag_s={"a-left_shank": 0.02}), now_ns=clock, sleep=clock.sleep
