@@ -15,7 +15,7 @@ from app.widgets.body_figure import SensorMark, paint_legs
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.icons import Icon, paint_icon
-from app.widgets.painted_text import CENTRE, LEFT, PaintedText, height_for
+from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
@@ -27,6 +27,7 @@ GAP = 8
 LEGS = 66  # with the letters at both sides
 BETWEEN = 22  # of the sides, where the legs are left away
 PADDING = 10
+MARKS = BATTERY_WIDTH + 4 + 18  # battery and movement
 EVERY_MS = 250  # faster changes cannot be read
 
 LOST_SHARE = 0.01
@@ -80,12 +81,11 @@ class SensorTile:
             case TileState.SILENT:
                 return tr("silent {seconds} s").format(seconds=int(self.silent_s))
             case TileState.LOSS:
-                return tr("{percent:.1f} % lost").format(percent=self.lost_share * 100)
+                return _loss(self.lost_share)
             case TileState.LOW_BATTERY:
                 return tr("charge soon · {percent} %").format(percent=round((self.battery or 0.0) * 100))
             case _:
-                lost = tr("{percent:.1f} % lost").format(percent=self.lost_share * 100)
-                return f"{self.rate_hz:.0f} Hz · {lost}"
+                return _rate_and_loss(self.rate_hz, self.lost_share)
 
 
 def sentence(tiles: Mapping[Site, SensorTile]) -> str:
@@ -224,15 +224,19 @@ class SensorStrip(QWidget):
         gap, height = px(GAP), px(COMPACT_TILE if self._is_compact else TILE)
         room = max(self.width(), px(LEAST)) - 2 * margin
         between = px(BETWEEN) if self._is_compact else px(LEGS) + 2 * gap
-        needed = max(widget.needed_width() for widget in self.widgets.values())
+        in_one_row = (room - between - 5 * gap + gap) // 6
+        is_tight = not self._is_compact and in_one_row < self._needed(is_tight=False)
+        needed = self._needed(is_tight)
         order = [self.widgets[site] for site in _order(self._is_from_behind)]
-        columns = next((n for n in (6, 3, 2) if (room - between * (n == 6) - (n - 1) * gap) // n >= needed), 2)
+        columns = 6 if in_one_row >= needed else 3 if (room - 2 * gap) // 3 >= self._needed(is_tight=False) else 2
         if columns == 2:
             order = [order[k] for k in (0, 3, 1, 4, 2, 5)]  # one row for each segment, the sides side by side
         free = room - (columns - 1) * gap - (between - gap if columns == 6 else 0)
         width = max(free // columns, 1)
         top = px(4 if self._is_compact else 8)
+        is_tight = is_tight and columns == 6
         for k, widget in enumerate(order):
+            widget.set_tight(is_tight)
             row, column = divmod(k, columns)
             x = margin + column * (width + gap)
             if columns == 6 and column >= 3:
@@ -245,6 +249,9 @@ class SensorStrip(QWidget):
         between = room - 6 * width - 4 * gap
         self._legs = QRect(left + (between - px(LEGS)) // 2, top, px(LEGS), height) if is_shown else QRect()
         self.update()
+
+    def _needed(self, is_tight: bool) -> int:
+        return max(widget.needed_width(is_tight) for widget in self.widgets.values())
 
     def _set_tab_stop(self, stop: "TileWidget") -> None:
         for widget in self.widgets.values():
@@ -273,7 +280,7 @@ class TileWidget(QWidget):
 
     def __init__(self, look: Look, site: Site, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._is_compact = look, False
+        self._look, self._is_compact, self._is_tight = look, False, False
         self._tile = SensorTile(site, "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
         self._name()
 
@@ -287,17 +294,26 @@ class TileWidget(QWidget):
         self._is_compact = is_compact
         self.update()
 
-    def needed_width(self) -> int:
+    def set_tight(self, is_tight: bool) -> None:
+        """Let the name have its line for itself: its marks move to the second, where no loss is not told then."""
+        if is_tight != self._is_tight:
+            self._is_tight = is_tight
+            self.update()
+
+    def needed_width(self, is_tight: bool) -> int:
         """The width below which its words are cut, whatever it may come to say."""
         px = self._look.theme.px
         name = QFontMetrics(self._name_font()).horizontalAdvance(self._segment())
+        bold = QFontMetrics(self._words_font(is_bold=True))
         if self._is_compact:
-            silent = tr("silent {seconds} s").format(seconds=88)
-            words = QFontMetrics(self._words_font(is_bold=True)).horizontalAdvance(silent)
+            words = bold.horizontalAdvance(tr("silent {seconds} s").format(seconds=88))
             return px(CHIP + 6 + 2 * 8) + max(name + px(4 + 18), words) + px(2)
         longest = max((tr("charge soon · {percent} %").format(percent=88)).split(), key=len)
-        words = QFontMetrics(self._words_font(is_bold=True)).horizontalAdvance(longest)
-        return 2 * px(PADDING) + max(px(CHIP + 6 + 8 + BATTERY_WIDTH + 4 + 18) + name, words, px(92))
+        words = 2 * px(PADDING) + bold.horizontalAdvance(longest)
+        if is_tight:
+            return max(px(8 + CHIP + 6 + 8) + name, words, px(120))
+        fine = QFontMetrics(self._words_font(is_bold=False)).horizontalAdvance(_rate_and_loss(100.0, 0.001))
+        return max(px(8 + CHIP + 6 + 4 + MARKS + 9) + name, words, 2 * px(PADDING) + fine)
 
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
@@ -320,17 +336,17 @@ class TileWidget(QWidget):
                 PaintedText(self._short_words(room), words, self._words_font(is_bold), tone),
             ]
         pad = px(PADDING)
-        name = QRectF(left, chip.top() - px(2), self._marks_left() - px(4) - left, chip.height() + px(4))
+        name_right = self.width() - px(8) if self._is_tight else self._marks_left() - px(4)
+        name = QRectF(left, chip.top() - px(2), name_right - left, chip.height() + px(4))
+        is_short = self._is_tight and state is TileState.FINE
+        said = f"{self._tile.rate_hz:.0f} Hz" if is_short else self._tile.words
         font = self._words_font(is_bold)
         room = self.width() - 2 * pad
-        height = height_for(self._tile.words, font, room)
-        bottom = self.height() - px(4)
-        top = min(px(31), bottom - height) if height > px(20) else px(31)
-        words = QRectF(pad, top, room, max(height, px(18)))
-        wraps = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop if height > px(20) else LEFT
+        height = max(height_for(said, font, room), px(18))
+        words = QRectF(pad, min(px(31), self.height() - px(4) - height), room, height)
         return [
             PaintedText(self._segment(), name, self._name_font(), name_tone),
-            PaintedText(self._tile.words, words, font, tone, wraps, wraps=True),
+            PaintedText(said, words, font, tone, wraps=True),
         ]
 
     def paintEvent(self, _event: QPaintEvent) -> None:
@@ -378,6 +394,10 @@ class TileWidget(QWidget):
         if state is TileState.NOT_WORN or (self._is_compact and state is not TileState.FINE):
             return
         middle = self.height() / 2 if self._is_compact else self._chip().center().y()
+        if self._is_tight and not self._is_compact:
+            if self._tile.is_bad:  # its words need the line
+                return
+            middle = px(40)
         side = px(18)
         paint_icon(painter, icon, QRectF(self.width() - px(9) - side, middle - side / 2, side, side), ink)
         if not self._is_compact and state is not TileState.SILENT and self._tile.battery is not None:
@@ -387,12 +407,17 @@ class TileWidget(QWidget):
     def _chip(self) -> QRectF:
         px = self._look.theme.px
         chip = px(CHIP)
-        return QRectF(px(8), (self.height() - chip) / 2 if self._is_compact else px(8), chip, chip)
+        if self._is_compact:
+            return QRectF(px(8), (self.height() - chip) / 2, chip, chip)
+        is_two_lines = self._tile.is_bad and height_for(
+            self._tile.words, self._words_font(is_bold=True), self.width() - 2 * px(PADDING)
+        ) > px(20)
+        return QRectF(px(8), px(3 if is_two_lines else 8), chip, chip)
 
     def _marks_left(self) -> float:
         """Give where the battery begins, also where there is none: the name keeps its place."""
         px = self._look.theme.px
-        return self.width() - px(9 + 18 + 4 + BATTERY_WIDTH)
+        return self.width() - px(9 + MARKS)
 
     def _segment(self) -> str:
         words = {Segment.THIGH: tr("Thigh"), Segment.SHANK: tr("Shank"), Segment.FOOT: tr("Foot")}
@@ -506,6 +531,14 @@ def _order(is_from_behind: bool) -> list[Site]:
     """Give the sites from left to right: the patient faces you, so the right leg stands at the left."""
     first, second = (Side.LEFT, Side.RIGHT) if is_from_behind else (Side.RIGHT, Side.LEFT)
     return [Site(f"{side}_{segment}") for side in (first, second) for segment in Segment]
+
+
+def _loss(share: float) -> str:
+    return tr("{percent:.1f} % lost").format(percent=share * 100)
+
+
+def _rate_and_loss(rate_hz: float, lost_share: float) -> str:
+    return f"{rate_hz:.0f} Hz · {_loss(lost_share)}"
 
 
 def _is_bad(tile: SensorTile | None) -> bool:
