@@ -95,6 +95,7 @@ class WalkingPage(QWidget):
         self._described_s = -math.inf
         self.notice = Notice(look, size=16)
         self._has_message = False
+        self._message: tuple[str, str] | None = None
         self.tabs = Segmented(look, tr("What is shown"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
         self.stopped = _StoppedCard(look)
         self.empty = _EmptyCard(look)
@@ -155,9 +156,9 @@ class WalkingPage(QWidget):
             self.charts.clear()
         if self.is_recording != was_recording:
             self.tabs.choose("curves" if self.is_recording else "walks")
-        has_focus = self.isAncestorOf(QApplication.focusWidget()) if QApplication.focusWidget() else False
+        had_focus = self._has_focus()
         self._arrange()
-        if has_focus and not self.isAncestorOf(QApplication.focusWidget() or self.window()):
+        if had_focus and not self._has_focus():
             self.focus()
 
     def show_labels(self, labels: tuple[str, ...], choice: str) -> None:
@@ -171,6 +172,9 @@ class WalkingPage(QWidget):
 
     def show_message(self, what: str, then: str = "") -> None:
         """Say what happened and what to do or what follows; nothing takes it back."""
+        if (what, then) == self._message:
+            return
+        self._message = what, then
         self._has_message = bool(what)
         if what:
             self.notice.tell(Icon.WARNING, what, then, is_caution=True)
@@ -196,6 +200,10 @@ class WalkingPage(QWidget):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._fit()
+
+    def _has_focus(self) -> bool:
+        focused = QApplication.focusWidget()
+        return focused is not None and self.isAncestorOf(focused)
 
     def _build(self) -> None:
         self.charts.setFocusPolicy(Qt.FocusPolicy.TabFocus)

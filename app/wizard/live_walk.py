@@ -1,0 +1,25 @@
+"""What the estimator's thread tells of a walk, as the page takes it."""
+
+import math
+from collections.abc import Mapping
+
+from app.acquisition.walking_work import WalkingView
+from app.pages.walking_page import LiveWalk
+from app.plots.live_lanes import LiveLane, PhaseSpan
+from app.plots.live_strip import LiveTrace
+from core.body import Side
+
+
+def live_walk(view: WalkingView, strides: Mapping[Side, int]) -> LiveWalk:
+    """Give what to draw of a view that has heard something."""
+    knees: dict[Side, LiveTrace] = {}
+    ankles: dict[Side, LiveTrace] = {}
+    for joint, curve in view.joints.items():
+        traces = knees if joint.is_knee else ankles
+        traces[joint.side] = LiveTrace(curve.time_s, curve.angle_rad, curve.is_provisional)
+    lanes = {
+        side: LiveLane(tuple(PhaseSpan(span.phase, span.start_s, span.end_s) for span in lane.spans), lane.silent_s)
+        for side, lane in view.lanes.items()
+    }
+    cadence = math.nan if view.cadence_steps_min is None else view.cadence_steps_min
+    return LiveWalk(view.now_s or 0.0, knees, ankles, lanes, strides, cadence)

@@ -1,0 +1,502 @@
+"""Walks under one condition after the other: Space starts and stops, K and D say whether a walk counts."""
+
+import math
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Slot
+
+from app import sounds
+from app.sounds import Sound
+from app.storage.journal.disk import TOLD, Trouble
+from app.storage.stored import RecordingState
+from app.theme import Look
+from app.widgets.action_bar import BarState, RecordingNote, Verb
+from app.widgets.icons import Icon
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.losses import NOTHING, Losses, Message
+from app.wizard.steps.step import Step
+from app.wizard.walk_labels import label_after, labels_for, letters_of
+from app.wording import name_of, tr
+from core.body import Joint, Side
+from core.live.walking import STRIDES_FOR_ANKLE
+from core.samples import Recording, RecordingKind
+
+if TYPE_CHECKING:
+    from app.acquisition.walking_work import WalkingView, WalkingWork
+    from app.pages.walking_page import WalkingPage
+    from app.wizard.takes import Take
+    from app.wizard.visit import Visit
+
+STAND_STILL = 2  # the step that sensors strapped anew begin with
+STRIDES_FOR_SPREAD = 10
+LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second more
+
+
+class WalkingStep(Step):
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(look, visit, parent)
+        self._page: WalkingPage | None = None
+        self._work: WalkingWork | None = None
+        self._shown: WalkingView | None = None
+        self._at_stop: WalkingView | None = None
+        self._counted_before: dict[Side, int] = {}
+        self._label = ""
+        self._is_in_sight = self._is_ankle_asked = False
+        self._losses = Losses()
+        self._trouble: Message = NOTHING
+        self._judged: set[UUID] = set()  # recovered walks that somebody has kept or discarded
+        self._discarded: UUID | None = None
+        visit.takes.begun.connect(self._on_begun)
+        visit.takes.ended.connect(self._on_ended)
+        visit.takes.changed.connect(self._show)
+        visit.takes.troubled.connect(self._on_troubled)
+        visit.evaluation.done.connect(self._on_evaluated)
+
+    # the frame of the wizard
+
+    @property
+    def page(self) -> "WalkingPage":
+        if self._page is None:
+            from app.pages.walking_page import WalkingPage
+
+            page = self._page = WalkingPage(self._look)
+            page.label_chosen.connect(self._on_label_chosen)
+            page.keep_pressed.connect(self._on_keep_pressed)
+            page.discard_pressed.connect(self._on_discard_pressed)
+            page.undo_pressed.connect(self._on_undo_pressed)
+            page.restrapped_pressed.connect(self._on_restrapped_pressed)
+        return self._page
+
+    @property
+    def title(self) -> str:
+        return tr("Walking")
+
+    @property
+    def note(self) -> str:
+        if self._visit.takes.is_recording and self._visit.takes.ongoing is not None:
+            if self._visit.takes.ongoing.told.kind is RecordingKind.WALKING:
+                return tr("Recording walk {number}").format(number=len(self._visit.takes.walks) + 1)
+            return ""
+        kept = sum(take.told.is_kept for take in self._visit.takes.walks)
+        return tr("{count} kept").format(count=kept) if kept else ""
+
+    @property
+    def state(self) -> StepState:
+        if self._asked is not None:
+            return StepState.ATTENTION
+        return StepState.DONE if any(take.told.is_kept for take in self._visit.takes.walks) else StepState.TODO
+
+    @property
+    def cannot_enter(self) -> str:
+        sensors = self._visit.sensors
+        if self._visit.session is None:
+            return tr("Type the patient's code first.")
+        if sensors.acquisition is None:
+            return tr("Choose the source of the sensors first.")
+        if not sensors.site_of:
+            return tr("Say first which sensor is worn where.")
+        if self._visit.takes.is_restrapped:
+            return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
+        return ""
+
+    @property
+    def cannot_leave(self) -> str:
+        takes = self._visit.takes
+        if takes.is_recording or takes.is_stopping:
+            return tr("A walk is being recorded. Stop it first.")
+        return ""
+
+    @property
+    def topic(self) -> str:
+        return "walking"
+
+    def enter(self) -> None:
+        self._is_in_sight = True
+        self._begin_work()
+        self.page.set_simulated(self._visit.is_simulated)
+        if not self._label:
+            self._label = label_after(self._visit.patient.told, self._used)
+        self._show()
+        self.page.focus()
+
+    def leave(self) -> None:
+        self._is_in_sight = False
+        if (acquisition := self._visit.sensors.acquisition) is not None:
+            acquisition.set_work(None)
+        self._work = None
+
+    def tick(self) -> None:
+        self._watch_sensors()
+        if self._work is None or not self._visit.takes.is_recording:
+            return
+        view = self._work.state
+        if view is self._shown or view.now_s is None:
+            return
+        from app.wizard.live_walk import live_walk
+
+        self._shown = view
+        strides = self._strides(view)
+        self.page.show_view(live_walk(view, strides))
+        self._ask_for_ankles(strides)
+
+    def bar(self) -> BarState:
+        takes = self._visit.takes
+        if takes.ongoing is not None and not takes.is_stopping:
+            acquisition = self._visit.sensors.acquisition
+            elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - takes.ongoing.began_s)
+            return BarState(
+                primary=Verb(tr("Stop walk"), tr("Space"), Icon.STOP),
+                recording=RecordingNote(
+                    tr("Recording {label}").format(label=takes.ongoing.told.condition),
+                    tr("Saved as it comes in. The space bar stops it, with a sound."),
+                    elapsed_s,
+                    sounds.is_on(),
+                ),
+                has_back=False,
+            )
+        start = Verb(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
+        if takes.is_stopping:
+            return BarState(primary=start, note=tr("The walk is being read back."))
+        if self._asked is not None:
+            both = Verb(tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start)
+            return BarState(primary=both, note=tr("Next: {label}").format(label=self._label))
+        if any(take.told.is_kept for take in takes.walks):
+            again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
+            return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,))
+        return BarState(primary=start, note=tr("As {label}").format(label=self._label))
+
+    def on_primary(self) -> None:
+        takes = self._visit.takes
+        is_settled = not takes.is_recording and not takes.is_stopping and self._asked is None
+        if is_settled and any(take.told.is_kept for take in takes.walks):
+            self.done.emit()
+        else:
+            self._run()
+
+    def on_other(self, number: int) -> None:
+        if number == 0:
+            self._run()
+
+    def on_intent(self, intent: Intent) -> bool:
+        match intent.action:
+            case Action.RUN:
+                self._run()
+            case Action.KEEP if self._asked is not None:
+                self._keep(self._asked, is_kept=True)
+            case Action.DISCARD if self._asked is not None:
+                self._keep(self._asked, is_kept=False)
+            case Action.LABEL:
+                self.page.choose_digit(intent.number)
+            case _:
+                return False
+        return True
+
+    def undo(self) -> None:
+        if (take := self._take(self._discarded)) is not None:
+            self._keep(take, is_kept=True)
+        self._discarded = None
+
+    # recording
+
+    @property
+    def _can_start(self) -> bool:
+        takes = self._visit.takes
+        return (
+            self._visit.sensors.acquisition is not None
+            and self._visit.session is not None
+            and not takes.is_recording
+            and not takes.is_stopping
+            and not takes.is_restrapped
+        )
+
+    def _run(self) -> None:
+        """Start, or stop; between walks, keep the last one and start the next."""
+        if self._visit.takes.is_recording:
+            self._stop()
+        elif self._can_start:
+            if self._asked is not None:
+                self._keep(self._asked, is_kept=True)
+            self._start()
+
+    def _start(self) -> None:
+        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
+        assert acquisition is not None
+        self._is_ankle_asked = False
+        self._trouble = NOTHING
+        self._shown = self._at_stop = None
+        self._counted_before = {}
+        acquisition.ask(RecordingKind.WALKING)
+        takes.begin(acquisition, RecordingKind.WALKING, self._label)
+        if self._work is not None and takes.ongoing is not None:
+            self._work.count_from(takes.ongoing.began_s)
+        self.page.focus()
+
+    def _stop(self) -> None:
+        acquisition, view = self._visit.sensors.acquisition, self._shown
+        self._at_stop = view
+        self._visit.takes.stop(None if view is None else self._strides(view))
+        if acquisition is not None:
+            acquisition.ask(None)
+        sounds.play(Sound.STOP)
+
+    def _keep(self, take: "Take", is_kept: bool) -> None:
+        self._judged.add(take.id)
+        self._visit.takes.keep(take, is_kept)
+        if not is_kept:
+            self._discarded = take.id
+            self.offered.emit(tr("{label} discarded.").format(label=take.told.condition))
+        self._show()
+
+    # what is live
+
+    def _begin_work(self) -> None:
+        """Let the estimator work on this step, with the calibration as it is now."""
+        from app.acquisition.walking_work import WalkingWork
+
+        acquisition = self._visit.sensors.acquisition
+        if acquisition is None:
+            return
+        calibration = self._visit.evaluation.calibration
+        self._work = WalkingWork(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
+        if self._visit.takes.ongoing is not None:
+            self._work.count_from(self._visit.takes.ongoing.began_s)
+        acquisition.set_work(self._work)
+
+    def _strides(self, view: "WalkingView") -> dict[Side, int]:
+        """Those of this walk, also where another work began amid it."""
+        return {side: count + self._counted_before.get(side, 0) for side, count in view.strides.items()}
+
+    def _ask_for_ankles(self, strides: dict[Side, int]) -> None:
+        """Find the ankles' axes anew, once, from free motion and this walk together."""
+        takes, acquisition = self._visit.takes, self._visit.sensors.acquisition
+        if self._is_ankle_asked or takes.ongoing is None or acquisition is None or not strides:
+            return
+        if min(strides.values()) < STRIDES_FOR_ANKLE or self._visit.evaluation.is_busy:
+            return
+        self._is_ankle_asked = True
+        seconds = min(acquisition.now_s - takes.ongoing.began_s, LOOKED_BACK_S)
+        worn = self._visit.sensors.site_of
+        imu = {site: acquisition.latest(sensor, seconds) for sensor, site in worn.items()}
+        told = takes.ongoing.told
+        self._visit.evaluate(
+            Recording(told.name, told.kind, told.folder, {site: block for site, block in imu.items() if len(block)})
+        )
+
+    @Slot()
+    def _on_evaluated(self) -> None:
+        if not self._is_in_sight:
+            return
+        calibration = self._visit.evaluation.calibration
+        known = set(self._shown.joints) if self._shown is not None else set()
+        worn = set(self._visit.sensors.joints)
+        if self._work is None or (set(calibration) & worn) - known:
+            if self._shown is not None:
+                self._counted_before = self._strides(self._shown)
+            self._begin_work()
+            if self._work is not None and self._counted_before and self._visit.sensors.acquisition is not None:
+                self._work.count_from(self._visit.sensors.acquisition.now_s)
+        else:
+            for joint in Joint:
+                if not joint.is_knee and joint in calibration:
+                    self._work.recalibrate(joint, calibration[joint])
+        self._show()
+
+    # what is to be said
+
+    def _watch_sensors(self) -> None:
+        sensors = self._visit.sensors
+        acquisition = sensors.acquisition
+        if acquisition is None:
+            return
+        status = sensors.status
+        silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}
+        news = self._losses.update(silent_s, acquisition.now_s)
+        if news and self._visit.takes.is_recording:
+            sounds.play(Sound.LOSS)
+            for site in news:
+                self._visit.takes.mark(f"{site} silent")
+        self.page.show_message(*self._message(acquisition.now_s))
+
+    def _message(self, now_s: float) -> Message:
+        """Give the gravest of what is to be said."""
+        takes = self._visit.takes
+        is_recording = takes.is_recording
+        lost = self._losses.message(is_recording, self._visit.sensors.joints, now_s)
+        for message in (self._trouble, lost):
+            if message != NOTHING:
+                return message
+        if is_recording:
+            return self._slip_message()
+        return self._recovered_message() or self._few_strides_message()
+
+    def _slip_message(self) -> Message:
+        ongoing, view = self._visit.takes.ongoing, self._shown
+        if ongoing is None or view is None:
+            return NOTHING
+        slips = [slip for slip in view.slips if slip.from_s > ongoing.began_s]
+        if not slips:
+            if not view.joints and self._visit.sensors.joints:
+                return tr("Angles are not shown yet."), tr("They come after five strides of each leg.")
+            return NOTHING
+        slip = slips[-1]
+        what = tr("The {site} strap slipped at {time}.").format(
+            site=name_of(slip.site), time=_clock(slip.from_s - ongoing.began_s)
+        )
+        left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
+        right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
+        return what, left if slip.site.side is Side.LEFT else right
+
+    def _recovered_message(self) -> Message | None:
+        asked = self._asked
+        if asked is None or asked.stored.state is not RecordingState.RECOVERED or asked.id in self._judged:
+            return None
+        recovered = tr("{time} of {walk} was recovered up to the last 0.1 s. Look at it, then keep or discard.")
+        return (
+            tr("The program was closed while recording."),
+            recovered.format(time=_clock(_length_s(asked)), walk=asked.told.name),
+        )
+
+    def _few_strides_message(self) -> Message:
+        """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
+        walks = [take for take in self._visit.takes.walks if take.told.is_kept]
+        if not walks:
+            return NOTHING
+        condition = walks[-1].told.condition
+        counts: dict[Side, int] = {}
+        for take in walks:
+            if take.told.condition == condition:
+                for side, count in self._strides_of(take).items():
+                    counts[side] = counts.get(side, 0) + count
+        few = {side: count for side, count in counts.items() if count < STRIDES_FOR_SPREAD}
+        if not few:
+            return NOTHING
+        words = {Side.LEFT: tr("{count} left strides"), Side.RIGHT: tr("{count} right strides")}
+        said = ", ".join(words[side].format(count=few[side]) for side in Side if side in few)
+        return (
+            tr("Only {strides}, {wanted} make a spread.").format(strides=said, wanted=STRIDES_FOR_SPREAD),
+            tr("Walk once more, or go on without a spread."),
+        )
+
+    # what is shown
+
+    @property
+    def _used(self) -> list[str]:
+        return [take.told.condition for take in self._visit.takes.walks]
+
+    @property
+    def _asked(self) -> "Take | None":
+        """The walk that waits for somebody to say whether it is kept: the newest, or one that was recovered."""
+        walks = self._visit.takes.walks
+        undecided = [take for take in walks if not take.is_decided]
+        recovered = [
+            take
+            for take in walks
+            if take.stored.state is RecordingState.RECOVERED and take.told.is_kept and take.id not in self._judged
+        ]
+        return undecided[-1] if undecided else recovered[0] if recovered else None
+
+    def _take(self, identity: UUID | None) -> "Take | None":
+        return next((take for take in self._visit.takes.walks if take.id == identity), None)
+
+    def _strides_of(self, take: "Take") -> dict[Side, int]:
+        """As the analysis has counted them, or else as they were counted live."""
+        return self._visit.evaluation.strides(take.told.name) or dict(take.strides or {})
+
+    @Slot()
+    def _show(self) -> None:
+        if self._page is None or not self._is_in_sight:
+            self.changed.emit()
+            return
+        from app.pages.walk_list import WalkRow, WalkState
+
+        takes, asked = self._visit.takes, self._asked
+        ongoing = takes.ongoing if takes.ongoing and takes.ongoing.told.kind is RecordingKind.WALKING else None
+        conditions = [*self._used, *([ongoing.told.condition] if ongoing is not None else [])]
+        letters = letters_of(conditions)
+        rows = []
+        for take in takes.walks:
+            state = WalkState.KEPT if take.told.is_kept else WalkState.DISCARDED
+            if not take.is_decided:
+                state = WalkState.ASKING
+            elif take.stored.state is RecordingState.RECOVERED and take.told.is_kept and take.id not in self._judged:
+                state = WalkState.RECOVERED
+            strides = max(self._strides_of(take).values(), default=None)
+            letter = letters.get(take.told.condition, "")
+            rows.append(WalkRow(str(take.id), letter, take.told.condition or take.told.name, state, strides))
+        if ongoing is not None:
+            label = ongoing.told.condition
+            rows.append(WalkRow("", letters.get(label, ""), label or ongoing.told.name, WalkState.RECORDING))
+        self._page.show_walks(tuple(rows), self._facts(asked) if asked is not None else "")
+        self._page.show_labels(labels_for(self._visit.patient.told, conditions), self._label)
+        self.changed.emit()
+
+    def _facts(self, take: "Take") -> str:
+        strides = self._strides_of(take)
+        said = []
+        if strides:
+            counts = ", ".join(f"{letter} {strides[side]}" for side, letter in _LETTERS.items() if side in strides)
+            said.append(tr("Strides: {counts}").format(counts=counts))
+        cadence = self._at_stop.cadence_steps_min if self._at_stop is not None and not take.is_decided else None
+        if cadence is not None and math.isfinite(cadence):
+            said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
+        said.append(_clock(_length_s(take)))
+        return " · ".join(said)
+
+    # what the page and the visit tell
+
+    @Slot()
+    def _on_begun(self) -> None:
+        if self._is_in_sight:
+            sounds.play(Sound.START)
+
+    @Slot(object)
+    def _on_ended(self, take: "Take") -> None:
+        if take.told.kind is RecordingKind.WALKING:
+            self._label = label_after(self._visit.patient.told, self._used)
+            self._show()
+
+    @Slot(str)
+    def _on_troubled(self, trouble: str) -> None:
+        what, then = TOLD[Trouble(trouble)]
+        self._trouble = tr(what), tr(then)
+
+    @Slot(str)
+    def _on_label_chosen(self, label: str) -> None:
+        self._label = label
+        self.changed.emit()
+
+    @Slot(str)
+    def _on_keep_pressed(self, identity: str) -> None:
+        if (take := self._take(UUID(identity))) is not None:
+            self._keep(take, is_kept=True)
+
+    @Slot(str)
+    def _on_discard_pressed(self, identity: str) -> None:
+        if (take := self._take(UUID(identity))) is not None:
+            self._keep(take, is_kept=False)
+
+    @Slot(str)
+    def _on_undo_pressed(self, identity: str) -> None:
+        self._on_keep_pressed(identity)
+
+    @Slot()
+    def _on_restrapped_pressed(self) -> None:
+        self._visit.takes.say_restrapped()
+        self.jumped.emit(STAND_STILL)
+
+
+_LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
+
+
+def _length_s(take: "Take") -> float:
+    """How long a recording lasts, as its sensors have it."""
+    if take.recording is None:
+        return 0.0
+    blocks = [block.time_s for block in take.recording.imu.values() if len(block)]
+    return max((float(time_s[-1] - time_s[0]) for time_s in blocks), default=0.0)

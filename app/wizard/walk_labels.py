@@ -1,0 +1,48 @@
+"""What may the next walk be called, and which letter stands for which condition on every chart?"""
+
+from collections.abc import Sequence
+
+from app.wording import tr
+from core.samples import Patient
+
+MOST = 9  # as many as there are digits on caps
+ALIGNMENTS = 3
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
+
+
+def labels_for(patient: Patient, used: Sequence[str]) -> tuple[str, ...]:
+    """Give the labels to choose from: the usual ones first, then those of this session's walks that are others.
+
+    Parameters
+    ----------
+    used
+        The labels of the walks so far, in order.
+    """
+    count = max(ALIGNMENTS, sum(label in _alignments(len(LETTERS)) for label in set(used)) + 1)
+    usual = [tr("Barefoot"), tr("Shoes"), tr("AFO")]
+    if patient.prosthetic_side in ("left", "right", "both"):
+        usual = [*_alignments(count), tr("Barefoot"), tr("Shoes")]
+    else:
+        usual += _alignments(1)
+    others = [label for label in dict.fromkeys(used) if label and label not in usual]
+    kept = others[-MOST:]
+    return (*usual[: MOST - len(kept)], *kept)
+
+
+def label_after(patient: Patient, used: Sequence[str]) -> str:
+    """Give what the next walk is most likely called: the first alignment not walked with, or the label as before."""
+    alignments = _alignments(len(LETTERS))
+    if used and used[-1] not in alignments:
+        return used[-1]
+    if used or patient.prosthetic_side in ("left", "right", "both"):
+        return next((label for label in alignments if label not in used), alignments[-1])
+    return tr("Barefoot") if "barefoot" in patient.aids else tr("Shoes")
+
+
+def letters_of(labels: Sequence[str]) -> dict[str, str]:
+    """Give each condition its letter, in the order in which they were first walked."""
+    return dict(zip(dict.fromkeys(labels), LETTERS, strict=False))
+
+
+def _alignments(count: int) -> list[str]:
+    return [tr("Alignment {letter}").format(letter=letter) for letter in LETTERS[:count]]

@@ -1,0 +1,173 @@
+"""The Walking step on the demonstration patient: Space starts and stops, walks are kept or not, losses are said."""
+
+from collections.abc import Iterator
+
+import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.walk_list import WalkState
+from app.theme import Look, load_fonts
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.visit import Visit
+from core.body import Joint, Site
+from core.samples import Patient, RecordingKind
+from devices.replay import ReplaySource
+from tests.app.wizard.conftest import SPEED
+
+TICK_MS = 10
+RUN = Intent(Action.RUN)
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def step(qtbot: QtBot, look: Look, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
+    """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
+    visit.patient.edit(Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    with qtbot.waitSignal(visit.changed):
+        visit.begin_session()
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        visit.sensors.search(visit.choices[0])
+    qtbot.waitUntil(lambda: set(visit.sensors.status) == set(worn))
+    visit.sensors.assign_all(worn)
+    with qtbot.waitSignal(visit.changed):
+        visit.place_sensors()
+    step = WalkingStep(look, visit)
+    qtbot.addWidget(step.page)
+    step.page.resize(1064, 600)
+    step.page.show()
+    step.enter()
+    timer = QTimer()
+    timer.setInterval(TICK_MS)
+    timer.timeout.connect(step.tick)
+    timer.start()
+    yield step
+    timer.stop()
+    step.leave()
+
+
+def calibrate(qtbot: QtBot, visit: Visit) -> None:
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+        for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
+            acquisition.ask(kind)
+            with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+                visit.takes.begin(acquisition, kind)
+            qtbot.wait(round(seconds / SPEED * 1000))
+            with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+                visit.takes.stop()
+
+
+def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, seconds: float) -> None:
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        assert step.on_intent(RUN)
+    qtbot.wait(round(seconds / SPEED * 1000))
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_intent(RUN)
+
+
+def states(step: WalkingStep) -> list[tuple[str, str, WalkState]]:
+    return [(row.letter, row.label, row.state) for row in step.page._rows]
+
+
+def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    calibrate(qtbot, visit)
+    primary = step.bar().primary
+    assert primary is not None
+    assert (primary.text, primary.is_wished) == ("Start walk", True)
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        step.on_intent(RUN)
+    recording = step.bar().recording
+    assert recording is not None
+    assert recording.title == "Recording Alignment A"
+    assert step.cannot_leave
+    qtbot.waitUntil(lambda: max(step.page._live.strides.values(), default=0) >= 5, timeout=10_000)
+    assert set(step.page._live.knees) == set(step.page._live.ankles)
+    assert step.page._live.cadence_steps_min > 60
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_intent(RUN)
+    assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
+    assert step.page.stopped.isVisible()
+    assert not step.cannot_leave
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        step.on_intent(RUN)  # keeps it, and starts the next
+    assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    calibrate(qtbot, visit)
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: bool(step.page._live.ankles), timeout=10_000)
+    assert any(ankle.is_provisional for ankle in step.page._live.ankles.values())
+    qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page._live.ankles.values()), timeout=20_000)
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    walk(qtbot, step, visit, 4.0)
+    with qtbot.waitSignal(step.offered) as offered:
+        step.on_intent(Intent(Action.DISCARD))
+    assert offered.args == ["Alignment A discarded."]
+    qtbot.waitUntil(lambda: not visit.takes.walks[0].told.is_kept)
+    assert [state for _, _, state in states(step)] == [WalkState.DISCARDED]
+    step.undo()
+    qtbot.waitUntil(lambda: visit.takes.walks[0].told.is_kept)
+    assert [state for _, _, state in states(step)] == [WalkState.KEPT]
+    assert step.bar().primary is not None
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_digits_choose_what_the_next_walk_is_called(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    assert step.on_intent(Intent(Action.LABEL, 4))
+    walk(qtbot, step, visit, 2.0)
+    assert visit.takes.walks[0].told.condition == "Barefoot"
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_a_silent_sensor_is_said_and_so_is_its_return(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
+) -> None:
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        step.on_intent(RUN)
+    source.silence("DEMO-right_foot")
+    qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=10_000)
+    assert "right ankle, right phases" in step.page.notice.text
+    source.wake("DEMO-right_foot")
+    qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=10_000)
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_intent(RUN)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
+
+
+def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+    with qtbot.waitSignal(step.jumped) as jumped:
+        step.page.walks.restrapped.click()
+    assert jumped.args == [2]
+    assert visit.takes.is_restrapped
+    assert step.cannot_enter
+    assert not step.on_intent(Intent(Action.KEEP))
+
+
+def test_without_sensors_it_cannot_be_entered(look: Look, visit: Visit) -> None:
+    step = WalkingStep(look, visit)
+    assert step.cannot_enter == "Type the patient's code first."
+    assert Joint.LEFT_KNEE not in visit.sensors.joints
