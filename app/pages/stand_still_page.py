@@ -47,7 +47,7 @@ class StandStillView:
     Attributes
     ----------
     movement_deg_s
-        Of the worn sensors: how far their angular rate spreads.
+        Of the worn sensors, by site, or by name where nobody knows the site yet: from the limit on they move.
     moved
         Who made the count begin anew last.
     silent
@@ -59,10 +59,10 @@ class StandStillView:
     phase: StandPhase = StandPhase.READY
     still_s: float = 0.0
     wanted_s: float = WANTED_S
-    movement_deg_s: Mapping[Site, float] = field(default_factory=dict)
+    movement_deg_s: Mapping[str, float] = field(default_factory=dict)
     limit_deg_s: float = math.degrees(MAX_SPREAD_RAD_S)
-    moved: tuple[Site, ...] = ()
-    silent: tuple[Site, ...] = ()
+    moved: tuple[str, ...] = ()
+    silent: tuple[str, ...] = ()
     restarts: int = 0
 
     @property
@@ -109,6 +109,11 @@ class StandStillPage(QWidget):
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self._show()
+
+    @property
+    def view(self) -> StandStillView:
+        """What is shown."""
+        return self._view
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -386,9 +391,11 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
 
 
 def _moved(view: StandStillView) -> str:
-    sides = {site.side for site in view.moved}
-    what = tr("Both legs moved.") if len(sides) > 1 else _leg_moved(next(iter(sides)))
-    return f"{what} {tr('The count starts again by itself.')}" if view.phase is StandPhase.COUNTING else what
+    sides = {Site(sensor).side for sensor in view.moved if sensor in set(Site)}
+    legs = [_leg_moved(side) for side in sides]
+    what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
+    again = tr("The count starts again by itself.") if view.phase is StandPhase.COUNTING else ""
+    return " ".join(filter(None, [what, again]))
 
 
 def _leg_moved(side: Side) -> str:
@@ -400,8 +407,8 @@ def _all_still(count: int) -> str:
     return (*words, tr("All five are still"), tr("All six are still"))[count - 1]
 
 
-def _names(sites: Sequence[Site]) -> str:
-    names = [name_of(site) for site in sites]
+def _names(sensors: Sequence[str]) -> str:
+    names = [name_of(Site(sensor)) if sensor in set(Site) else sensor for sensor in sensors]
     if len(names) > 2:  # more cannot be read in the time
         return tr("{count} sensors").format(count=len(names))
     return tr("{first} and {last}").format(first=names[0], last=names[1]) if len(names) == 2 else names[0]

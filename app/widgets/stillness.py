@@ -141,14 +141,17 @@ class _Row:
 
 
 class MovementBars(QWidget):
-    """A row per worn sensor: words go L then R. A row is painted anew only when its figure or its mark changes."""
+    """A row per worn sensor: L, then R, then by name those whose site nobody knows.
+
+    A row is painted anew only when its figure or its mark changes.
+    """
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
         self._is_compact = False
         self._limit = 1.0
-        self._rows: dict[Site, _Row] = {}
+        self._rows: dict[str, _Row] = {}
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         look.changed.connect(self._on_look_changed)
 
@@ -158,12 +161,14 @@ class MovementBars(QWidget):
 
     def show_movement(
         self,
-        movement_deg_s: Mapping[Site, float],
+        movement_deg_s: Mapping[str, float],
         limit_deg_s: float,
-        moved: Sequence[Site],
-        silent: Sequence[Site],
+        moved: Sequence[str],
+        silent: Sequence[str],
     ) -> None:
         """Show each worn sensor's movement; infinite where too little was heard to tell."""
+        sites = [site for site in Site if site in movement_deg_s]
+        unplaced = sorted(set(movement_deg_s) - set(sites))
         rows = {
             site: _Row(
                 f"{movement_deg_s[site]:.1f}" if math.isfinite(movement_deg_s[site]) else "\N{EN DASH}",
@@ -171,8 +176,7 @@ class MovementBars(QWidget):
                 site in moved,
                 site in silent,
             )
-            for site in Site
-            if site in movement_deg_s
+            for site in (*sites, *unplaced)
         }
         if list(rows) != list(self._rows) or limit_deg_s != self._limit:
             self._rows, self._limit = rows, limit_deg_s
@@ -195,12 +199,12 @@ class MovementBars(QWidget):
     def paintEvent(self, event: QPaintEvent) -> None:
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        for number, (site, row) in enumerate(self._rows.items()):
+        for number, (sensor, row) in enumerate(self._rows.items()):
             place = QRect(0, number * self._row_height, self.width(), self._row_height)
             if event.rect().intersects(place):
-                self._paint_row(painter, place, site, row)
+                self._paint_row(painter, place, sensor, row)
 
-    def _paint_row(self, painter: QPainter, place: QRect, site: Site, row: "_Row") -> None:
+    def _paint_row(self, painter: QPainter, place: QRect, sensor: str, row: "_Row") -> None:
         theme = self._look.theme
         c, px = theme.colours, theme.px
         ink = c.ink
@@ -210,13 +214,15 @@ class MovementBars(QWidget):
             painter.drawRoundedRect(QRectF(place).adjusted(0, 1, 0, -1), CHIP_RADIUS, CHIP_RADIUS)
             ink = c.caution_ink
         chip, left = px(CHIP), px(INSET)
-        paint_chip(painter, QRectF(left, place.center().y() - chip / 2 + 0.5, chip, chip), site.side, theme)
+        if sensor in set(Site):
+            box = QRectF(left, place.center().y() - chip / 2 + 0.5, chip, chip)
+            paint_chip(painter, box, Site(sensor).side, theme)
         painter.setPen(QColor(ink))
         painter.setFont(theme.font(14, MEDIUM))
-        name = place.adjusted(left + chip + px(8), 0, 0, 0)
+        name = place.adjusted(left + (chip + px(8) if sensor in set(Site) else 0), 0, 0, 0)
         upright = Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(name, upright, segment_name(site.segment))
-        bar_left = name.left() + self._name_width + px(8)
+        painter.drawText(name, upright, _name(sensor))
+        bar_left = left + chip + px(8) + self._name_width + px(8)
         if row.is_silent:
             painter.setFont(theme.font(14, SEMIBOLD))
             painter.drawText(place.adjusted(0, 0, -left, 0), upright | Qt.AlignmentFlag.AlignRight, tr("silent"))
@@ -244,7 +250,9 @@ class MovementBars(QWidget):
     @property
     def _name_width(self) -> int:
         metrics = QFontMetrics(self._look.theme.font(14, MEDIUM))
-        return max(metrics.horizontalAdvance(segment_name(site.segment)) for site in Site)
+        chip = self._look.theme.px(CHIP + 8)  # a sensor that nobody has placed has none, but a longer name
+        widths = [metrics.horizontalAdvance(_name(one)) - (0 if one in set(Site) else chip) for one in self._rows]
+        return max(widths, default=0)
 
     @property
     def _figure_width(self) -> int:
@@ -253,3 +261,7 @@ class MovementBars(QWidget):
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.update()
+
+
+def _name(sensor: str) -> str:
+    return segment_name(Site(sensor).segment) if sensor in set(Site) else sensor

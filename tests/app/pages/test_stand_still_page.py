@@ -23,7 +23,7 @@ from app.widgets.icons import Icon
 from app.widgets.stillness import MovementBars
 from core.body import Joint, Site
 
-STILL = dict.fromkeys(Site, 0.4)
+STILL: dict[str, float] = dict.fromkeys(Site, 0.4)
 
 
 def counting(still_s: float = 1.2, **more: object) -> StandStillView:
@@ -94,8 +94,13 @@ def test_a_silent_sensor_comes_before_one_that_moves() -> None:
 
 
 def test_fewer_sensors_are_counted_as_they_are() -> None:
-    four = {site: 0.2 for site in Site if site.segment != "foot"}
+    four: dict[str, float] = {site: 0.2 for site in Site if site.segment != "foot"}
     assert verdict(StandStillView(movement_deg_s=four))[1] == "All four are still"
+
+
+def test_sensors_that_nobody_has_placed_go_by_their_names() -> None:
+    unplaced = StandStillView(StandPhase.COUNTING, 0.1, movement_deg_s={"0A2C": 9.0, "0A22": 0.4}, moved=("0A2C",))
+    assert verdict(unplaced)[1:3] == ("0A2C moves", "The count starts again by itself.")
 
 
 def test_going_on_without_is_offered_after_three_restarts() -> None:

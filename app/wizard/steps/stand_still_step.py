@@ -1,0 +1,254 @@
+"""Three seconds of standing: each sensor's bias, and the angles at which the patient stands."""
+
+import math
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
+from app.theme import Look
+from app.widgets.action_bar import BarState, Verb
+from app.widgets.icons import Icon
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.step import Step
+from app.wizard.takes import Take
+from app.wording import tr
+from core.body import Joint
+from core.samples import RecordingKind
+
+if TYPE_CHECKING:
+    from app.acquisition.standing_work import StandingWork
+    from app.wizard.visit import Visit
+
+SHOWN_MS = 600  # the check mark, before the next step comes by itself
+TICKS = 3  # of 30 Hz: ten looks a second
+
+
+class StandStillStep(Step):
+    """The movement is shown from the first moment; the count and its recording begin at a word."""
+
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(look, visit, parent)
+        self._page: StandStillPage | None = None
+        self._work: StandingWork | None = None
+        self._phase = StandPhase.READY
+        self._is_for_nothing = False  # the recording that goes on is not to be kept
+        self._moved: tuple[str, ...] = ()
+        self._ticks = 0
+        self._shown = QTimer(self)
+        self._shown.setSingleShot(True)
+        self._shown.setInterval(SHOWN_MS)
+        self._shown.timeout.connect(self._go_on)
+        visit.takes.begun.connect(self._on_begun)
+        visit.takes.ended.connect(self._on_ended)
+        visit.takes.refused.connect(self._on_refused)
+
+    @property
+    def page(self) -> StandStillPage:
+        if self._page is None:
+            self._page = StandStillPage(self._look)
+            self._page.zero_edited.connect(self._on_zero_edited)
+            self._page.cannot_stand_pressed.connect(self._on_cannot_stand)
+            self._page.can_stand_pressed.connect(self._on_can_stand)
+        return self._page
+
+    @property
+    def title(self) -> str:
+        return tr("Stand still")
+
+    @property
+    def note(self) -> str:
+        if self._visit.has_skipped_standing:
+            return tr("skipped, printed")
+        return tr("{seconds:.1f} s, zero set").format(seconds=self._stood_s) if self._visit.rests else ""
+
+    @property
+    def state(self) -> StepState:
+        if self._visit.has_skipped_standing:
+            return StepState.SKIPPED
+        return StepState.DONE if self._visit.rests else StepState.TODO
+
+    @property
+    def cannot_enter(self) -> str:
+        return "" if self._visit.sensors.acquisition is not None else tr("No sensor is heard yet. Connect them first.")
+
+    @property
+    def topic(self) -> str:
+        return "stand-still"
+
+    def enter(self) -> None:
+        self._phase = self._settled_phase()
+        self._watch()
+        zero = self._visit.told.zero_rad
+        joints = list(Joint) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
+        self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
+        self._show()
+
+    def leave(self) -> None:
+        self._shown.stop()
+        if self._is_recording:  # not to its end
+            self._abandon()
+        if (acquisition := self._visit.sensors.acquisition) is not None:
+            acquisition.set_work(None)
+        self._work = None
+
+    def tick(self) -> None:
+        self._ticks += 1
+        if self._ticks % TICKS == 0 and self._work is not None:
+            standing = self._work.state.standing
+            self._moved = standing.moved or self._moved
+            if self._phase is StandPhase.COUNTING and standing.is_done and self._is_recording:
+                self._finish()
+            self._show()
+
+    def bar(self) -> BarState:
+        space, enter = tr("Space"), tr("Enter")
+        again = Verb(tr("Start count again"), space, Icon.REPEAT, is_wished=False)
+        go_on = Verb(tr("Go on to free motion"), enter, Icon.NEXT)
+        if self._phase is StandPhase.COUNTING:
+            return BarState(primary=again, note=tr("Goes on by itself when it is done."))
+        if self._phase is StandPhase.DONE:
+            return BarState(primary=go_on, others=(again,))
+        if self._phase is StandPhase.SKIPPED:
+            return BarState(primary=go_on)
+        return BarState(primary=Verb(tr("Start the count"), space, Icon.PLAY))
+
+    def on_primary(self) -> None:
+        if self._phase in (StandPhase.DONE, StandPhase.SKIPPED):
+            self._go_on()
+        else:
+            self._start()
+
+    def on_other(self, number: int) -> None:
+        self._start()
+
+    def on_intent(self, intent: Intent) -> bool:
+        if intent.action is not Action.RUN or self._phase is StandPhase.SKIPPED:
+            return False
+        self._start()
+        return True
+
+    # what happens
+
+    @property
+    def _is_recording(self) -> bool:
+        ongoing = self._visit.takes.ongoing
+        return ongoing is not None and ongoing.told.kind is RecordingKind.STANDING
+
+    @property
+    def _stood_s(self) -> float:
+        return min((rest.duration_s for rest in self._visit.rests.values()), default=0.0)
+
+    def _settled_phase(self) -> StandPhase:
+        if self._visit.has_skipped_standing:
+            return StandPhase.SKIPPED
+        return StandPhase.DONE if self._visit.rests else StandPhase.READY
+
+    def _start(self) -> None:
+        """Begin to count, anew if need be; what is being recorded goes on."""
+        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
+        if acquisition is None or self._visit.session is None or takes.is_stopping:
+            return
+        self._shown.stop()
+        self._phase = StandPhase.COUNTING
+        self._watch()
+        if not takes.is_recording:
+            self._is_for_nothing = False
+            acquisition.ask(RecordingKind.STANDING)
+            takes.begin(acquisition, RecordingKind.STANDING)
+        self._show()
+        self.changed.emit()
+
+    def _watch(self) -> None:
+        """Look at the movement from now on."""
+        from app.acquisition.standing_work import StandingWork
+
+        self._moved = ()
+        acquisition = self._visit.sensors.acquisition
+        if acquisition is not None:
+            self._work = StandingWork(self._visit.sensors.site_of or acquisition.sensors)
+            acquisition.set_work(self._work)
+
+    def _finish(self) -> None:
+        """Three seconds are in the journal."""
+        assert self._work is not None
+        self._visit.rests = dict(self._work.state.standing.rest)
+        self._phase = StandPhase.DONE
+        self._visit.takes.stop()
+        self._shown.start()
+        self.changed.emit()
+
+    def _abandon(self) -> None:
+        self._is_for_nothing = True
+        self._visit.takes.stop()
+
+    def _go_on(self) -> None:
+        if self._phase in (StandPhase.DONE, StandPhase.SKIPPED) and not self._visit.takes.is_recording:
+            self._shown.stop()
+            self.done.emit()
+
+    def _show(self) -> None:
+        work, site_of = self._work, self._visit.sensors.site_of
+        if work is None or self._page is None:
+            return
+        standing = work.state.standing
+
+        def placed(sensors: tuple[str, ...]) -> tuple[str, ...]:
+            return tuple(site_of.get(sensor, sensor) for sensor in sensors)
+
+        is_counting = self._phase is StandPhase.COUNTING
+        self._page.show_state(
+            StandStillView(
+                phase=self._phase,
+                still_s=self._stood_s if self._phase is StandPhase.DONE else standing.still_s,
+                wanted_s=standing.wanted_s,
+                movement_deg_s={site_of.get(name, name): value for name, value in work.state.movement_deg_s.items()},
+                moved=placed(self._moved),
+                silent=placed(standing.silent),
+                restarts=standing.restarts if is_counting else 0,
+            )
+        )
+
+    # slots
+
+    def _on_begun(self) -> None:
+        if self._is_recording:
+            self._watch()  # only what is recorded counts
+
+    def _on_ended(self, take: Take) -> None:
+        if take.told.kind is not RecordingKind.STANDING:
+            return
+        if self._is_for_nothing:
+            self._visit.takes.keep(take, is_kept=False)
+        elif self._phase is StandPhase.DONE and not self._shown.isActive() and self._work is not None:
+            self._go_on()  # the check mark has been seen while the journal was closed
+        self.changed.emit()
+
+    def _on_refused(self, _what: str, _remedy: str) -> None:
+        if self._phase is StandPhase.COUNTING and not self._is_recording:
+            self._phase = self._settled_phase()
+            self._show()
+            self.changed.emit()
+
+    def _on_zero_edited(self, joint: Joint, degrees: float | None) -> None:
+        self._visit.set_zero(joint, math.radians(degrees) if degrees else None)
+
+    def _on_cannot_stand(self) -> None:
+        """No zero: a standing that was kept does not count either."""
+        self._visit.has_skipped_standing = True
+        self._phase = StandPhase.SKIPPED
+        if self._is_recording:
+            self._abandon()
+        if (standing := self._visit.takes.standing) is not None:
+            self._visit.takes.keep(standing, is_kept=False)
+        self._visit.rests = {}
+        self._show()
+        self.changed.emit()
+
+    def _on_can_stand(self) -> None:
+        self._visit.has_skipped_standing = False
+        self._phase = StandPhase.READY
+        self._watch()
+        self._show()
+        self.changed.emit()

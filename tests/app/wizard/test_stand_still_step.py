@@ -1,0 +1,134 @@
+"""The step of standing on a simulated patient: it ends by itself, begins anew when somebody moves, can be skipped."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.pages.stand_still_page import StandPhase
+from app.theme import Look
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.visit import Visit
+from core.body import Joint, Site
+from core.samples import RecordingKind
+from devices.replay import ReplaySource
+from tests.app.wizard.test_visit import begin
+
+SPACE = Intent(Action.RUN)
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Iterator[StandStillStep]:
+    begin(qtbot, visit, worn)
+    step = StandStillStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.page.show()
+    step.enter()
+    yield step
+    step.leave()
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+
+
+def ticks(qtbot: QtBot, step: StandStillStep, until: object) -> None:
+    def reached() -> bool:
+        step.tick()
+        return bool(until())  # type: ignore[operator]
+
+    qtbot.waitUntil(reached, timeout=10_000)
+
+
+def phase(step: StandStillStep) -> StandPhase:
+    return step.page.view.phase
+
+
+def test_movement_is_seen_before_the_count_begins(qtbot: QtBot, step: StandStillStep) -> None:
+    ticks(qtbot, step, lambda: len(step.page.view.movement_deg_s) == 6)
+    assert phase(step) is StandPhase.READY
+    verb = step.bar().primary
+    assert verb is not None
+    assert (verb.text, verb.key) == ("Start the count", "Space")
+
+
+def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
+    qtbot: QtBot, step: StandStillStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    with qtbot.waitSignal(step.done, timeout=10_000):
+        assert step.on_intent(SPACE)
+        ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
+    standing = visit.takes.standing
+    assert standing is not None
+    assert standing.recording is not None
+    for block in standing.recording.imu.values():
+        assert block.time_s[-1] - block.time_s[0] >= 3.0
+    assert set(visit.rests) == set(worn)
+    assert step.state is StepState.DONE
+    assert step.note.endswith("s, zero set")
+
+
+def test_who_moves_makes_the_count_begin_again(
+    qtbot: QtBot, step: StandStillStep, source: ReplaySource, visit: Visit
+) -> None:
+    step.on_intent(SPACE)
+    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    source.shake(f"DEMO-{Site.LEFT_THIGH}")
+    ticks(qtbot, step, lambda: Site.LEFT_THIGH in step.page.view.moved)
+    assert phase(step) is StandPhase.COUNTING
+    ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
+
+
+def test_a_silent_sensor_holds_the_count(
+    qtbot: QtBot, step: StandStillStep, source: ReplaySource, visit: Visit
+) -> None:
+    source.silence(f"DEMO-{Site.RIGHT_FOOT}")
+    step.on_intent(SPACE)
+    ticks(qtbot, step, lambda: step.page.view.silent == (Site.RIGHT_FOOT,))
+    assert phase(step) is StandPhase.COUNTING
+    source.wake(f"DEMO-{Site.RIGHT_FOOT}")
+    ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
+
+
+def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, visit: Visit) -> None:
+    step.on_intent(SPACE)
+    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    step.page.cannot_stand_pressed.emit()
+    assert visit.has_skipped_standing
+    assert step.state is StepState.SKIPPED
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.takes.standing is None, timeout=10_000)
+    with qtbot.waitSignal(step.done):
+        step.on_primary()
+    step.page.can_stand_pressed.emit()
+    assert not visit.has_skipped_standing
+    assert step.page.view.phase is StandPhase.READY
+
+
+def test_leaving_during_the_count_keeps_nothing(qtbot: QtBot, step: StandStillStep, visit: Visit) -> None:
+    step.on_intent(SPACE)
+    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    step.leave()
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.takes.standing is None, timeout=10_000)
+    assert not visit.rests
+
+
+def test_the_goniometer_is_told_in_radians_and_nought_is_the_standing_itself(
+    qtbot: QtBot, step: StandStillStep, visit: Visit
+) -> None:
+    step.page.zero_edited.emit(Joint.LEFT_KNEE, 15.0)
+    step.page.zero_edited.emit(Joint.RIGHT_KNEE, 0.0)
+    assert dict(visit.told.zero_rad) == {Joint.LEFT_KNEE: pytest.approx(np.deg2rad(15.0))}
+    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.told.zero_rad)
+    step.enter()
+    assert step.page.zero.fields[Joint.LEFT_KNEE].value == pytest.approx(15.0)
+
+
+def test_simulated_patient_is_asked_to_stand(
+    qtbot: QtBot, step: StandStillStep, source: ReplaySource, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[RecordingKind | None] = []
+    monkeypatch.setattr(source, "ask", asked.append)
+    step.on_intent(SPACE)
+    assert asked == [RecordingKind.STANDING]
