@@ -42,14 +42,16 @@ class Header(QWidget):
             widget.hide()
         self._mark.setVisible(has_mark)
         self.fold.resized.connect(self._arrange)
+        self._shown: tuple[str, str, bool] | None = None
         self.show_session("", "", is_simulated=False)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def show_session(self, code: str, facts: str, is_simulated: bool) -> None:
         """Show the patient's code and what the clinic typed; without a session, the program's name."""
-        if (code, facts, is_simulated) == (self._code.text(), self._facts.text(), not self._simulated.isHidden()):
+        if (shown := (code, facts, is_simulated)) == self._shown:
             return
+        self._shown = shown
         for label, text in ((self._code, code), (self._facts, facts)):
             label.setText(text)
             label.setVisible(bool(text))

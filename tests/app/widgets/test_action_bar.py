@@ -1,0 +1,139 @@
+"""The action bar: what is filled, what is told, the inverse bar, and focus that is never lost."""
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor
+from PySide6.QtTest import QTest
+from pytestqt.qtbot import QtBot
+
+from app.theme import LIGHT, Look, load_fonts
+from app.widgets.action_bar import ActionBar, BarState, RecordingNote, Verb, clock_time
+from app.widgets.icons import Icon
+from tests.app.room import settle, words_cut
+
+STOP = Verb("Stop walk", "Space", Icon.STOP)
+
+
+def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
+    return BarState(STOP, recording=RecordingNote("Recording walk 3", "Saved as it comes in.", elapsed_s, has_sound))
+
+
+@pytest.fixture
+def bar(qtbot: QtBot) -> ActionBar:
+    load_fonts()
+    bar = ActionBar(Look())
+    qtbot.addWidget(bar)
+    bar.resize(1064, 72)
+    bar.show()
+    return bar
+
+
+def ground(bar: ActionBar) -> QColor:
+    return bar.grab().toImage().pixelColor(4, bar.height() // 2)
+
+
+def test_a_verb_is_filled_only_if_pressing_it_is_wished(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Go on to walking", "Enter")))
+    assert bar.primary.is_filled
+    bar.show_state(BarState(Verb("Stop early", "Space", is_wished=False)))
+    assert not bar.primary.is_filled
+
+
+def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> None:
+    quiet = (Verb("Repeat one leg"), Verb("Swap"))
+    bar.show_state(BarState(Verb("Go on"), others=(Verb("Keep"), Verb("Discard")), quiet=quiet))
+    told: list[tuple[str, int]] = []
+    bar.back_pressed.connect(lambda: told.append(("back", 0)))
+    bar.primary_pressed.connect(lambda: told.append(("primary", 0)))
+    bar.other_pressed.connect(lambda k: told.append(("other", k)))
+    bar.quiet_pressed.connect(lambda k: told.append(("quiet", k)))
+    for button in (bar.back, *bar.quiet, *bar.others, bar.primary):
+        QTest.mouseClick(button, Qt.MouseButton.LeftButton)
+    assert told == [("back", 0), ("quiet", 0), ("quiet", 1), ("other", 0), ("other", 1), ("primary", 0)]
+
+
+def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Keep 18 strides", "K")))
+    assert bar.primary.accessibleName() == "Keep 18 strides"
+    assert bar.primary.accessibleDescription() == "Key K"
+    bar.show_state(BarState(Verb("Write report")))
+    assert bar.primary.accessibleName() == "Write report"
+    assert bar.primary.accessibleDescription() == ""
+
+
+def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
+    told: list[int] = []
+    bar.primary_pressed.connect(lambda: told.append(1))
+    bar.show_state(BarState(Verb("Stand still", is_enabled=False), note="Two sensors are still to be placed."))
+    QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
+    assert told == []
+
+
+def test_the_bar_is_inverse_while_recording_and_at_no_other_time(bar: ActionBar) -> None:
+    told: list[bool] = []
+    bar.recording_changed.connect(told.append)
+    bar.show_state(BarState(Verb("Start walk")))
+    assert ground(bar) == QColor(LIGHT.surface)
+    bar.show_state(recording())
+    assert ground(bar) == QColor(LIGHT.inv)
+    assert bar.back.isHidden()
+    bar.show_state(BarState(Verb("Start walk")))
+    assert ground(bar) == QColor(LIGHT.surface)
+    assert told == [True, False]
+
+
+def test_the_time_goes_on_without_anything_else_being_painted(bar: ActionBar) -> None:
+    bar.show_state(recording(17.2))
+    before = bar.primary.geometry()
+    bar.show_state(recording(18.0))
+    clock = bar.findChildren(type(bar._clock))[0]
+    assert [text.text for text in clock.painted_texts()] == ["00:18"]
+    assert bar.primary.geometry() == before
+
+
+def test_the_bell_tells_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
+    bar.show_state(recording())
+    assert bar.sound.text() == "Sound on"
+    with qtbot.waitSignal(bar.sound_pressed):
+        bar.sound.click()
+    bar.show_state(recording(has_sound=False))
+    assert bar.sound.text() == "Sound off"
+
+
+def test_without_back_the_first_quiet_verb_stands_in_its_place(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Go on"), quiet=(Verb("New patient"),)))
+    back = bar.back.x()
+    bar.show_state(BarState(Verb("Go on"), quiet=(Verb("New patient"),), has_back=False))
+    assert bar.quiet[0].x() == back
+
+
+def test_the_focus_goes_to_the_primary_verb_where_its_button_goes(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Keep"), others=(Verb("Discard"),)))
+    bar.others[0].setFocus()
+    bar.show_state(BarState(Verb("Start walk")))
+    assert bar.focusWidget() is bar.primary
+
+
+def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Start walk", "Space")))
+    bar.primary.setFocus()
+    bar.show_state(recording())
+    assert bar.focusWidget() is bar.primary
+
+
+@pytest.mark.parametrize("width", [1064, 896, 736, 368])
+@pytest.mark.parametrize("note", ["", "Stopping now leaves the left knee with range only, without absolute angles."])
+def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: str) -> None:
+    state = BarState(Verb("Reconnect R foot", "Enter"), (Verb("Go on without"),), (Verb("Repeat one leg"),), note)
+    bar.show_state(state)
+    bar.resize(width, bar.height())
+    settle()
+    assert words_cut(bar) == []
+    boxes = [button.geometry() for button in bar.tab_order]
+    boxes += [text.geometry() for text in (bar._title, bar._note) if text.text()]
+    assert not any(one.intersects(other) for k, one in enumerate(boxes) for other in boxes[:k])
+
+
+@pytest.mark.parametrize(("elapsed_s", "shown"), [(0.0, "00:00"), (59.99, "00:59"), (246.0, "04:06"), (-1.0, "00:00")])
+def test_a_time_is_minutes_and_seconds(elapsed_s: float, shown: str) -> None:
+    assert clock_time(elapsed_s) == shown
