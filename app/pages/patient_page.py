@@ -218,12 +218,14 @@ class PatientPage(QWidget):
         self.code.set_wrong(tr("{code} exists. Open it, or choose another code.").format(code=code) if code else "")
         self._taken.show_code(code)
         self._taken.setVisible(bool(code))
+        self._fit()
 
     def show_last_visit(self, visit: LastVisit | None) -> None:
         """Show the visit before this one; None where it is the first."""
         self._last.setVisible(visit is not None)
         if visit is not None:
             self._last.show_visit(visit)
+        self._fit()
 
     def _build(self) -> None:
         self._limb_box = _Captioned(self._look, self.limb, tr("What is it?"))
@@ -308,6 +310,7 @@ class PatientPage(QWidget):
             chips.setVisible(side in asked)
         self._ankle_box.setVisible(bool(asked))
         self._band.judge(None if draft.patient.birth_year is None else self._year - draft.patient.birth_year)
+        self._fit()
 
     def _fit(self) -> None:
         """Set the fields of a row below one another where they would be too narrow."""
@@ -319,6 +322,13 @@ class PatientPage(QWidget):
         for row in self._rows:
             row.setDirection(way)
         self._ankle_row.setDirection(way)
+        width = max(px(BAND_CARD_WIDTH), self._beside.minimumSizeHint().width())  # its button may need more
+        self._beside.setMinimumWidth(0 if self._is_compact else width)
+        self._beside.setMaximumWidth(ANY_SIZE if self._is_compact else width)
+        cards = (self._form, self._beside)
+        highest = max(px(HIGHEST_CARD), *(card.minimumSizeHint().height() for card in cards))  # long words need more
+        for card in cards:
+            card.setMaximumHeight(ANY_SIZE if self._is_compact else highest)
 
     def _on_edited(self) -> None:
         if self._taken_code and self.code.text.strip() != self._taken_code:
@@ -331,8 +341,6 @@ class PatientPage(QWidget):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        for card in (self._form, self._beside):
-            card.setMaximumHeight(ANY_SIZE if self._is_compact else px(HIGHEST_CARD))
         self._column.setSpacing(px(4))
         self._words.setContentsMargins(0, 0, 0, px(12))
         self._words.setSpacing(px(16))
@@ -341,8 +349,6 @@ class PatientPage(QWidget):
         self._ankle_row.setSpacing(px(16))
         for row in self._rows:
             row.setSpacing(px(16))
-        self._beside.setMinimumWidth(0 if self._is_compact else px(BAND_CARD_WIDTH))
-        self._beside.setMaximumWidth(ANY_SIZE if self._is_compact else px(BAND_CARD_WIDTH))
         self._fit()
 
 

@@ -1,0 +1,248 @@
+"""Does every page have the room for a language as long as German, at every size of window and letters?"""
+
+from collections.abc import Callable, Iterator
+from uuid import UUID
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.pages.first_start_page import FirstStartPage
+from app.pages.free_motion_page import FreeMotionPage, FreeMotionView
+from app.pages.help_page import HelpPage, Topic
+from app.pages.home_lists import PatientLine, SessionLine
+from app.pages.home_page import HomePage
+from app.pages.import_page import ImportPage
+from app.pages.log_in_page import LogInPage
+from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+from app.pages.sensor_list import SensorRow
+from app.pages.sensors_page import SensorsPage, SourceOption, Way
+from app.pages.settings_page import OperatorLine, SettingsPage
+from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
+from app.pages.walk_list import WalkRow, WalkState
+from app.pages.walking_page import LiveWalk, WalkingPage
+from app.plots.live_lanes import LiveLane, PhaseSpan
+from app.plots.live_strip import LiveTrace
+from app.theme import Look, load_fonts
+from app.widgets.gauge import GaugeFace, GaugeState, Measure
+from app.widgets.hint import Hint
+from app.wording import tr
+from core.body import Joint, Side, Site
+from core.findings import Finding, Severity
+from core.gait.phases import Phase
+from core.samples import Patient
+from tests.app.room import words_cut
+
+# of the window: its size, the size of everything, and whether pages fold
+WINDOWS = {
+    "1280 x 800 at 100 %": (1280, 800, 1.0, False),
+    "1280 x 800 at 80 %": (1280, 800, 0.8, False),
+    "1920 x 1200 at 200 %": (1920, 1200, 2.0, True),
+    "960 x 600 at 100 %": (960, 600, 1.0, True),
+    "800 x 560 at 100 %": (800, 560, 1.0, True),
+}
+RAIL, COMPACT_RAIL = 216, 64
+HEADER_AND_BAR = 128
+STRIP, COMPACT_STRIP = 72, 44  # on the steps that show it
+
+
+def first_start(look: Look) -> QWidget:
+    return FirstStartPage(look, 12, lambda _typed, _key: False)
+
+
+def recovery_key(look: Look) -> QWidget:
+    page = FirstStartPage(look, 12, lambda _typed, _key: False)
+    page.show_recovery_key("-".join(["8K3F"] * 14))
+    return page
+
+
+def log_in(look: Look) -> QWidget:
+    page = LogInPage(look, 12)
+    page.show_operators(["hk", "mueller"], ["hk"], can_remember=True)
+    return page
+
+
+def cover(look: Look) -> QWidget:
+    page = LogInPage(look, 12)
+    page.show_cover("mueller", is_recording=True)
+    return page
+
+
+def home(look: Look) -> QWidget:
+    page = HomePage(look)
+    lines = [
+        PatientLine(
+            UUID(int=k), f"P-01{k:02d}", "1968, male · left prosthetic", "20 Nov 2026", "3 sessions", "", k == 2
+        )
+        for k in range(12)
+    ]
+    page.show_patients(lines)
+    page.show_patient("P-0100", "1968, male · left prosthetic")
+    page.show_sessions([SessionLine(UUID(int=99), "today 14:20", "Alignment A, B, C", "3 recordings")])
+    return page
+
+
+def empty_home(look: Look) -> QWidget:
+    page = HomePage(look)
+    page.show_patients([])
+    page.show_patient("", "")
+    page.show_sessions([])
+    return page
+
+
+def importing(look: Look) -> QWidget:
+    page = ImportPage(look)
+    finding = Finding("gaps", Severity.WARNING, "left_foot", {"count": 3, "missing_percent": 2.5, "longest_s": 0.4})
+    page.show_session("session_2026", ["standing", "free motion", "walk 1"], "DEMO-1", [finding], is_simulated=True)
+    return page
+
+
+def settings(look: Look) -> QWidget:
+    page = SettingsPage(look, 12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
+    page.show_library(has_access=True, has_backup=True, has_operators=True)
+    page.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
+    return page
+
+
+def patient(look: Look) -> QWidget:
+    page = PatientPage(look)
+    known = Patient(
+        code="P-0147", birth_year=1968, sex="male", height_m=1.81, prosthetic_side="left", device="C-Leg 4, Triton"
+    )
+    page.show_draft(PatientDraft(known))
+    page.show_code_taken("P-0147")
+    page.show_last_visit(LastVisit("20 Nov 2026", (("Device", "C-Leg 4"), ("Aids", "Shoes"))))
+    return page
+
+
+def sensors(look: Look) -> QWidget:
+    page = SensorsPage(look)
+    page.show_sources([SourceOption("serial", tr("Serial ports"), "6"), SourceOption("replay", tr("Replay"))], "serial")
+    rows = [SensorRow(f"0A0{k}", "x-IMU3", 100.0, 0.8, site) for k, site in enumerate(list(Site)[:4])]
+    rows += [SensorRow("0A31", "x-IMU3", 0.0, 0.08, Site.RIGHT_SHANK, silent_s=3.2, can_identify=True)]
+    rows += [SensorRow("0A2C", "x-IMU3", 98.0, None, None, lost_share=0.024, can_identify=True)]
+    page.show_sensors(rows)
+    page.show_way(Way.SHAKE)
+    page.show_shaken_together(["0A31", "0A2C"])
+    return page
+
+
+def no_sensors(look: Look) -> QWidget:
+    page = SensorsPage(look)
+    page.show_sources([SourceOption("serial", tr("Serial ports"))])
+    page.show_no_source()
+    return page
+
+
+def standing(phase: StandPhase, **more: object) -> Callable[[Look], QWidget]:
+    def make(look: Look) -> QWidget:
+        page = StandStillPage(look)
+        page.show_zero({Joint.LEFT_KNEE: 12.0})
+        page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(Site, 0.4), **more))  # type: ignore[arg-type]  # of a test
+        return page
+
+    return make
+
+
+def free_motion(look: Look) -> QWidget:
+    page = FreeMotionPage(look)
+    open_face = GaugeFace(
+        GaugeState.NOW, Measure("11", "°", "1.5°", 0.4, False), Measure("34", "mm", "10 mm", 0.3, False)
+    )
+    ready = GaugeFace(GaugeState.READY, Measure("0.8", "°", "1.5°", 1.0, True), Measure("6", "mm", "10 mm", 1.0, True))
+    faces = dict.fromkeys(Joint, ready) | {Joint.LEFT_KNEE: open_face}
+    hint = Hint(tr("Circle the left lower leg"), tr("Change direction."))
+    page.show_state(FreeMotionView(faces, hint, 7.3, Site.LEFT_SHANK))
+    return page
+
+
+def walking(*rows: WalkRow) -> Callable[[Look], QWidget]:
+    def make(look: Look) -> QWidget:
+        page = WalkingPage(look)
+        page.show_labels(("Barefoot", "Alignment A", "AFO"), "AFO")
+        page.show_walks(rows, "L 12, R 11")
+        time_s = np.arange(500) / 100
+        trace = LiveTrace(time_s, np.full(500, 0.4), is_provisional=True)
+        lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
+        both = dict.fromkeys(Side, trace)
+        page.show_view(LiveWalk(5.0, both, both, dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4))
+        return page
+
+    return make
+
+
+def helping(look: Look) -> QWidget:
+    page = HelpPage(look)
+    page.show_topic(Topic.MESSAGES)
+    page.search.line_edit.setText("sensor")
+    page.search.line_edit.textEdited.emit("sensor")
+    return page
+
+
+KEPT = WalkRow("1", "A", "Barefoot", WalkState.KEPT, 18)
+DISCARDED = WalkRow("2", "B", "Alignment A", WalkState.DISCARDED, 17)
+PAGES: dict[str, Callable[[Look], QWidget]] = {
+    "first start": first_start,
+    "recovery key": recovery_key,
+    "log in": log_in,
+    "cover": cover,
+    "home": home,
+    "empty home": empty_home,
+    "import": importing,
+    "settings": settings,
+    "patient": patient,
+    "sensors": sensors,
+    "no sensors": no_sensors,
+    "ready to stand": standing(StandPhase.READY),
+    "counting": standing(StandPhase.COUNTING),
+    "moved": standing(StandPhase.COUNTING, moved=(Site.LEFT_SHANK, Site.RIGHT_SHANK), restarts=3),
+    "cannot stand": standing(StandPhase.SKIPPED),
+    "free motion": free_motion,
+    "nothing walked": walking(),
+    "recording": walking(KEPT, DISCARDED, WalkRow("3", "C", "AFO", WalkState.RECORDING)),
+    "asking": walking(KEPT, DISCARDED, WalkRow("3", "C", "AFO", WalkState.ASKING, 12)),
+    "help": helping,
+}
+
+
+BELOW_STRIP = {
+    "ready to stand",
+    "counting",
+    "moved",
+    "cannot stand",
+    "free motion",
+    "nothing walked",
+    "recording",
+    "asking",
+}
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.mark.usefixtures("pseudo_language")
+@pytest.mark.parametrize("window", WINDOWS)
+@pytest.mark.parametrize("name", PAGES)
+def test_every_word_of_a_longer_language_has_its_room(qtbot: QtBot, look: Look, name: str, window: str) -> None:
+    width, height, scale, is_compact = WINDOWS[window]
+    width -= look.theme.px(scale * (COMPACT_RAIL if is_compact else RAIL))
+    height -= look.theme.px(scale * HEADER_AND_BAR)
+    if name in BELOW_STRIP:
+        height -= look.theme.px(scale * (COMPACT_STRIP if is_compact else STRIP))
+    look.set_scale(scale)
+    page = PAGES[name](look)
+    qtbot.addWidget(page)
+    if hasattr(page, "set_compact"):
+        page.set_compact(is_compact)
+    if hasattr(page, "set_room"):
+        page.set_room(width / scale)
+    page.resize(width, height)
+    page.show()
+    assert words_cut(page) == []
