@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from itertools import pairwise
 
 from PySide6.QtCore import QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QHideEvent, QResizeEvent
@@ -82,6 +83,7 @@ class SensorsPage(QWidget):
         self._look, self._is_compact = look, False
         self._sensors: tuple[SensorRow, ...] = ()
         self._names: tuple[str, ...] = ()
+        self._offered: tuple[tuple[SourceOption, ...], str] = ((), "")
         self._told = ("", "")
         self._shaken_together: tuple[str, ...] = ()
         self._hovered: tuple[str, Site] | None = None
@@ -153,6 +155,9 @@ class SensorsPage(QWidget):
 
     def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
         """Offer what sensors can be heard through; `chosen` is the key of the one in force."""
+        if (tuple(options), chosen) == self._offered:
+            return
+        self._offered = (tuple(options), chosen)
         with QSignalBlocker(self.sources):
             self.sources.clear()
             for option in options:
@@ -186,6 +191,9 @@ class SensorsPage(QWidget):
         if names != self._names:
             self._names = names
             self.places.set_names(names)
+            rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
+            for before, after in pairwise([self.ways.segments[-1], *rows]):
+                QWidget.setTabOrder(before, after)
             self._fit()
         self._show(self._lists)
         self._refresh()
@@ -222,8 +230,9 @@ class SensorsPage(QWidget):
 
     def tell(self, what: str, then: str = "") -> None:
         """Say what happened and what to do, before anything the page would say itself; "" takes it back."""
-        self._told = (what, then)
-        self._refresh()
+        if (what, then) != self._told:
+            self._told = (what, then)
+            self._refresh()
 
     def place_selected(self, number: int) -> bool:
         """Wear the selected sensor at place 1 to 6; returns whether there is such a place and a sensor."""

@@ -20,7 +20,7 @@ from app.wizard.patient_record import PatientRecord
 from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.workers.library_desk import LibraryDesk
-from core.body import Joint, Side
+from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
@@ -67,6 +67,8 @@ class Visit(QObject):
         """What each sensor, by name, reads while the patient stands; empty until then."""
         self.has_skipped_standing = False
         self.without_ankle: frozenset[Side] = frozenset()
+        self.placement_before: dict[str, Site] = {}
+        """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
         self._is_changing = False
@@ -77,6 +79,10 @@ class Visit(QObject):
         self.evaluation.refused.connect(self.refused)
         self.takes.ended.connect(self._on_take_ended)
         self.takes.changed.connect(self._on_takes_changed)
+
+    @property
+    def desk(self) -> LibraryDesk:
+        return self._desk
 
     # the stopwatch
 
@@ -152,11 +158,12 @@ class Visit(QObject):
             zero[joint] = zero_rad
         self._change(replace(self.told, zero_rad=zero))
 
-    def place_sensors(self) -> None:
-        """Tell the library who wears what: what is recorded next takes it."""
+    def place_sensors(self, only: Side | None = None) -> None:
+        """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
         if self.session is None:
             return
-        session_id, placed = self.session.id, self.sensors.placed()
+        session_id = self.session.id
+        placed = {site: one for site, one in self.sensors.placed().items() if only in (None, site.side)}
 
         def place(opened: "OpenedLibrary") -> StoredSession:
             opened.library.sessions.place(session_id, placed)

@@ -1,0 +1,236 @@
+"""Whom the session is about: found or made in the library as it is typed."""
+
+import datetime
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.theme import Look
+from app.widgets.action_bar import BarState, Verb
+from app.widgets.step_rail import StepState
+from app.wizard.steps.step import Step
+from app.wording import name_of, tr
+from core.body import Joint
+from core.samples import Patient, RecordingKind, Session
+
+if TYPE_CHECKING:
+    from uuid import UUID
+
+    from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+    from app.storage.opened import OpenedLibrary
+    from app.storage.stored import StoredPatient, StoredSession
+    from app.wizard.visit import Visit
+
+
+class PatientStep(Step):
+    """Goes on once the library has the patient, not before: what is recorded next belongs to somebody."""
+
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(look, visit, parent)
+        self._page: PatientPage | None = None
+        self._shown_id: UUID | None = None  # whose facts fill the page
+        self._last: StoredSession | None = None
+        self._last_of: UUID | None = None
+        self._is_going_on = False
+        visit.patient.changed.connect(self._on_patient_changed)
+        visit.patient.code_taken.connect(self._on_code_taken)
+        visit.patient.refused.connect(self._on_refused)
+
+    @property
+    def page(self) -> "PatientPage":
+        if self._page is None:
+            from app.pages.patient_page import PatientPage
+
+            page = self._page = PatientPage(self._look)
+            page.edited.connect(self._on_edited)
+            page.code_committed.connect(self._on_code_committed)
+            page.open_pressed.connect(self._on_open_pressed)
+            page.same_set_up_pressed.connect(self._on_same_set_up_pressed)
+        return self._page
+
+    @property
+    def title(self) -> str:
+        return tr("Patient")
+
+    @property
+    def note(self) -> str:
+        told = self._visit.patient.told
+        return _about(told) if told.code else tr("new session")
+
+    @property
+    def state(self) -> StepState:
+        return StepState.DONE if self._visit.patient.stored is not None else StepState.TODO
+
+    @property
+    def topic(self) -> str:
+        return "patient"
+
+    def enter(self) -> None:
+        self._fill()
+        self._ask_last()
+
+    def leave(self) -> None:
+        self._visit.patient.commit()
+
+    def bar(self) -> BarState:
+        has_code = bool(self._visit.patient.told.code)
+        note = tr("Saved as you type.") if has_code else tr("Type the patient's code to go on.")
+        return BarState(primary=Verb(tr("Put on sensors"), tr("Enter"), is_enabled=has_code), note=note)
+
+    def on_primary(self) -> None:
+        patient = self._visit.patient
+        if not patient.told.code:
+            self.page.focus()
+            return
+        self._is_going_on = True
+        patient.commit()
+        self._go_on_if_saved()
+
+    def _go_on_if_saved(self) -> None:
+        if self._is_going_on and self._visit.patient.is_saved:
+            self._is_going_on = False
+            self._visit.begin_session()
+            self.done.emit()
+
+    def _fill(self) -> None:
+        """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
+        from app.pages.patient_page import PatientDraft
+
+        patient = self._visit.patient
+        self._shown_id = patient.stored.id if patient.stored is not None else None
+        self.page.show_draft(PatientDraft(patient.told, self._visit.without_ankle))
+        self._show_saved()
+
+    def _show_saved(self) -> None:
+        if self._page is not None:
+            patient = self._visit.patient
+            self._page.show_saved(
+                tr("saved") if patient.is_saved else tr("draft") if patient.stored is None else tr("saving")
+            )
+
+    def _ask_last(self) -> None:
+        """Look in the library for the visit before this one."""
+        stored, session = self._visit.patient.stored, self._visit.session
+        if stored is None or stored.id == self._last_of:
+            return
+        self._last_of = patient_id = stored.id
+        own_id = session.id if session is not None else None
+
+        def read(opened: "OpenedLibrary") -> "StoredSession | None":
+            lines = opened.library.sessions.list(patient_id)
+            before = next((line for line in lines if line.id != own_id and line.recordings), None)
+            return None if before is None else opened.library.sessions.get(before.id)
+
+        self._visit.desk.run(read, self._on_last_read, self._on_refused, self)
+
+    def _on_last_read(self, session: "StoredSession | None") -> None:
+        self._last = session
+        if self._page is not None:
+            self._page.show_last_visit(None if session is None else _last_visit(session))
+
+    def _on_edited(self, draft: "PatientDraft") -> None:
+        self._visit.without_ankle = draft.without_ankle
+        self._visit.patient.edit(draft.patient)
+        self._show_saved()
+        self.changed.emit()
+
+    def _on_code_committed(self) -> None:
+        self._visit.patient.commit()
+
+    def _on_patient_changed(self) -> None:
+        stored = self._visit.patient.stored
+        if self._page is not None:
+            if stored is not None and stored.id != self._shown_id and not self._page.draft.patient.code:
+                self._fill()
+            elif stored is not None:
+                self._shown_id = stored.id
+            self._page.show_code_taken("")
+            self._show_saved()
+            self._ask_last()
+        self.changed.emit()
+        self._go_on_if_saved()
+
+    def _on_code_taken(self, code: str) -> None:
+        self._is_going_on = False
+        self.page.show_code_taken(code)
+
+    def _on_refused(self, _what: str, _remedy: str) -> None:
+        self._is_going_on = False  # the wizard's banner says why
+
+    def _on_open_pressed(self, code: str) -> None:
+        if self._visit.session is not None:
+            told = self._visit.session.told.patient.code
+            self.told.emit(
+                tr("This session belongs to {code}.").format(code=told),
+                tr("Go back to all patients to begin one with another."),
+            )
+            return
+
+        def find(opened: "OpenedLibrary") -> "StoredPatient | None":
+            return opened.library.patients.find(code)
+
+        self._visit.desk.run(find, self._on_found, self._on_refused, self)
+
+    def _on_found(self, stored: "StoredPatient | None") -> None:
+        if stored is not None:
+            self._visit.patient.choose(stored)
+            self._fill()
+            self.page.focus()
+
+    def _on_same_set_up_pressed(self) -> None:
+        """Take zero and placement as they were, and go on."""
+        if self._last is None:
+            return
+        for joint, zero_rad in self._last.told.zero_rad.items():
+            self._visit.set_zero(joint, zero_rad)
+        if self._last.placements:
+            self._visit.placement_before = self._last.placements[-1].site_of
+        self.on_primary()
+
+
+def _about(patient: Patient) -> str:
+    """Give which side it is about, in two words: "Left prosthetic"."""
+    words = {
+        "left": (tr("Left affected"), tr("Left prosthetic")),
+        "right": (tr("Right affected"), tr("Right prosthetic")),
+        "both": (tr("Both affected"), tr("Both prosthetic")),
+    }
+    if patient.prosthetic_side in words:
+        return words[patient.prosthetic_side][1]
+    return words[patient.affected_side][0] if patient.affected_side in words else ""
+
+
+def _last_visit(session: "StoredSession") -> "LastVisit":
+    from app.home.words import date
+    from app.pages.patient_page import LastVisit
+
+    told = session.told
+    try:
+        day = date(datetime.datetime.fromisoformat(told.started).date())
+    except ValueError:
+        day = told.started
+    walks = [one for one in told.recordings if one.kind is RecordingKind.WALKING and one.is_kept]
+    facts = [
+        (tr("Walks"), ", ".join(dict.fromkeys(walk.condition or walk.name for walk in walks)) or tr("none kept")),
+        (tr("Zero"), _zero_in_words(told)),
+    ]
+    if session.placements:
+        sensors = session.placements[-1].site_of
+        facts.append((tr("Sensors"), ", ".join(sorted(sensors))))
+    if told.surface:
+        facts.append((tr("Surface"), told.surface))
+    return LastVisit(tr("Last visit, {day}").format(day=day), tuple(facts))
+
+
+def _zero_in_words(told: Session) -> str:
+    """Give the goniometer's values while standing: "left knee 15°, others 0°"."""
+    values = {joint: round(float(np.rad2deg(told.zero_rad.get(joint, 0.0)))) for joint in Joint}
+    bent = [
+        tr("{joint} {angle}°").format(joint=name_of(joint), angle=str(angle).replace("-", "\N{MINUS SIGN}"))
+        for joint, angle in values.items()
+        if angle
+    ]
+    if not bent:
+        return tr("all 0°")
+    return ", ".join(bent if len(bent) == len(Joint) else [*bent, tr("others 0°")])

@@ -1,0 +1,308 @@
+"""Six sensors on, and each known: heard through a source, and told where they are worn."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject
+
+from app.theme import Look
+from app.widgets.action_bar import BarState, Verb
+from app.widgets.icons import Icon
+from app.widgets.sensor_strip import SILENT_FROM_S
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.step import Step
+from app.wording import name_of, tr
+from core.body import Site
+from core.samples import FloatArray, ImuBlock
+
+if TYPE_CHECKING:
+    from app.acquisition.acquisition import SensorStatus
+    from app.acquisition.placing_work import PlacingWork
+    from app.pages.sensor_list import SensorRow
+    from app.pages.sensors_page import SensorsPage
+    from app.wizard.visit import Visit
+
+TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows four times
+TRACE_S, TRACE_POINTS = 5.0, 250
+TURNS_MORE = 2.0  # times the variance that another axis needs before the trace goes over to it
+
+
+class SensorsStep(Step):
+    """The library is told who wears what when the step is left, and only if that is news."""
+
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(look, visit, parent)
+        self._page: SensorsPage | None = None
+        self._work: PlacingWork | None = None
+        self._shakes = self._ticks = 0
+        self._is_in_sight = False
+        self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
+        self._without_light: set[str] = set()
+        self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
+        self._silent_site: Site | None = None
+        visit.sensors.changed.connect(self._on_sensors_changed)
+        visit.sensors.opened.connect(self._on_opened)
+
+    @property
+    def page(self) -> "SensorsPage":
+        if self._page is None:
+            from app.pages.sensors_page import SensorsPage
+
+            page = self._page = SensorsPage(self._look)
+            page.assigned.connect(self._visit.sensors.assign)
+            page.way_chosen.connect(self._on_way_chosen)
+            page.source_chosen.connect(self._on_source_chosen)
+            page.identify_pressed.connect(self._on_identify_pressed)
+            page.reconnect_pressed.connect(self._on_reconnect_pressed)
+            page.stop_pressed.connect(self._visit.sensors.close)
+        return self._page
+
+    @property
+    def title(self) -> str:
+        return tr("Sensors")
+
+    @property
+    def note(self) -> str:
+        sensors = self._visit.sensors
+        if sensors.acquisition is None:
+            return ""
+        if sensors.is_left_to_motion:
+            return tr("left to the motion")
+        return tr("{count} of 6 worn").format(count=len(sensors.site_of))
+
+    @property
+    def state(self) -> StepState:
+        sensors = self._visit.sensors
+        if sensors.acquisition is None:
+            return StepState.TODO
+        if self._silent_site is not None:
+            return StepState.ATTENTION
+        return StepState.DONE if sensors.joints or sensors.is_left_to_motion else StepState.TODO
+
+    @property
+    def cannot_enter(self) -> str:
+        patient = self._visit.patient
+        if patient.stored is not None:
+            return ""
+        return (
+            tr("Press Enter to save the patient first.") if patient.told.code else tr("Type the patient's code first.")
+        )
+
+    @property
+    def topic(self) -> str:
+        return "sensors"
+
+    def enter(self) -> None:
+        self._is_in_sight = True
+        self._visit.begin_session()
+        self._begin_work()
+        self._show()
+
+    def leave(self) -> None:
+        self._is_in_sight = False
+        sensors = self._visit.sensors
+        if sensors.acquisition is not None:
+            sensors.acquisition.set_work(None)
+        self._work = None
+        if sensors.site_of and sensors.site_of != self._known_places:
+            # other places of the same sensors: they were told wrongly; other sensors: strapped on since
+            if self._visit.takes.every and sensors.site_of.keys() == self._known_places.keys():
+                self._visit.correct_placement()
+            else:
+                self._visit.place_sensors()
+
+    def tick(self) -> None:
+        self._ticks += 1
+        if self._visit.sensors.acquisition is None:
+            return
+        if self._work is not None:
+            state = self._work.state
+            if state.shakes != self._shakes:
+                self._shakes = state.shakes
+                if state.shaken is not None:
+                    self.page.show_shaken(state.shaken)
+            self.page.show_shaken_together(state.shaken_together)
+        if self._ticks % TRACE_TICKS == 0:
+            self._show_traces()
+        if self._ticks % ROW_TICKS == 0:
+            self._show_rows()
+
+    def bar(self) -> BarState:
+        sensors = self._visit.sensors
+        go_on = tr("Stand still")
+        if sensors.acquisition is None:
+            return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
+        if (silent := self._silent_site) is not None:
+            again = Verb(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
+            without = Verb(tr("Go on without {site}").format(site=name_of(silent)), is_wished=False)
+            return BarState(primary=again, others=(without,) if sensors.joints else ())
+        if sensors.is_left_to_motion:
+            return BarState(primary=Verb(go_on, tr("Enter")), note=tr("The free motion tells who wears what."))
+        if not sensors.joints:
+            note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
+            return BarState(primary=Verb(go_on, tr("Enter"), is_enabled=False), note=note)
+        is_whole = len(sensors.site_of) == len(Site)
+        return BarState(primary=Verb(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
+
+    def on_primary(self) -> None:
+        if self._silent_site is not None:
+            self._reconnect()
+        elif self._visit.sensors.acquisition is not None:
+            self.done.emit()
+
+    def on_other(self, number: int) -> None:
+        self.done.emit()
+
+    def on_intent(self, intent: Intent) -> bool:
+        if intent.action is Action.LABEL:
+            return self.page.place_selected(intent.number)
+        if intent.action is Action.IDENTIFY:
+            return self.page.identify_selected()
+        return False
+
+    @property
+    def _known_places(self) -> dict[str, Site]:
+        """Site by the sensor's name, as the library was told last in this session."""
+        session = self._visit.session
+        return session.placements[-1].site_of if session is not None and session.placements else {}
+
+    def _begin_work(self) -> None:
+        """Let the estimator's thread listen for shaken sensors while the step is in sight."""
+        acquisition = self._visit.sensors.acquisition
+        if acquisition is None or not self._is_in_sight:
+            return
+        from app.acquisition.placing_work import PlacingWork
+
+        self._work, self._shakes = PlacingWork(acquisition.sensors), 0
+        acquisition.set_work(self._work)
+
+    def _show(self) -> None:
+        from app.pages.sensors_page import SourceOption, Way
+
+        sensors, page = self._visit.sensors, self.page
+        chosen = sensors.choice.key if sensors.choice is not None else ""
+        found = len(sensors.acquisition.sensors) if sensors.acquisition is not None else 0
+        options = [
+            SourceOption(
+                choice.key,
+                choice.name,
+                tr("{count} found").format(count=found) if found and choice.key == chosen else "",
+            )
+            for choice in self._visit.choices
+        ]
+        page.show_sources(options, chosen)
+        nothing = (
+            tr("No source of sensors is at hand for this patient."),
+            tr("The simulated one is for codes that begin with DEMO."),
+        )
+        page.tell(*(("", "") if options else nothing))
+        if sensors.is_searching and sensors.choice is not None:
+            page.show_searching(sensors.choice.name)
+        elif sensors.acquisition is None:
+            page.show_no_source()
+        else:
+            if sensors.is_left_to_motion != (page.way is Way.MOTION):
+                page.show_way(Way.MOTION if sensors.is_left_to_motion else Way.DRAG)
+            self._show_rows()
+
+    def _show_rows(self) -> None:
+        sensors = self._visit.sensors
+        acquisition = sensors.acquisition
+        if acquisition is None:
+            return
+        status = sensors.status
+        rows = tuple(self._row(status[name]) for name in acquisition.sensors if name in status)
+        self.page.show_sensors(rows)
+        silent = next((row.site for row in rows if row.silent_s > 0 and row.site is not None), None)
+        if silent is not self._silent_site:
+            self._silent_site = silent
+            self.changed.emit()
+
+    def _row(self, status: "SensorStatus") -> "SensorRow":
+        from app.pages.sensor_list import SensorRow
+
+        is_silent = status.silent_s >= SILENT_FROM_S
+        return SensorRow(
+            name=status.sensor,
+            model=status.told.model,
+            rate_hz=status.told.rate_hz or float(round(status.heard_hz)),
+            battery=status.told.battery,
+            site=self._visit.sensors.site_of.get(status.sensor),
+            silent_s=float(round(status.silent_s)) if is_silent else 0.0,
+            lost_share=round(status.lost_share, 3),
+            can_identify=status.sensor not in self._without_light,
+        )
+
+    def _show_traces(self) -> None:
+        acquisition = self._visit.sensors.acquisition
+        if acquisition is None:
+            return
+        now_s = acquisition.now_s
+        self.page.show_traces(
+            {name: self._trace(acquisition.latest(name, TRACE_S), now_s) for name in acquisition.sensors}
+        )
+
+    def _trace(self, block: ImuBlock, now_s: float) -> FloatArray:
+        """Give (n,) deg/s of the last seconds at even steps, about the sensor's axis that turns most; NaN if silent."""
+        time_s = np.linspace(now_s - TRACE_S, now_s, TRACE_POINTS)
+        heard = np.isfinite(block.gyr_rad_s).all(axis=1)
+        if np.count_nonzero(heard) < 2:
+            return np.full(TRACE_POINTS, np.nan)
+        rates = block.gyr_rad_s[heard]
+        variance = rates.var(axis=0)
+        most = int(np.argmax(variance))
+        axis = self._axis.setdefault(block.sensor, most)
+        if variance[most] > TURNS_MORE * variance[axis]:
+            axis = self._axis[block.sensor] = most
+        known_s = block.time_s[heard]
+        values: FloatArray = np.rad2deg(np.interp(time_s, known_s, rates[:, axis], left=np.nan))
+        values[time_s > known_s[-1] + SILENT_FROM_S / 2] = np.nan
+        return values
+
+    def _reconnect(self) -> None:
+        """Open the source anew; its sensors come back to their places."""
+        sensors = self._visit.sensors
+        if sensors.choice is not None:
+            self._wanted = dict(sensors.site_of)
+            sensors.search(sensors.choice)
+
+    def _on_opened(self) -> None:
+        sensors = self._visit.sensors
+        assert sensors.acquisition is not None
+        wanted = self._wanted or self._known_places or self._visit.placement_before
+        self._wanted = {}
+        known = {name: site for name, site in wanted.items() if name in sensors.acquisition.sensors}
+        if known:
+            sensors.assign_all(known)
+        self._begin_work()
+        if self._is_in_sight:
+            self._show()
+            self.page.focus()
+
+    def _on_sensors_changed(self) -> None:
+        if self._is_in_sight:
+            self._show()
+        self.changed.emit()
+
+    def _on_way_chosen(self, way: str) -> None:
+        from app.pages.sensors_page import Way
+
+        is_left = way == Way.MOTION
+        if is_left != self._visit.sensors.is_left_to_motion:
+            self._visit.sensors.leave_to_motion(is_left)
+
+    def _on_source_chosen(self, key: str) -> None:
+        choice = next((one for one in self._visit.choices if one.key == key), None)
+        if choice is not None:
+            self._visit.sensors.search(choice)
+
+    def _on_identify_pressed(self, sensor: str) -> None:
+        acquisition = self._visit.sensors.acquisition
+        if acquisition is not None and not acquisition.identify(sensor):
+            self._without_light.add(sensor)
+            self.told.emit(tr("{sensor} has no light that can be lit.").format(sensor=sensor), tr("Shake it instead."))
+            self._show_rows()
+
+    def _on_reconnect_pressed(self, _sensor: str) -> None:
+        self._reconnect()

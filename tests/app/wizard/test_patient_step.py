@@ -1,0 +1,116 @@
+"""The step of the patient: made, found and gone on with, each once the library has answered."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QAbstractButton, QLabel
+from pytestqt.qtbot import QtBot
+
+from app.pages.patient_page import PatientDraft
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import PlacedSensor
+from app.theme import Look
+from app.widgets.step_rail import StepState
+from app.wizard.steps.patient_step import PatientStep
+from app.wizard.visit import Visit
+from app.workers.library_desk import LibraryDesk
+from core.body import Joint, Side, Site
+from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit) -> Iterator[PatientStep]:
+    step = PatientStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.page.show()
+    step.enter()
+    yield step
+    step.deleteLater()
+
+
+def type_in(step: PatientStep, patient: Patient) -> None:
+    step.page.show_draft(PatientDraft(patient))
+    step.page.edited.emit(step.page.draft)
+
+
+def test_going_on_waits_until_the_library_has_the_patient(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
+    verb = step.bar().primary
+    assert verb is not None
+    assert not verb.is_enabled
+    type_in(step, Patient(code="DEMO-7", prosthetic_side="left"))
+    assert step.note == "Left prosthetic"
+    with qtbot.waitSignal(step.done, timeout=5000):
+        step.on_primary()
+    assert visit.patient.stored is not None
+    assert step.state is StepState.DONE
+    qtbot.waitUntil(lambda: visit.session is not None)
+
+
+def test_a_code_in_use_stops_and_offers_that_patient(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+) -> None:
+    desk.run(make, None, None, step)
+    type_in(step, Patient(code="demo-8"))
+    with qtbot.waitSignal(visit.patient.code_taken, timeout=5000), qtbot.assertNotEmitted(step.done):
+        step.on_primary()
+    assert step.page.code.is_wrong
+    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+        step.page.open_pressed.emit("demo-8")
+    assert step.page.draft.patient.birth_year == 1950
+    qtbot.waitUntil(lambda: not step.page.code.is_wrong)
+    with qtbot.waitSignal(step.done, timeout=5000):
+        step.on_primary()
+
+
+def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
+    type_in(step, Patient(code="DEMO-9"))
+    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+        step.page.code_committed.emit()
+    type_in(step, Patient(code="DEMO-9", mass_kg=82.0))
+    qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=5000)
+    assert visit.patient.stored is not None
+    assert visit.patient.stored.told.mass_kg == 82.0
+
+
+def test_the_set_up_of_the_last_visit_is_taken_over(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+) -> None:
+    desk.run(make_with_visit, None, None, step)
+    step.page.open_pressed.emit("DEMO-10")
+    button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Same set-up as last visit")
+    qtbot.waitUntil(button.isVisible, timeout=5000)
+    said = {label.text() for label in step.page.findChildren(QLabel)}
+    assert {"Last visit, 24 Oct 2026", "barefoot", "left knee 15°, others 0°", "0A09, 0A31"} <= said
+    with qtbot.waitSignal(step.done, timeout=5000):
+        button.click()
+    assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
+    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.told.zero_rad, timeout=5000)
+    assert np.rad2deg(visit.told.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
+
+
+def test_a_foot_without_an_ankle_joint_is_told_to_the_visit(visit: Visit, step: PatientStep) -> None:
+    page = step.page
+    page.side.segments[1].click()
+    page.limb.segments[1].click()
+    page.ankles[Side.LEFT].buttons[0].click()
+    assert visit.without_ankle == {Side.LEFT}
+    assert visit.prosthetic_sides == {Side.LEFT}
+
+
+def make(opened: OpenedLibrary) -> None:
+    opened.library.patients.create(Patient(code="DEMO-8", birth_year=1950))
+
+
+def make_with_visit(opened: OpenedLibrary) -> None:
+    library = opened.library
+    patient = library.patients.create(Patient(code="DEMO-10"))
+    told = Session(recordings=(), started="2026-10-24T10:00:00+02:00", zero_rad={Joint.LEFT_KNEE: np.deg2rad(15)})
+    session = library.sessions.create(patient.id, told)
+    placed = {
+        Site.LEFT_THIGH: PlacedSensor("0A09", SensorInfo()),
+        Site.LEFT_SHANK: PlacedSensor("0A31", SensorInfo()),
+    }
+    library.sessions.place(session.id, placed)
+    walk = Recording("walk 1", RecordingKind.WALKING, "", {}, condition="barefoot")
+    library.recordings.start(session.id, walk, is_simulated=True)

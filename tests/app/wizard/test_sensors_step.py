@@ -1,0 +1,162 @@
+"""The step of the sensors, on the simulated patient: heard, shaken, placed, silent and back."""
+
+from collections.abc import Iterator
+
+import numpy as np
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.pages.sensors_page import Way
+from app.theme import Look
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.visit import Visit
+from core.body import Site
+from core.samples import Patient, Session
+from devices.replay import ReplaySource
+
+TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are shown
+
+
+@pytest.fixture
+def source(simulated_session: Session) -> ReplaySource:
+    """Slow enough for a shake of a second to be seen by the screen."""
+    return ReplaySource(simulated_session, speed=4.0)
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
+    visit.patient.edit(Patient(code="DEMO-7"))
+    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+        visit.patient.commit()
+    step = SensorsStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.page.resize(1064, 672)
+    step.page.show()
+    with qtbot.waitSignal(visit.changed, timeout=5000):
+        step.enter()
+    yield step
+    step.leave()
+    step.deleteLater()
+
+
+def open_source(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        step.page.nothing.buttons[0].click()
+    qtbot.waitUntil(lambda: len(visit.sensors.status) == 6)
+    tick(step)
+
+
+def tick(step: SensorsStep) -> bool:
+    """Let time pass for the step; False, so that a wait can begin with it."""
+    for _ in range(TICKS_FOR_ROWS):
+        step.tick()
+    return False
+
+
+def test_without_a_source_the_choices_stand_in_the_page(step: SensorsStep) -> None:
+    assert step.page.nothing.isVisible()
+    assert [button.text() for button in step.page.nothing.buttons] == ["Fast patient"]
+    assert step.bar().primary is None
+    assert step.state is StepState.TODO
+
+
+def test_sensors_are_placed_by_keys_and_told_to_the_library(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
+) -> None:
+    open_source(qtbot, visit, step)
+    page = step.page
+    assert list(page.list.rows) == list(worn)
+    verb = step.bar().primary
+    assert verb is not None
+    assert not verb.is_enabled
+    for sensor, site in worn.items():
+        page.list.select(sensor)
+        assert step.on_intent(Intent(Action.LABEL, list(Site).index(site) + 1))
+    assert visit.sensors.site_of == worn
+    assert step.note == "6 of 6 worn"
+    assert step.state is StepState.DONE
+    verb = step.bar().primary
+    assert verb is not None
+    assert verb.is_wished
+    with qtbot.waitSignal(step.done):
+        step.on_primary()
+    with qtbot.waitSignal(visit.changed, timeout=5000):
+        step.leave()
+    assert visit.session is not None
+    assert visit.session.placements[-1].site_of == worn
+    count = len(visit.session.placements)
+    step.enter()
+    step.leave()
+    qtbot.wait(50)
+    assert len(visit.session.placements) == count, "what the library knows is not told twice"
+
+
+def test_traces_show_what_the_sensors_turned(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
+    open_source(qtbot, visit, step)
+    shown: list[dict[str, np.ndarray]] = []
+    step.page.show_traces = shown.append  # type: ignore[method-assign, assignment]  # what the page is shown
+    qtbot.waitUntil(lambda: tick(step) or np.isfinite(shown[-1]["DEMO-left_shank"]).sum() > 100, timeout=5000)
+    assert {len(values) for values in shown[-1].values()} == {250}
+
+
+def test_a_shaken_sensor_takes_the_place_that_is_next(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, source: ReplaySource
+) -> None:
+    open_source(qtbot, visit, step)
+    step.page.ways.segments[1].click()
+    source.shake("DEMO-right_foot")
+    qtbot.waitUntil(lambda: tick(step) or bool(visit.sensors.site_of), timeout=10_000)
+    assert visit.sensors.site_of == {"DEMO-right_foot": Site.LEFT_THIGH}
+
+
+def test_a_silent_sensor_is_asked_for_again_and_keeps_its_place(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, source: ReplaySource, worn: dict[str, Site]
+) -> None:
+    open_source(qtbot, visit, step)
+    visit.sensors.assign_all(worn)
+    source.silence("DEMO-right_foot")
+    qtbot.waitUntil(lambda: tick(step) or step.state is StepState.ATTENTION, timeout=10_000)
+    bar = step.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Reconnect R foot"
+    assert [verb.text for verb in bar.others] == ["Go on without R foot"]
+    assert "R foot has been silent" in step.page.notice.text
+    source.wake("DEMO-right_foot")
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        step.on_primary()
+    assert visit.sensors.site_of == worn
+
+
+def test_left_to_the_motion_goes_on_without_places(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
+    open_source(qtbot, visit, step)
+    step.page.ways.segments[2].click()
+    assert step.note == "left to the motion"
+    assert step.state is StepState.DONE
+    verb = step.bar().primary
+    assert verb is not None
+    assert verb.is_enabled
+    assert step.page.place_selected(2)
+    assert not visit.sensors.is_left_to_motion
+    assert step.page.way is Way.DRAG
+
+
+def test_the_set_up_of_the_last_visit_is_worn_at_once(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
+) -> None:
+    visit.placement_before = {**worn, "gone": Site.LEFT_FOOT}
+    open_source(qtbot, visit, step)
+    assert visit.sensors.site_of == worn
+
+
+def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Visit) -> None:
+    visit._choices = ()
+    step = SensorsStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    assert step.cannot_enter == "Type the patient's code first."
+    step.enter()
+    step.page.show()
+    assert step.page.nothing.buttons == []
+    step.leave()
+    step.deleteLater()
