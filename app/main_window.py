@@ -1,16 +1,16 @@
-"""The window: a header, a page, an action bar. It opens sessions and knows nothing of gait."""
+"""The window: who logs in, home, a session with a patient, or a folder's; and the cover when nobody is there."""
 
-import logging
 import signal
 import sys
-from itertools import pairwise
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import UUID
 
-from PySide6.QtCore import QSize, Qt, QUrl
+import platformdirs
+from PySide6.QtCore import QEvent, QObject, QSettings, QSize, Qt, QTimer
 from PySide6.QtGui import (
     QCloseEvent,
-    QColor,
     QDragEnterEvent,
     QDragLeaveEvent,
     QDropEvent,
@@ -18,257 +18,297 @@ from PySide6.QtGui import (
     QKeySequence,
     QPainter,
     QPaintEvent,
-    QResizeEvent,
     QShortcut,
 )
-from PySide6.QtWidgets import (
-    QApplication,
-    QFileDialog,
-    QFrame,
-    QHBoxLayout,
-    QScrollArea,
-    QSizePolicy,
-    QStackedWidget,
-    QVBoxLayout,
-    QWidget,
-)
+from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
+from app.home.entry import Entry
+from app.home.session_screen import SessionScreen
+from app.library_commands import default_folder
+from app.logs import log_qt_messages
+from app.settings import Scheme, Settings
+from app.storage.idle_lock import IdleLock
 from app.theme import Look, load_fonts
-from app.widgets.banner import Banner
-from app.widgets.button import Button, Kind
 from app.widgets.focus_ring import FocusRing
-from app.widgets.header import Header
-from app.widgets.icons import Icon
-from app.widgets.start_pages import EmptyPage, WorkingPage
-from app.widgets.text import Text
-from app.wording import later, place, side_name, tr
-from app.workers.background import Background, Work
-from app.workers.opening import opening_demonstration, opening_folder
-from core.body import Side
-from devices.files.refusal import FileRefusedError
+from app.workers.library_desk import LibraryDesk, OpenedState
 
-if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
-    from app.widgets.result_page import ResultPage
-    from app.workers.opening import Opened
-    from core.samples import Patient
-
-_log = logging.getLogger(__name__)
+if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them
+    from app.home.home import Home
+    from app.storage.stored import StoredPatient
+    from app.wizard.wizard import Wizard
 
 FIRST_SIZE = (1280, 800)
 FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
-NARROW_BELOW = 800
-BAR = 72
 DROP_EDGE = 2.5
-
-STOPPED = (
-    later("The analysis was stopped."),
-    later("Nothing was changed; open the session again to go on."),
-)
-ENDED_EARLY = (
-    later("The analysis ended before it was done."),
-    later("The folder is unchanged; the log holds the details."),
+POLL_MS = 1000
+ACTIVITY = frozenset(
+    (
+        QEvent.Type.KeyPress,
+        QEvent.Type.MouseMove,
+        QEvent.Type.MouseButtonPress,
+        QEvent.Type.Wheel,
+        QEvent.Type.TouchUpdate,
+        QEvent.Type.TabletMove,
+    )
 )
 
 
 class MainWindow(QWidget):
-    def __init__(self, look: Look) -> None:
+    """`library` is the folder of the user's own library, be it still to be made. None: sessions of folders only."""
+
+    def __init__(self, look: Look, settings: Settings, library: Path | None = None) -> None:
         super().__init__()
-        self._look = look
-        self._background = Background(self)
-        self._is_drop_welcome = False
-        self._results: ResultPage | None = None
-        self._dialog: QFileDialog | None = None
+        self._look, self._settings = look, settings
+        self.desk = LibraryDesk(self)
+        self._home: Home | None = None
+        self._wizard: Wizard | None = None
+        self._covered: QWidget | None = None
+        self._is_dark: bool | None = None  # not yet known
         self.setWindowTitle("Gaitwright")
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
         self.resize(QSize(*FIRST_SIZE).boundedTo(self.screen().availableSize() - QSize(*FRAME)))
-        self.header = Header(look)
-        self.banner = Banner(look)
-        self.empty = EmptyPage(look)
-        self.working = WorkingPage(look)
-        self.pages = _Pages()
-        self.bar = _ActionBar(look)
+        self.session = SessionScreen(look)
+        self.entry = Entry(look, self.desk, settings, library, self) if library is not None else None
+        self.screens = QStackedWidget()
+        self.idle = IdleLock(time.time, self._lock)
+        self._poll = QTimer(self)
+        self._poll.setInterval(POLL_MS)
         self._build()
-        FocusRing(look, self)
         self._connect()
-        self._on_look_changed()
-        self._show_page(self.empty)
+        self._apply_settings()
+        self._begin()
 
     @property
-    def results(self) -> "ResultPage | None":
-        """The page of results; None before the first session was analysed."""
-        return self._results
+    def home(self) -> "Home | None":
+        """Home; None before a library was opened."""
+        return self._home
 
     @property
-    def is_working(self) -> bool:
-        return self._background.is_busy
+    def is_covered(self) -> bool:
+        return self._covered is not None
 
     def open_folder(self, folder: Path) -> None:
         """Read and analyse a session folder in the background, and show what comes of it."""
-        self._begin(opening_folder(folder), tr("Analysing {folder}").format(folder=folder.name))
+        self._show(self.session)
+        self.session.open_folder(folder)
 
     def open_demonstration(self) -> None:
-        """Let the simulated patient walk, in the background, and show what comes of it."""
-        self._begin(opening_demonstration(), tr("Analysing the demonstration"))
-
-    def stop(self) -> None:
-        """End what is running, and go back to what was there before."""
-        if self._background.is_busy:
-            self._background.stop()
-            self._show_page(self._results or self.empty)
-            self.banner.tell(*map(tr, STOPPED))
+        """Open the demonstration's library; where there is none of one's own, let the simulated patient walk."""
+        if self.entry is None:
+            self._show(self.session)
+            self.session.open_demonstration()
+        else:
+            self.entry.open_demonstration()
 
     def closeEvent(self, event: QCloseEvent) -> None:
-        self._background.stop()
+        if self._wizard is not None:
+            self._wizard.close_visit()
+        self._poll.stop()
+        self.session.stop()
         event.accept()
 
     def finish(self) -> None:
-        """Wait for the thread of an analysis that was running when the window was closed."""
-        self._background.finish()
+        """Wait for the threads of what was running when the window was closed."""
+        self.session.finish()
+        self.desk.finish()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
-        if event.mimeData().hasUrls():
+        if event.mimeData().hasUrls() and self._takes_folders:
             event.acceptProposedAction()
-            self._set_drop_welcome(True)
+            self._drop_frame.cover()
 
     def dragLeaveEvent(self, _event: QDragLeaveEvent) -> None:
-        self._set_drop_welcome(False)
+        self._drop_frame.hide()
 
     def dropEvent(self, event: QDropEvent) -> None:
-        self._set_drop_welcome(False)
-        event.acceptProposedAction()
-        self._open_dropped(event.mimeData().urls())
+        self._drop_frame.hide()
+        if self._takes_folders:
+            event.acceptProposedAction()
+            self._show(self.session)
+            self.session.open_dropped(event.mimeData().urls())
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._fit()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.ground))
-        if self._is_drop_welcome:
-            painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
-            painter.drawRect(self.pages.geometry().adjusted(2, 2, -2, -2))
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() in ACTIVITY:
+            self.idle.note_activity()
+        return super().eventFilter(watched, event)
 
     def _build(self) -> None:
-        for page in (self.empty, self.working):
-            self.pages.addWidget(page)
-        self._banner_row = QVBoxLayout()
-        self._banner_row.addWidget(self.banner)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(0)
-        column.addWidget(self.header)
-        column.addLayout(self._banner_row)
-        scroll = QScrollArea()
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        scroll.setWidget(self.pages)
-        column.addWidget(scroll, 1)
-        column.addWidget(self.bar)
+        column.addWidget(self.screens)
+        self.screens.addWidget(self.session)
+        if self.entry is not None:
+            for page in self.entry.pages:
+                self.screens.addWidget(page)
+        FocusRing(self._look, self)
+        self._drop_frame = _DropFrame(self._look, self)
 
     def _connect(self) -> None:
-        for page in (self.empty, self.bar):
-            page.open_folder.clicked.connect(self._on_open_folder)
-            page.open_demonstration.clicked.connect(self.open_demonstration)
-        self.working.stop_pressed.connect(self.stop)
-        self._background.progressed.connect(self._on_progressed)
-        self._background.done.connect(self._on_done)
-        self._background.failed.connect(self._on_failed)
+        self.session.left.connect(self._on_session_left)
+        self._settings.changed.connect(self._apply_settings)
         self._look.changed.connect(self._on_look_changed)
+        QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_settings)
+        self.session.demonstration_wished.connect(self.open_demonstration)
         for keys, slot in (
-            (QKeySequence.StandardKey.Open, self._on_open_folder),
-            ("Ctrl+D", self.open_demonstration),
-            (Qt.Key.Key_Escape, self.stop),
+            (QKeySequence.StandardKey.Open, self._on_open),
+            ("Ctrl+D", self._on_demonstration),
+            (Qt.Key.Key_Escape, self._on_escape),
             ("Ctrl++", self._on_larger),
             ("Ctrl+=", self._on_larger),
             ("Ctrl+-", self._on_smaller),
             ("Ctrl+0", self._on_usual_size),
         ):
-            shortcut = QShortcut(QKeySequence(keys), self)
-            shortcut.activated.connect(slot)
-
-    def _begin(self, work: Work, title: str) -> None:
-        self.banner.hide()
-        self.working.begin(title)
-        self._show_page(self.working)
-        self._background.start(work)
-
-    def _show_page(self, page: QWidget) -> None:
-        self.pages.setCurrentWidget(page)
-        self.bar.setVisible(page is self._results)
-        if page is self.working:
-            self.working.stop.setFocus()
-        elif page is self.empty:
-            self.empty.open_folder.setFocus()
-        elif self._results is not None:
-            self._results.focus()
-        self._fit()
-
-    def _fit(self) -> None:
-        """Tell the pages how much room there is, in px of the design."""
-        scale = self._look.theme.scale
-        width, height = self.width() / scale, self.height() / scale
-        is_narrow = width < NARROW_BELOW
-        self.empty.set_narrow(is_narrow)
-        self.bar.set_narrow(is_narrow)
-        if self._results is not None:
-            self._results.set_room(width, height)
-
-    def _open_dropped(self, urls: list[QUrl]) -> None:
-        paths = [Path(url.toLocalFile()) for url in urls if url.isLocalFile()]
-        if len(paths) == 1 and paths[0].name == "session.toml":
-            paths = [paths[0].parent]
-        if len(paths) != 1 or not paths[0].is_dir():
-            self.banner.tell(tr("This is not one folder."), tr("Drop the folder that holds session.toml."))
+            QShortcut(QKeySequence(keys), self).activated.connect(slot)
+        if self.entry is None:
             return
-        self.open_folder(paths[0])
+        self.entry.shown.connect(self._show)
+        self.entry.entered.connect(self._on_entered)
+        self.entry.uncovered.connect(self._on_uncovered)
+        self.entry.left.connect(self._log_out)
+        self.entry.first_start.demonstration_wished.connect(self.open_demonstration)
+        self.entry.log_in.demonstration_wished.connect(self.open_demonstration)
+        self.desk.refused.connect(self._on_told)
+        self._poll.timeout.connect(self._on_poll)
+        app = QApplication.instance()
+        if app is not None:
+            app.installEventFilter(self)
+        self._poll.start()
 
-    def _set_drop_welcome(self, is_welcome: bool) -> None:
-        self._is_drop_welcome = is_welcome
-        self.update()
+    def _begin(self) -> None:
+        if self.entry is not None:
+            self.session.set_way_back(True)
+            self.entry.begin()
 
-    def _on_open_folder(self) -> None:
-        self._dialog = QFileDialog(self, tr("Open a session folder"))
-        self._dialog.setFileMode(QFileDialog.FileMode.Directory)
-        self._dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog.open()
+    def _show(self, screen: QWidget) -> None:
+        self.screens.setCurrentWidget(screen)
+        if self.entry is not None and screen in self.entry.pages:
+            self.entry.focus(screen)
+        elif screen is self._home and self._home is not None:
+            self._home.focus()
 
-    def _on_folder_selected(self, folder: str) -> None:
-        self.open_folder(Path(folder))
+    @property
+    def _takes_folders(self) -> bool:
+        """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover."""
+        return not self.is_covered and (self._wizard is None or self.screens.currentWidget() is not self._wizard)
 
-    def _on_progressed(self, share: float, what: str) -> None:
-        words = place(what)
-        self.working.show_progress(share, words[:1].upper() + words[1:])
+    @property
+    def _is_recording(self) -> bool:
+        return self._wizard is not None and self._wizard.is_recording
 
-    def _on_done(self, opened: "Opened") -> None:
-        if self._results is None:
-            from app.widgets.result_page import ResultPage
+    # a library is open
 
-            self._results = ResultPage(self._look)
-            self.pages.addWidget(self._results)
-            order = [*self._results.tab_order, self.bar.open_folder, self.bar.open_demonstration]
-            for before, after in pairwise(order):
-                self.setTabOrder(before, after)
-        session = opened.session
-        self._results.show_analysis(opened.analysis)
-        self.header.show_session(
-            session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
-        )
-        self._show_page(self._results)
+    def _on_entered(self, state: OpenedState) -> None:
+        if self._home is None:
+            from app.home.home import Home
 
-    def _on_failed(self, error: Exception) -> None:
-        self._show_page(self._results or self.empty)
-        if isinstance(error, FileRefusedError):
-            self.banner.tell(f"{error.where}: {error.what}.", f"{error.remedy}.")
+            self._home = Home(self._look, self.desk, self._settings)
+            self.screens.addWidget(self._home)
+            self._home.session_wished.connect(self._on_session_wished)
+            self._home.session_opened.connect(self._on_session_opened)
+            self._home.demonstration_wished.connect(self.open_demonstration)
+            self._home.own_library_wished.connect(self._log_out)
+        self.idle.unlock()
+        self._home.show_library(state)
+        self._show(self._home)
+
+    def _on_session_wished(self, patient: "StoredPatient | None") -> None:
+        wizard = self._entered_wizard()
+        if wizard is not None:
+            wizard.begin(patient)
+
+    def _on_session_opened(self, session_id: UUID) -> None:
+        wizard = self._entered_wizard()
+        if wizard is not None:
+            wizard.show_session(session_id)
         else:
-            _log.error("the analysis ended early", exc_info=error)
-            self.banner.tell(*map(tr, ENDED_EARLY))
+            self._show(self.session)
+            self.session.open_stored(self.desk, session_id)
+
+    def _entered_wizard(self) -> "Wizard | None":
+        """The wizard, in sight: the one place where a session with a patient is entered. None: it is not there yet."""
+        if self._wizard is None:
+            try:
+                from app.wizard.wizard import Wizard
+            except ImportError:
+                return None
+            self._wizard = Wizard(self._look, self.desk)
+            self.screens.addWidget(self._wizard)
+            self._wizard.left.connect(self._on_wizard_left)
+            self._wizard.settings_wanted.connect(self._on_settings_wanted)
+        self._show(self._wizard)
+        return self._wizard
+
+    def _on_wizard_left(self) -> None:
+        if self._home is not None:
+            self._home.refresh()
+            self._show(self._home)
+
+    def _on_settings_wanted(self) -> None:
+        """Show the settings, if the visit may be left."""
+        if self._wizard is not None:
+            self._wizard.leave()
+        if self._home is not None and self.screens.currentWidget() is self._home:
+            self._home.show_settings()
+
+    def _log_out(self) -> None:
+        self._covered = None
+        if self._wizard is not None:
+            self._wizard.close_visit()
+        if self._home is not None:
+            self._home.clear()
+        self.desk.close()
+        if self.entry is not None:
+            self.entry.begin()
+
+    def _on_session_left(self) -> None:
+        if self._home is not None and self.desk.state is not None:
+            self._show(self._home)
+        elif self.entry is not None:
+            self.entry.begin()
+
+    def _on_told(self, what: str, remedy: str) -> None:
+        if self._home is not None and self.desk.state is not None:
+            self._home.banner.tell(what, remedy)
+        elif self.entry is not None:
+            self.entry.tell(what, remedy)
+
+    # nobody is there
+
+    def _on_poll(self) -> None:
+        self.idle.poll()
+        if self.entry is not None and self.is_covered:
+            self.entry.show_recording(self._is_recording)
+
+    def _lock(self) -> None:
+        """Cover what the library shows; a recording goes on under it."""
+        state = self.desk.state
+        if self.entry is None or state is None or state.is_demonstration or self.entry.is_showing_key:
+            self.idle.unlock()
+            return
+        self._covered = self.screens.currentWidget()
+        self.entry.cover(state.operator.code, self._is_recording)
+
+    def _on_uncovered(self) -> None:
+        covered, self._covered = self._covered, None
+        self.idle.unlock()
+        if covered is not None:
+            self._show(covered)
+
+    # how it looks
+
+    def _apply_settings(self) -> None:
+        scheme, system = self._settings.scheme, QGuiApplication.styleHints().colorScheme()
+        is_dark = scheme is Scheme.DARK or (scheme is Scheme.SYSTEM and system is Qt.ColorScheme.Dark)
+        if is_dark is not self._is_dark:  # else what the look was told otherwise holds
+            self._is_dark = is_dark
+            self._look.set_dark(is_dark)
+        if self._settings.scale != self._look.theme.scale:
+            self._look.set_scale(self._settings.scale)
+
+    def _on_look_changed(self) -> None:
+        self._settings.scale = self._look.theme.scale  # also when the keys changed it
 
     def _on_larger(self) -> None:
         self._look.grow(1)
@@ -279,78 +319,44 @@ class MainWindow(QWidget):
     def _on_usual_size(self) -> None:
         self._look.grow(0)
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
-        self._fit()
-        self.update()
+    def _on_open(self) -> None:
+        if self._takes_folders:
+            self._show(self.session)
+            self.session.choose_folder()
+
+    def _on_demonstration(self) -> None:
+        if self._takes_folders:
+            self.open_demonstration()
+
+    def _on_escape(self) -> None:
+        if self.screens.currentWidget() is not self.session:
+            return
+        if self.session.is_working:
+            self.session.stop()
+        else:
+            self.session.leave()
 
 
-class _Pages(QStackedWidget):
-    """As large as the page in sight needs to be, not as the largest."""
+class _DropFrame(QWidget):
+    """The edge round the window while a folder is held over it."""
 
-    def minimumSizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.minimumSizeHint() if page is not None else QSize()
+    def __init__(self, look: Look, window: QWidget) -> None:
+        super().__init__(window)
+        self._look, self._window = look, window
+        self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAttribute(Qt.WidgetAttribute.WA_NoSystemBackground)
+        self.hide()
 
-    def sizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.sizeHint() if page is not None else QSize()
-
-
-class _ActionBar(QWidget):
-    """The ways on from a result."""
-
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look, self._is_narrow = look, False
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
-        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
-        self._purpose = Text(look, tr("Research use. Not a medical device."), size=12, tone="ink2", wraps=True)
-        self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self._row = QHBoxLayout(self)
-        self._row.addWidget(self.open_folder)
-        self._row.addWidget(self.open_demonstration)
-        self._row.addWidget(self._purpose, 1)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
-
-    def set_narrow(self, is_narrow: bool) -> None:
-        self._is_narrow = is_narrow
-        self._purpose.setVisible(not is_narrow)
-        self._on_look_changed()
+    def cover(self) -> None:
+        self.setGeometry(self._window.rect())
+        self.raise_()
+        self.show()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.surface))
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.drawLine(self.rect().topLeft(), self.rect().topRight())
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        side = px(16 if self._is_narrow else 24)
-        self._row.setContentsMargins(side, 0, side, 0)
-        self._row.setSpacing(px(8 if self._is_narrow else 16))
-        self.setFixedHeight(px(BAR))
-        self.update()
-
-
-def _in_words(patient: "Patient") -> str:
-    """Give what the clinic typed, in one line."""
-    person = ", ".join(filter(None, [str(patient.birth_year or ""), patient.sex]))
-    side = ""
-    if patient.prosthetic_side and patient.prosthetic_side != "none":
-        side = tr("{side} prosthetic").format(side=_side_in_words(patient.prosthetic_side))
-    elif patient.affected_side and patient.affected_side != "none":
-        side = tr("{side} affected").format(side=_side_in_words(patient.affected_side))
-    return " · ".join(filter(None, [person, side, patient.device]))
-
-
-def _side_in_words(side: str) -> str:
-    """Name a side as a session's file does, which also knows "both"."""
-    return side_name(Side(side)) if side in set(Side) else tr("both")
+        painter.setPen(theme.pen(theme.colours.ink, DROP_EDGE))
+        painter.drawRect(self.rect().adjusted(2, 2, -3, -3))
 
 
 def open_window(argv: list[str]) -> int:
@@ -363,13 +369,12 @@ def open_window(argv: list[str]) -> int:
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
+    log_qt_messages()
     app = QApplication([sys.argv[0], *argv])
     app.setApplicationName("Gaitwright")
     app.setStyle("Fusion")
     load_fonts()
-    look = Look(app)
-    look.follow_system()
-    window = MainWindow(look)
+    window = MainWindow(Look(app), Settings(own_settings()), default_folder())
     window.show()
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
@@ -377,3 +382,9 @@ def open_window(argv: list[str]) -> int:
     code = app.exec()
     window.finish()
     return code
+
+
+def own_settings() -> QSettings:
+    """What this user of the computer has set, beside the library."""
+    folder = platformdirs.user_config_path("gaitwright", appauthor=False)
+    return QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat)

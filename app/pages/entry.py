@@ -5,6 +5,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.theme import Look
+from app.widgets.banner import Banner
 from app.widgets.header import Mark
 from app.widgets.text import SEMIBOLD, Text
 
@@ -22,8 +23,10 @@ class EntryPage(QWidget):
         self._mark_row = QHBoxLayout()
         self._mark_row.addWidget(Mark(look))
         self._mark_row.addWidget(self._name, 1)
+        self.banner = Banner(look)
         self._inside = QWidget()
         self.column = QVBoxLayout(self._inside)
+        self.column.addWidget(self.banner)
         self.column.addLayout(self._mark_row)
         middle = QWidget()
         row = QHBoxLayout(middle)

@@ -235,7 +235,7 @@ class _Empty(QWidget):
         self._look = look
         self._sentence = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.new_patient = Button(look, tr("New patient"), Kind.SECONDARY, Icon.ADD)
+        self.new_patient = Button(look, tr("New patient"), Kind.PRIMARY, Icon.ADD)
         self.demonstration = Button(look, tr("Open demonstration"), Kind.QUIET, Icon.PLAY)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
@@ -260,7 +260,7 @@ class _Empty(QWidget):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._column.setContentsMargins(px(24), px(24), px(24), px(24))
+        self._column.setContentsMargins(px(2), px(24), px(2), px(24))
         self._column.setSpacing(px(16))
 
 
@@ -271,7 +271,7 @@ class _Search(QLineEdit):
         super().__init__()
         self._look = look
         self.setAccessibleName(tr("Search patients"))
-        self.setPlaceholderText(tr("Search code, birth year, device"))
+        self.setPlaceholderText(tr("Code, year, device"))
         self.setStyleSheet("background: transparent; border: none")  # the frame is painted under the text
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         look.changed.connect(self._on_look_changed)

@@ -210,7 +210,7 @@ class LogInPage(EntryPage):
         if self._is_cover:
             words = tr("Go on")
         if self._is_recovering:
-            words = tr("Set the passphrase and open")
+            words = tr("Set it and open")
         if self._is_busy:
             words = tr("Opening")
         if self._left_s > 0:

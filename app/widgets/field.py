@@ -69,8 +69,6 @@ class Field(QWidget):
         self._wrong_mark = IconMark(look, Icon.WARNING)
         self._wrong = Text(look, size=14, wraps=True)
         self._caption.setBuddy(self._box)
-        self._caption.setVisible(has_label)
-        self._optional.setVisible(has_label and is_optional)
         self._box.setPlaceholderText(placeholder)
         if is_secret:
             self._box.setEchoMode(QLineEdit.EchoMode.Password)
@@ -86,6 +84,8 @@ class Field(QWidget):
         self._column.addLayout(self._above)
         self._column.addWidget(self._box)
         self._column.addLayout(self._below)
+        self._caption.setVisible(has_label)  # not before it has a parent: alone it would be a window
+        self._optional.setVisible(has_label and is_optional)
         self._box.textEdited.connect(self._on_text_edited)
         self._box.editingFinished.connect(self._on_editing_finished)
         look.changed.connect(self._on_look_changed)

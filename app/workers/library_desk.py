@@ -10,6 +10,7 @@ import tempfile
 from collections.abc import Callable
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Lock
@@ -423,7 +424,8 @@ def _demonstration(folder: Path) -> "OpenedLibrary":
 
     library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
     try:
-        import_session(library, simulate(DEMONSTRATION).session, _silent, DEMONSTRATION_CODE)
+        session = replace(simulate(DEMONSTRATION).session, started=datetime.now().isoformat(timespec="seconds"))
+        import_session(library, session, _silent, DEMONSTRATION_CODE)
     except BaseException:
         library.library.close()
         raise

@@ -19,6 +19,7 @@ from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
 from core.samples import Patient
 
 PASSPHRASE = "four short words here"
+WAIT_MS = 20_000  # on a busy machine
 
 
 @pytest.fixture(scope="session")
@@ -68,7 +69,7 @@ class Asker(QObject):
 
 
 def opened(qtbot: QtBot, desk: LibraryDesk, folder: Path, code: str = "hk") -> OpenedState:
-    with qtbot.waitSignal(desk.opened) as told:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
         desk.open(folder, PASSPHRASE, code)
     (state,) = told.args or []
     assert isinstance(state, OpenedState)
@@ -89,7 +90,7 @@ def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: L
 
     for code in ("P-1", "P-2", "P-3"):
         desk.run(adding(code), asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: len(asker.results) == 3)
+    qtbot.waitUntil(lambda: len(asker.results) == 3, timeout=WAIT_MS)
     assert asker.results == ["P-1", "P-2", "P-3"]
     assert asker.threads == {main_thread()}
     assert main_thread() not in worked_in
@@ -103,7 +104,7 @@ def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, desk: LibraryDesk, fol
         desk.run(
             lambda library: library.library.patients.create(Patient(code="P-1")), asker.on_done, asker.on_failed, asker
         )
-    qtbot.waitUntil(lambda: bool(asker.refusals))
+    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [
         ("Another patient has this code.", "Open that patient, or choose another code."),
     ]
@@ -118,7 +119,7 @@ def test_what_nobody_foresaw_is_logged_and_told_plainly(
     def call(_library: OpenedLibrary) -> None:
         raise ZeroDivisionError("P-0147")
 
-    with qtbot.waitSignal(desk.refused) as told:
+    with qtbot.waitSignal(desk.refused, timeout=WAIT_MS) as told:
         desk.run(call, None, None, desk)
     assert told.args is not None
     assert "P-0147" not in " ".join(told.args)
@@ -134,19 +135,19 @@ def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, desk: LibraryDe
     go_on.set()
     last = Asker()
     desk.run(lambda _library: "after it", last.on_done, last.on_failed, last)
-    qtbot.waitUntil(lambda: bool(last.results))
+    qtbot.waitUntil(lambda: bool(last.results), timeout=WAIT_MS)
     assert heard == []
 
 
 def test_calls_before_opening_and_after_closing_are_refused(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
     asker = Asker()
     desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: len(asker.refusals) == 1)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 1, timeout=WAIT_MS)
     opened(qtbot, desk, folder)
-    with qtbot.waitSignal(desk.closed):
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
         desk.close()
     desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: len(asker.refusals) == 2)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 2, timeout=WAIT_MS)
     assert asker.results == []
     assert desk.state is None
 
@@ -155,7 +156,7 @@ def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
     qtbot: QtBot, desk: LibraryDesk, folder: Path, tmp_path: Path
 ) -> None:
     for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
-        with qtbot.waitSignal(desk.not_opened) as told:
+        with qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
             desk.open(place, "not this one", "hk")
         assert told.args is not None
         assert told.args[2] is is_key
@@ -165,19 +166,19 @@ def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
     qtbot: QtBot, desk: LibraryDesk, tmp_path: Path
 ) -> None:
-    with qtbot.waitSignal(desk.opened) as told:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
         desk.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
     (state,) = told.args or []
     assert state.operator.role is Role.ADMINISTRATOR
     assert state.recovery_key
     assert state.recovery_key not in repr(state)
     desk.close()
-    with qtbot.waitSignal(desk.opened) as told:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
         desk.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
     (state,) = told.args or []
     assert state.recovery_key == ""
     desk.close()
-    with qtbot.waitSignal(desk.opened):
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open(tmp_path / "new", "another four words")
 
 
@@ -185,7 +186,7 @@ def test_the_folder_says_who_may_open_it(qtbot: QtBot, desk: LibraryDesk, folder
     asker = Asker()
     for place in (folder, tmp_path / "nothing"):
         desk.look(place, asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: len(asker.results) == 2)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     there, nothing = asker.results
     assert isinstance(there, LibraryPlace)
     assert (there.exists, there.codes, there.remembered) == (True, ("hk", "vi"), ())
@@ -194,14 +195,14 @@ def test_the_folder_says_who_may_open_it(qtbot: QtBot, desk: LibraryDesk, folder
 
 
 def test_a_keyring_without_the_key_sends_back_to_the_passphrase(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with qtbot.waitSignal(desk.not_opened) as told:
+    with qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
         desk.open_remembered(folder, "hk")
     assert told.args is not None
     assert told.args[1] == "Type it."
 
 
 def test_a_library_that_another_program_holds_is_not_opened(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with held_alone(folder), qtbot.waitSignal(desk.not_opened) as told:
+    with held_alone(folder), qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
         desk.open(folder, PASSPHRASE, "hk")
     assert told.args is not None
     assert "open with this library already" in told.args[0]
@@ -221,7 +222,7 @@ def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
         opened(qtbot, desk, folder, code)
         asker.results.clear()
         desk.run(deleted, asker.on_done, asker.on_failed, asker)
-        qtbot.waitUntil(lambda: bool(asker.results))
+        qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
         assert asker.results == [left]
 
 
@@ -237,13 +238,13 @@ def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(qtbo
     folder = state.library.folder
     asker = Asker()
     desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
-    qtbot.waitUntil(lambda: bool(asker.results))
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     (patients,) = asker.results
     assert isinstance(patients, tuple)
     (patient,) = patients
     assert isinstance(patient, StoredPatient)
     assert (patient.told.code, patient.sessions) == ("DEMO-1", 1)
-    with qtbot.waitSignal(desk.closed):
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
         desk.close()
     assert not folder.exists()
 
@@ -260,10 +261,10 @@ def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, desk: LibraryDesk
             ended.set()
 
     desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    qtbot.waitUntil(lambda: asker.shares[:1] == [0.5])
+    qtbot.waitUntil(lambda: asker.shares[:1] == [0.5], timeout=WAIT_MS)
     desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
     assert asker.refusals == [("Something else is still being done.", "Wait for it, or stop it.")]
-    with qtbot.waitSignal(desk.closed):
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
         desk.close()  # stops it first
     assert ended.is_set()
     assert asker.results == []
@@ -273,15 +274,15 @@ def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, desk: LibraryDe
     opened(qtbot, desk, folder)
     asker = Asker()
     desk.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.results))
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     assert asker.results == [folder]
 
     def refused(_library: OpenedLibrary, _report: Report) -> None:
         raise LibraryError("There is no room", "Make some")
 
-    qtbot.waitUntil(lambda: desk._long.is_idle)
+    qtbot.waitUntil(lambda: desk._long.is_idle, timeout=WAIT_MS)
     desk.run_long(refused, asker.on_done, asker.on_failed, None, asker)
-    qtbot.waitUntil(lambda: bool(asker.refusals))
+    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [("There is no room.", "Make some.")]
 
 
@@ -300,10 +301,10 @@ def test_a_passphrase_that_is_remembered_opens_next_time(
             return kept.get(name)
 
     monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
-    with qtbot.waitSignal(desk.opened):
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open(folder, PASSPHRASE, "hk", must_remember=True)
     desk.close()
-    with qtbot.waitSignal(desk.opened):
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open_remembered(folder, "hk")
 
 
@@ -314,5 +315,5 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
         raise KeyRefusedError("The keyring takes no key", "Unlock it")
 
     monkeypatch.setattr("app.storage.keyring_slot.remember", refuse)
-    with qtbot.waitSignal(desk.opened):
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open(folder, PASSPHRASE, "hk", must_remember=True)

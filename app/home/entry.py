@@ -1,0 +1,217 @@
+"""Who opens the library? The pages before it is open and over it, and what the desk answers them."""
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QWidget
+
+from app.pages.first_start_page import FirstStartPage
+from app.pages.log_in_page import LogInPage
+from app.settings import Settings
+from app.theme import Look
+from app.widgets.start_pages import WorkingPage
+from app.wording import tr
+from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+
+if TYPE_CHECKING:
+    from app.home.key_sheet import KeySheet
+    from app.storage.keys import LoginDelay
+    from app.storage.opened import OpenedLibrary
+
+KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
+SHORTEST = 10  # as app.storage.keys has it
+
+
+class Entry(QObject):
+    """`entered` comes when the library is open and, where it is new, its recovery key was typed back."""
+
+    entered = Signal(object)  # OpenedState
+    uncovered = Signal()
+    left = Signal()  # from the cover, for another operator
+    shown = Signal(object)  # the page that is wanted now
+
+    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings, folder: Path, parent: QObject) -> None:
+        super().__init__(parent)
+        self._desk, self._settings, self._folder = desk, settings, folder
+        self._place: LibraryPlace | None = None
+        self._new: OpenedState | None = None
+        self._cover_of = self._tried = ""
+        self._delay: LoginDelay | None = None
+        self._sheet: KeySheet | None = None
+        self.first_start = FirstStartPage(look, SHORTEST, _is_same_key)
+        self.log_in = LogInPage(look, SHORTEST)
+        self.waiting = WorkingPage(look)
+        self.waiting.stop.hide()
+        self._connect()
+
+    @property
+    def pages(self) -> tuple[QWidget, ...]:
+        return (self.first_start, self.log_in, self.waiting)
+
+    @property
+    def is_covering(self) -> bool:
+        return bool(self._cover_of)
+
+    @property
+    def is_showing_key(self) -> bool:
+        return self._new is not None
+
+    def begin(self) -> None:
+        """Show the page that comes first: where there is no library yet, how to make one."""
+        self._new, self._cover_of, self._tried = None, "", ""
+        if not (self._folder / KEYS).exists():
+            self._show(self.first_start)
+            return
+        self.log_in.forget_typed()
+        self.log_in.show_operators(())
+        self._show(self.log_in)
+        self._desk.look(self._folder, self._on_looked, self._on_look_failed, self)
+
+    def cover(self, code: str, is_recording: bool) -> None:
+        """Show nothing but the way back, for the operator who is logged in."""
+        self._cover_of = code
+        self.log_in.show_cover(code, is_recording)
+        self._show(self.log_in)
+
+    def show_recording(self, is_recording: bool) -> None:
+        """Tell the cover whether a recording goes on."""
+        if self.is_covering:
+            self.log_in.show_recording(is_recording)
+
+    def open_demonstration(self) -> None:
+        self._tried = ""
+        self.waiting.begin(tr("Opening the demonstration"))
+        self._show(self.waiting)
+        self._desk.open_demonstration()
+
+    def focus(self, page: QWidget) -> None:
+        if isinstance(page, FirstStartPage | LogInPage):
+            page.focus()
+
+    def tell(self, what: str, remedy: str) -> None:
+        for page in (self.first_start, self.log_in):
+            page.banner.tell(what, remedy)
+
+    def _show(self, page: QWidget) -> None:
+        for one in (self.first_start, self.log_in):
+            one.banner.hide()
+        self.shown.emit(page)
+
+    def _connect(self) -> None:
+        first, log_in, desk = self.first_start, self.log_in, self._desk
+        first.made.connect(self._on_made)
+        first.done.connect(self._on_key_kept)
+        first.print_wished.connect(self._on_print_wished)
+        first.save_wished.connect(self._on_save_wished)
+        log_in.opened.connect(self._on_open_wished)
+        log_in.recovered.connect(self._on_recovery_wished)
+        log_in.remembered.connect(self._on_remembered_wished)
+        log_in.left.connect(self.left)
+        desk.opened.connect(self._on_opened)
+        desk.not_opened.connect(self._on_not_opened)
+
+    def _on_looked(self, place: LibraryPlace) -> None:
+        self._place = place
+        latest = self._settings.latest_operator
+        self.log_in.show_operators(place.codes, place.remembered, latest, can_remember=place.has_keyring)
+        self.log_in.focus()
+
+    def _on_look_failed(self, what: str, remedy: str) -> None:
+        self.log_in.refuse(f"{what} {remedy}")
+
+    def _on_made(self, code: str, name: str, passphrase: str) -> None:
+        self.first_start.show_busy(True)
+        self._desk.create(self._folder, code, name, passphrase)
+
+    def _on_open_wished(self, code: str, passphrase: str, must_remember: bool) -> None:
+        self._tried = code
+        self.log_in.show_busy(True)
+        if not self.is_covering:
+            self._desk.open(self._folder, passphrase, code, must_remember)
+            return
+
+        def check(opened: "OpenedLibrary") -> None:
+            from app.storage.keys import KeySlots
+            from app.storage.opened import KEYS as NAME
+
+            KeySlots(opened.folder / NAME).open(code, passphrase)
+
+        self._desk.run(check, self._on_checked, self._on_check_failed, self)
+
+    def _on_remembered_wished(self, code: str) -> None:
+        self._tried = code
+        self.log_in.show_busy(True)
+        self._desk.open_remembered(self._folder, code)
+
+    def _on_recovery_wished(self, code: str, recovery_key: str, passphrase: str) -> None:
+        self._tried = code
+        self.log_in.show_busy(True)
+        self._desk.open_recovered(self._folder, recovery_key, code, passphrase)
+
+    def _on_checked(self, _nothing: object) -> None:
+        self._login_delay().forget(self._tried)
+        self._cover_of = ""
+        self.log_in.forget_typed()
+        self.uncovered.emit()
+
+    def _on_check_failed(self, what: str, remedy: str) -> None:
+        self._login_delay().count_wrong(self._tried)
+        self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+
+    def _on_opened(self, state: OpenedState) -> None:
+        self.log_in.forget_typed()
+        self.first_start.show_busy(False)
+        if not state.is_demonstration:
+            self._login_delay().forget(state.operator.code)
+            self._settings.latest_operator = state.operator.code
+        if state.recovery_key:
+            self._new = state
+            self.first_start.show_recovery_key(state.recovery_key)
+            return
+        self.entered.emit(state)
+
+    def _on_not_opened(self, what: str, remedy: str, is_key: bool) -> None:
+        if self._tried:
+            if is_key:
+                self._login_delay().count_wrong(self._tried)
+            self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+        elif (self._folder / KEYS).exists():
+            self.begin()
+            self.tell(what, remedy)
+        else:
+            self.first_start.refuse(f"{what} {remedy}")
+            self._show(self.first_start)
+
+    def _on_key_kept(self) -> None:
+        state, self._new = self._new, None
+        if state is not None:
+            self.entered.emit(state)
+
+    def _on_print_wished(self, key: str) -> None:
+        self._key_sheet().print(key)
+
+    def _on_save_wished(self, key: str) -> None:
+        self._key_sheet().save(key)
+
+    def _key_sheet(self) -> "KeySheet":
+        if self._sheet is None:
+            from app.home.key_sheet import KeySheet  # needed once in a library's life
+
+            self._sheet = KeySheet(self.first_start)
+            self._sheet.told.connect(self.tell)
+        return self._sheet
+
+    def _login_delay(self) -> "LoginDelay":
+        if self._delay is None:
+            from app.storage.keys import LoginDelay
+
+            self._delay = LoginDelay(time.monotonic)
+        return self._delay
+
+
+def _is_same_key(typed: str, shown: str) -> bool:
+    from app.storage.keys import is_same_recovery_key
+
+    return is_same_recovery_key(typed, shown)

@@ -1,0 +1,557 @@
+"""Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
+
+import datetime
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
+from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+
+from app.home.settings_desk import SettingsDesk
+from app.home.words import length, patient_line, person, session_line
+from app.pages.home_page import HomePage
+from app.pages.import_page import ImportPage
+from app.pages.settings_page import SettingsPage
+from app.settings import Scheme, Settings
+from app.theme import Look
+from app.widgets.action_bar import ActionBar, BarState, Verb
+from app.widgets.banner import Banner
+from app.widgets.icons import Icon
+from app.widgets.start_pages import WorkingPage
+from app.widgets.step_rail import BelowRow, RailForm, RailRow, StepRail, StepState, home_below
+from app.widgets.toast import Toast
+from app.wording import place, tr
+from app.workers.background import Report
+from app.workers.library_desk import LibraryDesk, OpenedState
+
+if TYPE_CHECKING:
+    from app.storage import stored
+    from app.storage.exchange import Imported
+    from app.storage.opened import OpenedLibrary
+    from app.storage.recovery import Recovered
+    from core.samples import Session
+
+COMPACT_BELOW = (1180, 720)
+WIDE_FROM = 1800
+PATIENTS, DEMONSTRATION, IMPORT = range(3)
+
+
+@dataclass(frozen=True, slots=True)
+class _Sessions:
+    """The sessions of a patient, and which of them hold a recording that was recovered."""
+
+    patient_id: UUID
+    lines: "tuple[stored.SessionLine, ...]"
+    recovered: frozenset[UUID]
+
+
+class Home(QWidget):
+    session_wished = Signal(object)  # the StoredPatient of a new session, or None: a new patient
+    session_opened = Signal(object)  # UUID
+    demonstration_wished = Signal()
+    own_library_wished = Signal()  # from the demonstration back
+    help_wished = Signal(str)
+
+    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings) -> None:
+        super().__init__()
+        self._look, self._desk, self._settings = look, desk, settings
+        self._state: OpenedState | None = None
+        self._patients: dict[UUID, stored.StoredPatient] = {}
+        self._recovered: set[UUID] = set()  # patients
+        self._looked_at: set[UUID] = set()  # sessions
+        self._undo: Callable[[], None] | None = None
+        self._to_import: Session | None = None
+        self._dialog: QFileDialog | None = None
+        self.rail = StepRail(look)
+        self.banner = Banner(look)
+        self.page = HomePage(look)
+        self.import_page = ImportPage(look)
+        self.settings = SettingsDesk(look, desk, settings, self)
+        self.working = WorkingPage(look)
+        self.bar = ActionBar(look)
+        self.toast = Toast(look, self)
+        self._build()
+        self._connect()
+        self._go_to(self.page)
+        self._on_look_changed()
+
+    def show_library(self, state: OpenedState) -> None:
+        """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
+        self._state = state
+        self._recovered.clear()
+        self._looked_at.clear()
+        self.banner.hide()
+        self.page.search.clear()
+        self.page.show_patients(())
+        self.settings.show_library(state)
+        if state.is_end_lost:
+            self.banner.tell(
+                tr("The library was not closed well, and what was saved last is damaged."),
+                tr("Look through the latest session."),
+            )
+        self._recover()
+        self.refresh()
+        self._go_to(self.page)
+
+    def clear(self) -> None:
+        """Keep nothing of any patient, for whoever comes next."""
+        self._state, self._undo, self._to_import = None, None, None
+        self._patients.clear()
+        self.toast.hide()
+        self.banner.hide()
+        self.page.search.clear()
+        self.page.show_patients(())
+        self.page.show_patient("", "")
+        self.page.show_sessions(())
+
+    def refresh(self, chosen: UUID | None = None) -> None:
+        """Read the patients anew, and choose one of them, else the one that was chosen."""
+        self._chosen = chosen or self.page.patient_id
+        self._desk.run(lambda opened: opened.library.patients.search(), self._on_patients, self._on_refused, self)
+
+    def show_settings(self) -> None:
+        self._go_to(self.settings.page)
+
+    def focus(self) -> None:
+        page = self.current
+        if isinstance(page, HomePage | ImportPage | SettingsPage):
+            page.focus()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def _build(self) -> None:
+        self._pages = QStackedWidget()
+        for page in (self.page, self.import_page, self.settings.page, self.working):
+            scroll = QScrollArea()
+            scroll.setWidgetResizable(True)
+            scroll.setFrameShape(QFrame.Shape.NoFrame)
+            scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            scroll.setWidget(page)
+            self._pages.addWidget(scroll)
+        self._banner_row = QVBoxLayout()
+        self._banner_row.addWidget(self.banner)
+        column = QVBoxLayout()
+        column.setSpacing(0)
+        column.addLayout(self._banner_row)
+        column.addWidget(self._pages, 1)
+        column.addWidget(self.bar)
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.setSpacing(0)
+        row.addWidget(self.rail)
+        row.addLayout(column, 1)
+
+    def _connect(self) -> None:
+        page = self.page
+        page.patient_chosen.connect(self._on_patient_chosen)
+        page.session_opened.connect(self._on_session_opened)
+        page.new_session_wished.connect(self._on_primary)
+        page.new_patient_wished.connect(self._on_new_patient)
+        page.demonstration_wished.connect(self.demonstration_wished)
+        page.patient_deleted.connect(self._on_patient_deleted)
+        page.session_deleted.connect(self._on_session_deleted)
+        self.rail.step_pressed.connect(self._on_rail_pressed)
+        self.rail.below_pressed.connect(self._on_below_pressed)
+        self.bar.primary_pressed.connect(self._on_primary)
+        self.bar.quiet_pressed.connect(self._on_quiet)
+        self.bar.back_pressed.connect(self._on_back)
+        self.import_page.code_changed.connect(self._on_import_code)
+        self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
+        self.working.stop_pressed.connect(self._on_stop)
+        self.settings.told.connect(self.banner.tell)
+        self.toast.undone.connect(self._on_undone)
+        self._look.changed.connect(self._on_look_changed)
+        for keys, slot in (
+            ("Ctrl+F", self._on_find),
+            ("Ctrl+N", self._on_new_patient),
+            ("Ctrl+Z", self.toast.undo),
+            ("F1", self._on_help),
+            (Qt.Key.Key_Escape, self._on_escape),
+        ):
+            shortcut = QShortcut(QKeySequence(keys), self)
+            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            shortcut.activated.connect(slot)
+
+    def _go_to(self, page: QWidget) -> None:
+        number = next(k for k in range(self._pages.count()) if self._widget(k) is page)
+        self._pages.setCurrentIndex(number)
+        self._show()
+        self._fit()
+        self.focus()
+
+    @property
+    def current(self) -> QWidget:
+        """The page in sight."""
+        return self._widget(self._pages.currentIndex())
+
+    def _widget(self, number: int) -> QWidget:
+        scroll = self._pages.widget(number)
+        assert isinstance(scroll, QScrollArea)
+        page = scroll.widget()
+        assert page is not None
+        return page
+
+    def _fit(self) -> None:
+        scale = self._look.theme.scale
+        width, height = self.width() / scale, self.height() / scale
+        is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
+        form = RailForm.COMPACT if is_compact else RailForm.WIDE if width >= WIDE_FROM else RailForm.USUAL
+        self.rail.set_form(form)
+        self.page.set_room(width - form.value)
+        self.bar.show_state(self._bar())
+        px = self._look.theme.px
+        self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
+
+    def _show(self) -> None:
+        """Show what can be done from the page in sight."""
+        current = self.current
+        is_demonstration = self._state is not None and self._state.is_demonstration
+        states = [current is self.page, False, current is self.import_page]
+        icons = (Icon.HOME, Icon.BACK if is_demonstration else Icon.PLAY, Icon.IMPORT)
+        names = (
+            tr("Patients"),
+            tr("Leave the demonstration") if is_demonstration else tr("Open demonstration"),
+            tr("Import recordings"),
+        )
+        self.rail.show_rows(
+            tuple(
+                RailRow(name, state=StepState.CURRENT if is_current else StepState.TODO, icon=icon)
+                for name, is_current, icon in zip(names, states, icons, strict=True)
+            )
+        )
+        note = (
+            tr("Simulated, not encrypted, gone when it is closed.")
+            if is_demonstration
+            else tr("Everything stays on this computer, encrypted.")
+        )
+        below: tuple[BelowRow, ...] = home_below()
+        self.rail.show_below(below, note)
+        self.bar.show_state(self._bar())
+        self.bar.setVisible(current is not self.working)
+
+    def _bar(self) -> BarState:
+        if self.current is self.import_page:
+            code = self.import_page.code.text.strip()
+            words = tr("Import for {code}").format(code=code) if code else tr("Import")
+            return BarState(Verb(words, tr("Enter"), Icon.IMPORT, is_enabled=bool(code)))
+        if self.current is not self.page:
+            return BarState()
+        new = Verb(tr("New patient"), tr("Ctrl N"), Icon.ADD)
+        patient = self._patient
+        if patient is None:
+            return BarState(quiet=(new,), has_back=False)
+        words = tr("New session for {code}").format(code=patient.told.code)
+        begin = Verb(words, tr("Enter"), Icon.PLAY)
+        note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
+        return BarState(begin, quiet=(new,), note=note, has_back=False)
+
+    @property
+    def _patient(self) -> "stored.StoredPatient | None":
+        return self._patients.get(self.page.patient_id) if self.page.patient_id is not None else None
+
+    def _on_patients(self, patients: "tuple[stored.StoredPatient, ...]") -> None:
+        self._patients = {patient.id: patient for patient in patients}
+        now = datetime.datetime.now().astimezone()
+        lines = [patient_line(patient, now, patient.id in self._recovered) for patient in patients]
+        self.page.show_patients(lines, self._chosen)
+        self._on_patient_chosen(self.page.patient_id)
+
+    def _on_patient_chosen(self, patient_id: UUID | None) -> None:
+        patient = self._patients.get(patient_id) if patient_id is not None else None
+        self._show()
+        if patient is None:
+            self.page.show_patient("", "")
+            return
+        told = patient.told
+        about = " · ".join(filter(None, [person(told), told.device, told.aids]))
+        encrypted = self._state is not None and not self._state.is_demonstration
+        self.page.show_patient(told.code, about, tr("stored on this computer") if encrypted else tr("simulated"))
+        own = patient.id
+
+        def read(opened: "OpenedLibrary") -> _Sessions:
+            return _sessions_of(opened, own)
+
+        self._desk.run(read, self._on_sessions, self._on_refused, self)
+
+    def _on_sessions(self, sessions: _Sessions) -> None:
+        if sessions.patient_id != self.page.patient_id:
+            return  # another was chosen meanwhile
+        now = datetime.datetime.now().astimezone()
+        recovered = sessions.recovered - self._looked_at
+        self.page.show_sessions([session_line(line, now, recovered) for line in sessions.lines])
+
+    def _on_session_opened(self, session_id: UUID) -> None:
+        self._looked_at.add(session_id)
+        self.session_opened.emit(session_id)
+
+    def _on_new_patient(self) -> None:
+        if self.current is self.page:
+            self.session_wished.emit(None)
+
+    def _on_primary(self) -> None:
+        if self.current is self.import_page:
+            self._import()
+        elif self.current is self.page and self._patient is not None:
+            self.session_wished.emit(self._patient)
+
+    def _on_quiet(self, _number: int) -> None:
+        self._on_new_patient()
+
+    def _on_back(self) -> None:
+        self._to_import = None
+        self._go_to(self.page)
+
+    def _on_escape(self) -> None:
+        if self.current is self.working:
+            self._on_stop()
+        elif self.current is not self.page:
+            self._on_back()
+
+    def _on_find(self) -> None:
+        if self.current is self.page:
+            self.page.focus()
+            self.page.search.selectAll()
+
+    def _on_help(self) -> None:
+        self.help_wished.emit("home")
+
+    def _on_rail_pressed(self, number: int) -> None:
+        if self.current is self.working:
+            return
+        if number == PATIENTS:
+            self._on_back()
+        elif number == IMPORT:
+            self._choose_folder()
+        elif self._state is not None and self._state.is_demonstration:
+            self.own_library_wished.emit()
+        else:
+            self.demonstration_wished.emit()
+
+    def _on_below_pressed(self, name: str) -> None:
+        if name == "look":
+            self._settings.scheme = Scheme.LIGHT if self._look.theme.is_dark else Scheme.DARK
+        elif name == "settings" and self.current is not self.working:
+            self.show_settings()
+        elif name == "help":
+            self._on_help()
+
+    # what is deleted can be had back
+
+    def _on_patient_deleted(self, patient_id: UUID) -> None:
+        patient = self._patients[patient_id]
+
+        def undo() -> None:
+            def restore(opened: "OpenedLibrary") -> "stored.StoredPatient":
+                return opened.library.patients.restore(opened.library.patients.get(patient_id))
+
+            self._desk.run(restore, self._on_restored_patient, self._on_refused, self)
+
+        self._undo = undo
+        self._deleting = tr("{code} is deleted, for good in 30 days.").format(code=patient.told.code)
+        self._desk.run(lambda opened: opened.library.patients.delete(patient), self._on_deleted, self._on_refused, self)
+
+    def _on_session_deleted(self, session_id: UUID) -> None:
+        def delete(opened: "OpenedLibrary") -> None:
+            opened.library.sessions.delete(opened.library.sessions.get(session_id))
+
+        def undo() -> None:
+            def restore(opened: "OpenedLibrary") -> None:
+                opened.library.sessions.restore(opened.library.sessions.get(session_id))
+
+            self._desk.run(restore, self._on_restored_session, self._on_refused, self)
+
+        self._undo = undo
+        self._deleting = tr("The session is deleted, for good in 30 days.")
+        self._desk.run(delete, self._on_deleted, self._on_refused, self)
+
+    def _on_deleted(self, _what: object) -> None:
+        self.toast.offer(self._deleting)
+        self._fit()
+        self.refresh()
+
+    def _on_undone(self) -> None:
+        undo, self._undo = self._undo, None
+        if undo is not None:
+            undo()
+
+    def _on_restored_patient(self, patient: "stored.StoredPatient") -> None:
+        self.refresh(patient.id)
+
+    def _on_restored_session(self, _nothing: object) -> None:
+        self.refresh()
+
+    # what comes in
+
+    def _choose_folder(self) -> None:
+        dialog = QFileDialog(self, tr("Import a session folder"))
+        dialog.setFileMode(QFileDialog.FileMode.Directory)
+        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.fileSelected.connect(self._on_folder_selected)
+        self._dialog = dialog
+        dialog.open()
+
+    def _on_folder_selected(self, folder: str) -> None:
+        self.read_folder(Path(folder))
+
+    def read_folder(self, folder: Path) -> None:
+        """Read a session folder, to be imported once it is said whose it is."""
+
+        def read(_opened: "OpenedLibrary", report: Report) -> "Session":
+            from devices.files.session_folder import read_session
+
+            report(0.0, folder.name)
+            return read_session(folder)
+
+        self._folder = folder
+        self._work(tr("Reading {folder}").format(folder=folder.name))
+        self._desk.run_long(read, self._on_folder_read, self._on_work_refused, self._on_progressed, self)
+
+    def _on_folder_read(self, session: "Session") -> None:
+        self._to_import = session
+        code = session.patient.code or (self._patient.told.code if self._patient is not None else "")
+        names = [recording.name for recording in session.recordings]
+        self.import_page.show_session(
+            str(self._folder), names, code, session.findings, is_simulated=session.is_simulated
+        )
+        self._go_to(self.import_page)
+
+    def _on_import_code(self, _code: str) -> None:
+        self.bar.show_state(self._bar())
+
+    def _import(self) -> None:
+        session, code = self._to_import, self.import_page.code.text.strip()
+        if session is None or not code:
+            return
+
+        def work(opened: "OpenedLibrary", report: Report) -> "Imported":
+            from app.storage.exchange import import_session
+
+            return import_session(opened, session, report, code)
+
+        self._work(tr("Importing {folder}").format(folder=self._folder.name))
+        self._desk.run_long(work, self._on_imported, self._on_import_refused, self._on_progressed, self)
+
+    def _on_imported(self, imported: "Imported") -> None:
+        self._to_import = None
+        self._go_to(self.page)
+        if imported.differing:
+            self.banner.tell(
+                tr("{code} is told of otherwise in the folder: {what}.").format(
+                    code=imported.patient.told.code, what=", ".join(_named(name) for name in imported.differing)
+                ),
+                tr("The library keeps what it says."),
+            )
+        self.refresh(imported.patient.id)
+
+    def _on_import_refused(self, what: str, remedy: str) -> None:
+        self._go_to(self.import_page)
+        self.banner.tell(what, remedy)
+
+    def _work(self, title: str) -> None:
+        self.banner.hide()
+        self.working.begin(title)
+        self._go_to(self.working)
+        self.working.stop.setFocus()
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        words = place(what)
+        self.working.show_progress(share, words[:1].upper() + words[1:])
+
+    def _on_stop(self) -> None:
+        self._desk.stop_long()
+        self._go_to(self.import_page if self._to_import is not None else self.page)
+        self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
+
+    def _on_work_refused(self, what: str, remedy: str) -> None:
+        self._go_to(self.page)
+        self.banner.tell(what, remedy)
+
+    # what was being recorded when the program was closed
+
+    def _recover(self) -> None:
+        if self._state is None or not self._state.interrupted:
+            return
+        interrupted = self._state.interrupted
+
+        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Recovered, UUID]]":
+            from app.storage.recovery import recover
+
+            recovered = []
+            for one in interrupted:
+                if one.stored is not None and not one.problem:
+                    done = recover(opened, one, report)
+                    recovered.append((done, opened.library.sessions.get(done.stored.session_id).patient_id))
+            return recovered
+
+        self._desk.run_long(work, self._on_recovered, self._on_refused, None, self)
+
+    def _on_recovered(self, recovered: "list[tuple[Recovered, UUID]]") -> None:
+        self._recovered |= {patient_id for _, patient_id in recovered}
+        if self._state is None:
+            return
+        heard = [one for one, _ in recovered if one.recorded_s > 0]
+        left = [one for one in self._state.interrupted if one.is_orphan or one.problem]
+        if len(heard) == 1:
+            self.banner.tell(
+                tr("The program was closed while recording. {time} of {name} was recovered.").format(
+                    time=length(heard[0].recorded_s), name=heard[0].stored.told.name
+                ),
+                tr("It is kept up to the last 0.1 s. Look at it, then keep or discard."),
+            )
+        elif heard:
+            self.banner.tell(
+                tr("The program was closed while recording. {count} recordings were recovered.").format(
+                    count=len(heard)
+                ),
+                tr("They are kept up to the last 0.1 s. Look at them, then keep or discard."),
+            )
+        elif left:
+            one = left[0]
+            what = one.problem or tr("{time} of a recording belong to no session").format(time=length(one.recorded_s))
+            self.banner.tell(f"{what[:1].upper()}{what[1:]}.", f"{one.remedy}." if one.remedy else "")
+        self.refresh()
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self.banner.tell(what, remedy)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
+        self._fit()
+        self.update()
+
+
+def _sessions_of(opened: "OpenedLibrary", patient_id: UUID) -> _Sessions:
+    from app.storage.stored import RecordingState
+
+    lines = opened.library.sessions.list(patient_id)
+    recovered = {
+        line.id
+        for line in lines
+        if any(one.state is RecordingState.RECOVERED for one in opened.library.sessions.get(line.id).recordings)
+    }
+    return _Sessions(patient_id, lines, frozenset(recovered))
+
+
+def _named(name: str) -> str:
+    """What is told of a patient, by the name that it has in the library."""
+    return {
+        "birth_year": tr("birth year"),
+        "sex": tr("sex"),
+        "height_m": tr("height"),
+        "mass_kg": tr("mass"),
+        "device": tr("device"),
+        "aids": tr("aids"),
+        "affected_side": tr("affected side"),
+        "prosthetic_side": tr("prosthetic side"),
+    }.get(name, name)

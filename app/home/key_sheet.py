@@ -1,0 +1,73 @@
+"""How does a recovery key get away from this computer? Printed, or saved on something that can be taken away."""
+
+from pathlib import Path
+
+from PySide6.QtCore import QMarginsF, QObject, Qt, Signal
+from PySide6.QtGui import QFont, QPageLayout, QPainter, QPdfWriter
+from PySide6.QtPrintSupport import QPrintDialog, QPrinter
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from app.wording import tr
+
+FILE_NAME = "gaitwright-recovery-key.txt"
+MARGIN_MM = 25
+
+
+class KeySheet(QObject):
+    """Keeps the key no longer than its dialog is open."""
+
+    told = Signal(str, str)
+
+    def __init__(self, window: QWidget) -> None:
+        super().__init__(window)
+        self._window, self._key = window, ""
+        self._printer: QPrinter | None = None
+
+    def print(self, key: str) -> None:
+        self._key, self._printer = key, QPrinter()
+        dialog = QPrintDialog(self._printer, self._window)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.setWindowModality(Qt.WindowModality.WindowModal)
+        dialog.accepted.connect(self._on_print_accepted)
+        dialog.show()
+
+    def save(self, key: str) -> None:
+        self._key = key
+        dialog = QFileDialog(self._window, tr("Save the recovery key"))
+        dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        dialog.setDefaultSuffix("txt")
+        dialog.selectFile(FILE_NAME)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.fileSelected.connect(self.write)
+        dialog.open()
+
+    def write(self, path: str) -> None:
+        """Write the sheet into a file."""
+        key, self._key = self._key, ""
+        try:
+            Path(path).write_text(sheet(key), encoding="utf-8")
+        except OSError as problem:
+            why = problem.strerror or type(problem).__name__
+            self.told.emit(
+                tr("The recovery key was not saved ({why}).").format(why=why), tr("Choose another place, or print it.")
+            )
+
+    def _on_print_accepted(self) -> None:
+        key, self._key = self._key, ""
+        if self._printer is not None:
+            paint_sheet(self._printer, key)
+
+
+def paint_sheet(device: QPrinter | QPdfWriter, key: str) -> None:
+    device.setPageMargins(QMarginsF(MARGIN_MM, MARGIN_MM, MARGIN_MM, MARGIN_MM), QPageLayout.Unit.Millimeter)
+    painter = QPainter(device)
+    font = QFont(painter.font())
+    font.setPointSize(14)
+    painter.setFont(font)
+    painter.drawText(painter.viewport(), int(Qt.TextFlag.TextWordWrap), sheet(key))
+    painter.end()
+
+
+def sheet(key: str) -> str:
+    lead = tr("Gaitwright: recovery key of the library. Whoever has it can read what all patients' recordings hold.")
+    return f"{lead}\n\n{key}\n"

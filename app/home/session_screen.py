@@ -1,0 +1,322 @@
+"""A session of a folder or of the demonstration, with no library needed: it is analysed, and its results are shown."""
+
+import logging
+from itertools import pairwise
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QSize, Qt, QUrl, Signal
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtWidgets import (
+    QFileDialog,
+    QFrame,
+    QHBoxLayout,
+    QScrollArea,
+    QSizePolicy,
+    QStackedWidget,
+    QVBoxLayout,
+    QWidget,
+)
+
+from app.theme import Look
+from app.widgets.banner import Banner
+from app.widgets.button import Button, Kind
+from app.widgets.header import Header
+from app.widgets.icons import Icon
+from app.widgets.start_pages import EmptyPage, WorkingPage
+from app.widgets.text import Text
+from app.wording import later, place, side_name, tr
+from app.workers.background import Background, Work
+from app.workers.library_desk import LibraryDesk
+from app.workers.opening import opening_demonstration, opening_folder, opening_stored
+from core.body import Side
+from devices.files.refusal import FileRefusedError
+
+if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
+    from app.widgets.result_page import ResultPage
+    from app.workers.opening import Opened
+    from core.samples import Patient
+
+_log = logging.getLogger(__name__)
+
+NARROW_BELOW = 800
+BAR = 72
+
+STOPPED = (
+    later("The analysis was stopped."),
+    later("Nothing was changed; open the session again to go on."),
+)
+ENDED_EARLY = (
+    later("The analysis ended before it was done."),
+    later("The folder is unchanged; the log holds the details."),
+)
+
+
+class SessionScreen(QWidget):
+    """A header, a page, an action bar. `set_way_back`: where there is something to go back to."""
+
+    left = Signal()
+    demonstration_wished = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._background = Background(self)
+        self._has_way_back = False
+        self._desk: LibraryDesk | None = None  # of a session that comes from a library
+        self._results: ResultPage | None = None
+        self._dialog: QFileDialog | None = None
+        self.header = Header(look)
+        self.banner = Banner(look)
+        self.empty = EmptyPage(look)
+        self.working = WorkingPage(look)
+        self.pages = _Pages()
+        self.bar = _ActionBar(look)
+        self._build()
+        self._connect()
+        self._on_look_changed()
+        self._show_page(self.empty)
+
+    @property
+    def results(self) -> "ResultPage | None":
+        """The page of results; None before the first session was analysed."""
+        return self._results
+
+    @property
+    def is_working(self) -> bool:
+        return self._background.is_busy or (self._desk is not None and self._desk.is_long_busy)
+
+    def open_folder(self, folder: Path) -> None:
+        """Read and analyse a session folder in the background, and show what comes of it."""
+        self._begin(opening_folder(folder), tr("Analysing {folder}").format(folder=folder.name))
+
+    def open_demonstration(self) -> None:
+        """Let the simulated patient walk, in the background, and show what comes of it."""
+        self._begin(opening_demonstration(), tr("Analysing the demonstration"))
+
+    def open_stored(self, desk: LibraryDesk, session_id: UUID) -> None:
+        """Analyse a session of the library that is open, and show what comes of it."""
+        self._desk = desk
+        self._wait(tr("Analysing the session"))
+        desk.run_long(opening_stored(session_id), self._on_done, self._on_refused, self._on_progressed, self)
+
+    def stop(self) -> None:
+        """End what is running, and go back to what was there before."""
+        if self.is_working:
+            self._background.stop()
+            if self._desk is not None:
+                self._desk.stop_long()
+            self._show_page(self._results or self.empty)
+            self.banner.tell(*map(tr, STOPPED))
+
+    def leave(self) -> None:
+        """Go back, and end what is running."""
+        if self._has_way_back:
+            self.stop()
+            self.left.emit()
+
+    def finish(self) -> None:
+        """Wait for the thread of an analysis that was running when the window was closed."""
+        self._background.finish()
+
+    def set_way_back(self, has_way_back: bool) -> None:
+        self._has_way_back = has_way_back
+        self.bar.back.setVisible(has_way_back)
+        self._fit()
+
+    def open_dropped(self, urls: list[QUrl]) -> None:
+        """Open the folder that was dropped, also by its session.toml."""
+        paths = [Path(url.toLocalFile()) for url in urls if url.isLocalFile()]
+        if len(paths) == 1 and paths[0].name == "session.toml":
+            paths = [paths[0].parent]
+        if len(paths) != 1 or not paths[0].is_dir():
+            self.banner.tell(tr("This is not one folder."), tr("Drop the folder that holds session.toml."))
+            return
+        self.open_folder(paths[0])
+
+    def choose_folder(self) -> None:
+        self._dialog = QFileDialog(self, tr("Open a session folder"))
+        self._dialog.setFileMode(QFileDialog.FileMode.Directory)
+        self._dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._dialog.fileSelected.connect(self._on_folder_selected)
+        self._dialog.open()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
+
+    def _build(self) -> None:
+        for page in (self.empty, self.working):
+            self.pages.addWidget(page)
+        self._banner_row = QVBoxLayout()
+        self._banner_row.addWidget(self.banner)
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        column.setSpacing(0)
+        column.addWidget(self.header)
+        column.addLayout(self._banner_row)
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        scroll.setWidget(self.pages)
+        column.addWidget(scroll, 1)
+        column.addWidget(self.bar)
+
+    def _connect(self) -> None:
+        for page in (self.empty, self.bar):
+            page.open_folder.clicked.connect(self.choose_folder)
+            page.open_demonstration.clicked.connect(self.demonstration_wished)
+        self.bar.back.clicked.connect(self.leave)
+        self.working.stop_pressed.connect(self.stop)
+        self._background.progressed.connect(self._on_progressed)
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        self._look.changed.connect(self._on_look_changed)
+
+    def _begin(self, work: Work, title: str) -> None:
+        self._wait(title)
+        self._background.start(work)
+
+    def _wait(self, title: str) -> None:
+        self.banner.hide()
+        self.working.begin(title)
+        self._show_page(self.working)
+
+    def _show_page(self, page: QWidget) -> None:
+        self.pages.setCurrentWidget(page)
+        self.bar.setVisible(page is self._results)
+        if page is self.working:
+            self.working.stop.setFocus()
+        elif page is self.empty:
+            self.empty.open_folder.setFocus()
+        elif self._results is not None:
+            self._results.focus()
+        self._fit()
+
+    def _fit(self) -> None:
+        """Tell the pages how much room there is, in px of the design."""
+        scale = self._look.theme.scale
+        width, height = self.width() / scale, self.height() / scale
+        is_narrow = width < NARROW_BELOW
+        self.empty.set_narrow(is_narrow)
+        self.bar.set_narrow(is_narrow)
+        if self._results is not None:
+            self._results.set_room(width, height)
+
+    def _on_folder_selected(self, folder: str) -> None:
+        self.open_folder(Path(folder))
+
+    def _on_progressed(self, share: float, what: str) -> None:
+        words = place(what)
+        self.working.show_progress(share, words[:1].upper() + words[1:])
+
+    def _on_done(self, opened: "Opened") -> None:
+        if self._results is None:
+            from app.widgets.result_page import ResultPage
+
+            self._results = ResultPage(self._look)
+            self.pages.addWidget(self._results)
+            order = [*self._results.tab_order, self.bar.back, self.bar.open_folder, self.bar.open_demonstration]
+            for before, after in pairwise(order):
+                self.setTabOrder(before, after)
+        session = opened.session
+        self._results.show_analysis(opened.analysis)
+        self.header.show_session(
+            session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
+        )
+        self._show_page(self._results)
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self._show_page(self._results or self.empty)
+        self.banner.tell(what, remedy)
+
+    def _on_failed(self, error: Exception) -> None:
+        self._show_page(self._results or self.empty)
+        if isinstance(error, FileRefusedError):
+            self.banner.tell(f"{error.where}: {error.what}.", f"{error.remedy}.")
+        else:
+            _log.error("the analysis ended early", exc_info=error)
+            self.banner.tell(*map(tr, ENDED_EARLY))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._banner_row.setContentsMargins(px(24), 0, px(24), 0)
+        self._fit()
+        self.update()
+
+
+class _Pages(QStackedWidget):
+    """As large as the page in sight needs to be, not as the largest."""
+
+    def minimumSizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.minimumSizeHint() if page is not None else QSize()
+
+    def sizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.sizeHint() if page is not None else QSize()
+
+
+class _ActionBar(QWidget):
+    """The ways on from a result."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look, self._is_narrow = look, False
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.back = Button(look, tr("Back"), Kind.SECONDARY, Icon.BACK)
+        self.back.hide()
+        self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
+        self._purpose = Text(look, tr("Research use. Not a medical device."), size=12, tone="ink2", wraps=True)
+        self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(self.back)
+        self._row.addWidget(self.open_folder)
+        self._row.addWidget(self.open_demonstration)
+        self._row.addWidget(self._purpose, 1)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        self._is_narrow = is_narrow
+        self._purpose.setVisible(not is_narrow)
+        self.open_demonstration.setVisible(not is_narrow or self.back.isHidden())
+        self._on_look_changed()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.fillRect(self.rect(), QColor(theme.colours.surface))
+        painter.setPen(theme.pen(theme.colours.line, 1))
+        painter.drawLine(self.rect().topLeft(), self.rect().topRight())
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        side = px(16 if self._is_narrow else 24)
+        self._row.setContentsMargins(side, 0, side, 0)
+        self._row.setSpacing(px(8 if self._is_narrow else 16))
+        self.setFixedHeight(px(BAR))
+        self.update()
+
+
+def _in_words(patient: "Patient") -> str:
+    """Give what the clinic typed, in one line."""
+    person = ", ".join(filter(None, [str(patient.birth_year or ""), patient.sex]))
+    side = ""
+    if patient.prosthetic_side and patient.prosthetic_side != "none":
+        side = tr("{side} prosthetic").format(side=_side_in_words(patient.prosthetic_side))
+    elif patient.affected_side and patient.affected_side != "none":
+        side = tr("{side} affected").format(side=_side_in_words(patient.affected_side))
+    return " · ".join(filter(None, [person, side, patient.device]))
+
+
+def _side_in_words(side: str) -> str:
+    """Name a side as a session's file does, which also knows "both"."""
+    return side_name(Side(side)) if side in set(Side) else tr("both")

@@ -1,0 +1,252 @@
+"""What follows when something is set: on the screen at once, in the library through its desk."""
+
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtWidgets import QFileDialog, QWidget
+
+from app.home.entry import SHORTEST
+from app.pages.settings_page import OperatorLine, SettingsPage
+from app.settings import Scheme, Settings
+from app.theme import Look
+from app.wording import tr
+from app.workers.background import Report
+from app.workers.library_desk import BACKUP_FOLDER, LibraryDesk, OpenedState
+
+if TYPE_CHECKING:
+    from app.home.key_sheet import KeySheet
+    from app.storage.backup import Backup
+    from app.storage.keys import KeySlots
+    from app.storage.opened import OpenedLibrary
+    from app.storage.stored import Operator
+
+VIEWER, CLINICIAN, ADMINISTRATOR = "viewer", "clinician", "administrator"  # as app.storage.stored has them
+
+
+class SettingsDesk(QObject):
+    told = Signal(str, str)
+
+    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look, self._desk, self._settings = look, desk, settings
+        self._state: OpenedState | None = None
+        self._backup_folder = ""
+        self._sheet: KeySheet | None = None
+        self.page = SettingsPage(look, SHORTEST, tuple(_roles().items()))
+        self._show_screen()
+        self._connect()
+
+    def show_library(self, state: OpenedState) -> None:
+        """Show what the operator who is logged in may set."""
+        self._state = state
+        is_own = not state.is_demonstration
+        may_write = is_own and state.operator.role.value != VIEWER
+        is_administrator = is_own and state.operator.role.value == ADMINISTRATOR
+        self.page.show_library(has_access=is_own, has_backup=may_write, has_operators=is_administrator)
+        self.page.renew.setVisible(is_administrator)
+        self.page.choose_folder.setVisible(is_administrator)
+        self._show_screen()
+        if is_own:
+            self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
+        if is_administrator:
+            self._read_operators()
+
+    def _connect(self) -> None:
+        page = self.page
+        page.scheme_chosen.connect(self._on_scheme_chosen)
+        page.scale_chosen.connect(self._on_scale_chosen)
+        page.side_chosen.connect(self._on_side_chosen)
+        page.sound_chosen.connect(self._on_sound_chosen)
+        page.passphrase_wished.connect(self._on_passphrase_wished)
+        page.recovery_key_wished.connect(self._on_recovery_key_wished)
+        page.print_wished.connect(self._on_print_wished)
+        page.save_wished.connect(self._on_save_wished)
+        page.backup_wished.connect(self._on_backup_wished)
+        page.backup_folder_wished.connect(self._on_backup_folder_wished)
+        page.stop_wished.connect(self._on_stop_wished)
+        page.operator_added.connect(self._on_operator_added)
+        page.operator_switched.connect(self._on_operator_switched)
+        self._settings.changed.connect(self._show_screen)
+        self._look.changed.connect(self._show_screen)
+
+    def _show_screen(self) -> None:
+        kept = self._settings
+        self.page.show_screen(
+            kept.scheme, self._look.theme.scale, is_from_behind=kept.is_from_behind, has_sound=kept.has_sound
+        )
+
+    def _on_scheme_chosen(self, scheme: str) -> None:
+        self._settings.scheme = Scheme(scheme)
+
+    def _on_scale_chosen(self, scale: float) -> None:
+        self._settings.scale = scale
+
+    def _on_side_chosen(self, is_from_behind: bool) -> None:
+        self._settings.is_from_behind = is_from_behind
+
+    def _on_sound_chosen(self, has_sound: bool) -> None:
+        self._settings.has_sound = has_sound
+
+    def _on_passphrase_wished(self, old: str, new: str) -> None:
+        def change(opened: "OpenedLibrary") -> None:
+            slots, operator = _slots(opened), opened.library.operator
+            assert operator is not None  # whoever opens a library is logged in
+            slots.set_passphrase(slots.open(operator.code, old), operator.code, new)
+
+        self._desk.run(change, self._on_passphrase_changed, self._on_passphrase_refused, self)
+
+    def _on_passphrase_changed(self, _nothing: object) -> None:
+        self.page.show_passphrase_changed()
+
+    def _on_passphrase_refused(self, what: str, remedy: str) -> None:
+        self.page.refuse_passphrase(f"{what} {remedy}")
+
+    def _on_recovery_key_wished(self) -> None:
+        def renew(opened: "OpenedLibrary") -> str:
+            assert opened.data_key is not None  # hidden in the demonstration
+            return _slots(opened).renew_recovery_key(opened.data_key)
+
+        self._desk.run(renew, self._on_recovery_key, self._on_refused, self)
+
+    def _on_recovery_key(self, key: str) -> None:
+        self.page.show_recovery_key(key)
+
+    def _on_print_wished(self, key: str) -> None:
+        self._key_sheet().print(key)
+
+    def _on_save_wished(self, key: str) -> None:
+        self._key_sheet().save(key)
+
+    def _key_sheet(self) -> "KeySheet":
+        if self._sheet is None:
+            from app.home.key_sheet import KeySheet  # seldom needed, and printing takes long to import
+
+            self._sheet = KeySheet(self.page)
+            self._sheet.told.connect(self.told)
+        return self._sheet
+
+    def _on_backup_folder_read(self, folder: str) -> None:
+        self._backup_folder = folder
+        self.page.show_backup("", folder)
+
+    def _on_backup_folder_wished(self) -> None:
+        dialog = QFileDialog(self.page, tr("Choose the folder for backups"))
+        dialog.setFileMode(QFileDialog.FileMode.Directory)
+        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.fileSelected.connect(self.set_backup_folder)
+        dialog.open()
+
+    def set_backup_folder(self, folder: str) -> None:
+        """Let backups go to this folder from now on."""
+
+        def put(opened: "OpenedLibrary") -> str:
+            opened.library.settings.put(BACKUP_FOLDER, folder)
+            return folder
+
+        self._desk.run(put, self._on_backup_folder_read, self._on_refused, self)
+
+    def _on_backup_wished(self) -> None:
+        if not self._backup_folder:
+            self._on_backup_folder_wished()
+            return
+        into = Path(self._backup_folder)
+
+        def work(opened: "OpenedLibrary", report: Report) -> "Backup":
+            from app.storage.backup import back_up
+
+            return back_up(opened, into, report)
+
+        self.page.show_backup(tr("Backing up"), self._backup_folder, is_running=True)
+        self._desk.run_long(work, self._on_backed_up, self._on_backup_refused, self._on_backup_progressed, self)
+
+    def _on_backup_progressed(self, share: float, _what: str) -> None:
+        sentence = tr("Backing up, {percent} %").format(percent=round(share * 100))
+        self.page.show_backup(sentence, self._backup_folder, is_running=True)
+
+    def _on_backed_up(self, backup: "Backup") -> None:
+        size = f"{backup.bytes / 1e6:.0f}"
+        sentence = tr("Backed up and checked: {files} files, {size} MB.").format(files=backup.files, size=size)
+        if backup.faults:
+            count = len(backup.faults)
+            sentence = tr("Backed up. {count} recordings were missing or damaged in the library already.").format(
+                count=count
+            )
+        self.page.show_backup(sentence, self._backup_folder)
+
+    def _on_backup_refused(self, what: str, remedy: str) -> None:
+        self.page.show_backup(f"{what} {remedy}", self._backup_folder)
+
+    def _on_stop_wished(self) -> None:
+        self._desk.stop_long()
+        self.page.show_backup(tr("Stopped. There is no new backup."), self._backup_folder)
+
+    def _read_operators(self) -> None:
+        self._desk.run(lambda opened: opened.library.operators.list(), self._on_operators, self._on_refused, self)
+
+    def _on_operators(self, operators: "tuple[Operator, ...]") -> None:
+        if self._state is None:
+            return
+        own, roles = self._state.operator.code, _roles()
+        self.page.show_operators(
+            [
+                OperatorLine(one.code, one.name, roles[one.role.value], one.is_active, one.code == own)
+                for one in operators
+            ]
+        )
+
+    def _on_operator_added(self, code: str, name: str, role: str, passphrase: str) -> None:
+        def add(opened: "OpenedLibrary") -> None:
+            from app.storage.keys import KeyRefusedError
+            from app.storage.stored import Operator, Role
+
+            assert opened.data_key is not None  # hidden in the demonstration
+            slots = _slots(opened)
+            slots.add(opened.data_key, code, passphrase)  # first: without a slot an operator could not log in
+            try:
+                opened.library.operators.add(Operator(code, name, Role(role)))
+            except Exception:
+                with suppress(KeyRefusedError):
+                    slots.remove(code)
+                raise
+
+        self._desk.run(add, self._on_operator_changed, self._on_operator_refused, self)
+
+    def _on_operator_switched(self, code: str, is_active: bool) -> None:
+        def switch(opened: "OpenedLibrary") -> None:
+            (operator,) = (one for one in opened.library.operators.list() if one.code == code)
+            opened.library.operators.change(replace(operator, is_active=is_active))
+
+        self._desk.run(switch, self._on_operator_changed, self._on_refused, self)
+
+    def _on_operator_changed(self, _nothing: object) -> None:
+        self.page.forget_typed()
+        self._read_operators()
+
+    def _on_operator_refused(self, what: str, remedy: str) -> None:
+        self.page.refuse_operator(f"{what} {remedy}")
+
+    def _on_refused(self, what: str, remedy: str) -> None:
+        self.told.emit(what, remedy)
+
+
+def _backup_folder_of(opened: "OpenedLibrary") -> str:
+    return str(opened.library.settings.get(BACKUP_FOLDER, ""))
+
+
+def _slots(opened: "OpenedLibrary") -> "KeySlots":
+    from app.storage.keys import KeySlots
+    from app.storage.opened import KEYS
+
+    return KeySlots(opened.folder / KEYS)
+
+
+def _roles() -> dict[str, str]:
+    return {
+        CLINICIAN: tr("clinician: records and reads"),
+        VIEWER: tr("viewer: reads only"),
+        ADMINISTRATOR: tr("administrator: does all, and says who works here"),
+    }

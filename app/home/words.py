@@ -1,0 +1,83 @@
+"""How are patients and sessions said in one line?"""
+
+import datetime
+from collections.abc import Collection
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from app.pages.home_lists import PatientLine, SessionLine
+from app.wording import tr, tr_n
+
+if TYPE_CHECKING:
+    from app.storage import stored
+    from core.samples import Patient
+
+
+def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_recovered: bool) -> PatientLine:
+    told = patient.told
+    who = person(told)
+    looked_into = " ".join([told.code, str(told.birth_year or ""), told.device, told.aids, who])
+    return PatientLine(
+        patient.id,
+        told.code,
+        who,
+        when(patient.last_session, now) if patient.last_session or patient.sessions else tr("no session yet"),
+        tr_n("{count} session", "{count} sessions", patient.sessions).format(count=patient.sessions),
+        looked_into.casefold(),
+        is_recovered,
+    )
+
+
+def session_line(line: "stored.SessionLine", now: datetime.datetime, recovered: Collection[UUID]) -> SessionLine:
+    is_recovered = line.id in recovered
+    state = tr("recovered, look at it") if is_recovered else tr("simulated") if line.is_simulated else ""
+    return SessionLine(
+        line.id,
+        when(line.started, now),
+        ", ".join(line.conditions),
+        tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings),
+        state,
+        is_recovered,
+    )
+
+
+def person(patient: "Patient") -> str:
+    """Say what the clinic typed of a patient, but for code and device."""
+    sexes = {"female": tr("female"), "male": tr("male")}
+    sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
+    side = ""
+    if patient.prosthetic_side in sides:
+        side = tr("{side} prosthetic").format(side=sides[patient.prosthetic_side])
+    elif patient.affected_side in sides:
+        side = tr("{side} affected").format(side=sides[patient.affected_side])
+    born = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
+    return " · ".join(filter(None, [born, side]))
+
+
+def when(started: str, now: datetime.datetime) -> str:
+    """Say a time as a file holds it: "today 09:20", "yesterday", "24 Oct 2026"; what is no time stays as it is."""
+    if not started:
+        return tr("no date")
+    try:
+        at = datetime.datetime.fromisoformat(started)
+    except ValueError:
+        return started
+    if at.tzinfo is not None:
+        at = at.astimezone(now.tzinfo)
+    days = (now.date() - at.date()).days
+    if days == 0:
+        return tr("today {time}").format(time=f"{at:%H:%M}")
+    return tr("yesterday") if days == 1 else date(at.date())
+
+
+def date(day: datetime.date) -> str:
+    months = (
+        *(tr("Jan"), tr("Feb"), tr("Mar"), tr("Apr"), tr("May"), tr("Jun")),
+        *(tr("Jul"), tr("Aug"), tr("Sep"), tr("Oct"), tr("Nov"), tr("Dec")),
+    )
+    return tr("{day} {month} {year}").format(day=day.day, month=months[day.month - 1], year=day.year)
+
+
+def length(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), 60)
+    return f"{minutes:02d}:{rest:02d}"

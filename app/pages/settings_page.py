@@ -1,0 +1,335 @@
+"""What can be set: how everything looks and sounds, what opens the library, its second copy, who works with it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
+
+from app.pages.passphrase_strength import strength_in_words
+from app.theme import SCALES, Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.choice import Choice
+from app.widgets.field import Field
+from app.widgets.icons import Icon
+from app.widgets.segmented import Segmented
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.toggle import Toggle
+from app.wording import tr
+
+COLUMN = 720
+FRONT, BEHIND = "front", "behind"
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorLine:
+    """Who works here; `role` in words."""
+
+    code: str
+    name: str
+    role: str
+    is_active: bool
+    is_self: bool
+
+
+class SettingsPage(QWidget):
+    """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
+
+    scheme_chosen = Signal(str)
+    scale_chosen = Signal(float)
+    side_chosen = Signal(bool)  # from behind
+    sound_chosen = Signal(bool)
+    passphrase_wished = Signal(str, str)  # old, new
+    recovery_key_wished = Signal()
+    print_wished = Signal(str)
+    save_wished = Signal(str)
+    backup_wished = Signal()
+    backup_folder_wished = Signal()
+    stop_wished = Signal()
+    operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
+    operator_switched = Signal(str, bool)  # code, whether they work here
+
+    def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
+        super().__init__()
+        self._look, self._shortest, self._roles = look, shortest, roles
+        self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
+        self._column = QVBoxLayout(self)
+        self._column.addWidget(self._title)
+        self._build_screen()
+        self._build_access()
+        self._build_backup()
+        self._build_operators()
+        self._column.addStretch(1)
+        self._connect()
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [
+            *self.scheme.segments,
+            self.scale,
+            *self.side.segments,
+            self.sound,
+            *(field.line_edit for field in (self.old, self.new, self.again)),
+            self.change,
+            self.renew,
+            self.back_up,
+            self.choose_folder,
+        ]
+
+    def focus(self) -> None:
+        self.scheme.focus()
+
+    def show_screen(self, scheme: str, scale: float, *, is_from_behind: bool, has_sound: bool) -> None:
+        self.scheme.choose(scheme)
+        nearest = min(range(len(SCALES)), key=lambda k: abs(SCALES[k] - scale))
+        self.scale.setCurrentIndex(nearest)
+        self.side.choose(BEHIND if is_from_behind else FRONT)
+        self.sound.setChecked(has_sound)
+
+    def show_library(self, *, has_access: bool, has_backup: bool, has_operators: bool) -> None:
+        """Show what the operator may set; nothing that was typed for another is kept."""
+        self._access.setVisible(has_access)
+        self._backup.setVisible(has_backup)
+        self._operators.setVisible(has_operators)
+        self.forget_typed()
+        self.show_recovery_key("")
+
+    def forget_typed(self) -> None:
+        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+            field.set_text("")
+            field.set_wrong("")
+        self._said.setText("")
+        self._strength.setText(strength_in_words("", self._shortest))
+
+    def show_passphrase_changed(self) -> None:
+        self.forget_typed()
+        self._said.setText(tr("The passphrase is changed. The old one opens nothing any more."))
+
+    def refuse_passphrase(self, sentence: str) -> None:
+        self.old.set_wrong(sentence)
+        self.old.setFocus()
+
+    def show_recovery_key(self, key: str) -> None:
+        """Show a new recovery key, until another page is shown."""
+        self._key = key
+        self._key_words.setText(key.replace("-", "  "))
+        for part in (self._key_words, self._key_hint, self.print, self.save):
+            part.setVisible(bool(key))
+
+    def show_operators(self, operators: Sequence[OperatorLine]) -> None:
+        while (item := self._rows.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.deleteLater()
+        for operator in operators:
+            row = _OperatorRow(self._look, operator)
+            row.switched.connect(self.operator_switched)
+            self._rows.addWidget(row)
+
+    def refuse_operator(self, sentence: str) -> None:
+        self.code.set_wrong(sentence)
+
+    def _build_screen(self) -> None:
+        look = self._look
+        self.scheme = Segmented(
+            look,
+            tr("Light or dark"),
+            [("system", tr("As the system"), ""), ("light", tr("Light"), ""), ("dark", tr("Dark"), "")],
+        )
+        self.scale = Choice(look, tr("Size of everything"))
+        for scale in SCALES:
+            self.scale.addItem(tr("{percent} %").format(percent=round(scale * 100)), scale)
+        self.side = Segmented(
+            look, tr("The patient is seen"), [(FRONT, tr("From the front"), ""), (BEHIND, tr("From behind"), "")]
+        )
+        self.sound = Toggle(look, tr("Sounds"), "", is_on=True)
+        self._screen = self._card(tr("Screen and sound"))
+        for label, control in (
+            (tr("Light or dark"), self.scheme),
+            (tr("Size of everything"), self.scale),
+            (tr("The patient is seen"), self.side),
+        ):
+            self._screen.column.addWidget(Text(look, label, weight=MEDIUM))
+            self._add_left(self._screen, control)
+        self._add_left(self._screen, self.sound)
+
+    def _build_access(self) -> None:
+        look = self._look
+        self._access = self._card(tr("Your passphrase and the recovery key"))
+        self.old = Field(look, tr("Passphrase until now"), is_secret=True)
+        self.new = Field(look, tr("New passphrase"), is_secret=True)
+        self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
+        self.again = Field(look, tr("New passphrase again"), is_secret=True)
+        self.change = Button(look, tr("Change the passphrase"))
+        self._said = Text(look, tone="ink2", wraps=True)
+        self.renew = Button(look, tr("Make a new recovery key"))
+        self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
+        self._key_hint = Text(
+            look,
+            tr("The old recovery key opens nothing any more. Print this one or write it down; it is not shown again."),
+            tone="ink2",
+            wraps=True,
+        )
+        self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
+        self._access.column.addWidget(self.old)
+        self._access.column.addWidget(self.new)
+        self._access.column.addWidget(self._strength)
+        self._access.column.addWidget(self.again)
+        self._add_left(self._access, self.change)
+        self._access.column.addWidget(self._said)
+        self._add_left(self._access, self.renew)
+        self._access.column.addWidget(self._key_words)
+        self._access.column.addWidget(self._key_hint)
+        self._add_left(self._access, self.print, self.save)
+        self.show_recovery_key("")
+
+    def _build_backup(self) -> None:
+        look = self._look
+        self._is_backing_up = False
+        self._backup = self._card(tr("Backup"))
+        hint = tr(
+            "A second copy of all patients and recordings, encrypted, best on another disk. What is deleted here is "
+            "in older copies for up to 90 days."
+        )
+        self._backup_folder = Text(look, tone="ink2", wraps=True)
+        self._backup_said = Text(look, weight=MEDIUM, wraps=True)
+        self.back_up = Button(look, tr("Back up now"))
+        self.choose_folder = Button(look, tr("Choose the folder"), Kind.QUIET, Icon.FOLDER)
+        self._backup.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
+        self._backup.column.addWidget(self._backup_folder)
+        self._backup.column.addWidget(self._backup_said)
+        self._add_left(self._backup, self.back_up, self.choose_folder)
+        self.show_backup("", "")
+
+    def _build_operators(self) -> None:
+        look = self._look
+        self._operators = self._card(tr("Who works with this library"))
+        self._rows = QVBoxLayout()
+        self._operators.column.addLayout(self._rows)
+        self.code = Field(look, tr("Code of a new operator"), is_code=True)
+        self.name = Field(look, tr("Name"))
+        self.role = Choice(look, tr("Role"))
+        for key, words in self._roles:
+            self.role.addItem(words, key)
+        self.first = Field(look, tr("First passphrase, to be changed by its owner"), is_secret=True)
+        self.add = Button(look, tr("Add the operator"), Kind.SECONDARY, Icon.ADD)
+        self._operators.column.addWidget(self.code)
+        self._operators.column.addWidget(self.name)
+        self._operators.column.addWidget(Text(look, tr("Role"), weight=MEDIUM))
+        self._add_left(self._operators, self.role)
+        self._operators.column.addWidget(self.first)
+        self._add_left(self._operators, self.add)
+
+    def _connect(self) -> None:
+        self.scheme.chosen.connect(self.scheme_chosen)
+        self.scale.activated.connect(self._on_scale_chosen)
+        self.side.chosen.connect(self._on_side_chosen)
+        self.sound.toggled.connect(self.sound_chosen)
+        self.change.clicked.connect(self._on_change)
+        self.renew.clicked.connect(self.recovery_key_wished)
+        self.print.clicked.connect(self._on_print)
+        self.save.clicked.connect(self._on_save)
+        self.back_up.clicked.connect(self._on_back_up)
+        self.choose_folder.clicked.connect(self.backup_folder_wished)
+        self.add.clicked.connect(self._on_add)
+        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+            field.edited.connect(self._on_edited)
+        self._look.changed.connect(self._on_look_changed)
+
+    def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
+        """Say how the latest backup went, and where backups go."""
+        self._backup_said.setText(sentence)
+        self._backup_said.setVisible(bool(sentence))
+        self._backup_folder.setText(
+            tr("Backups go to {folder}.").format(folder=folder)
+            if folder
+            else tr("No folder is chosen for backups yet.")
+        )
+        self.back_up.setText(tr("Stop") if is_running else tr("Back up now"))
+        self.back_up.updateGeometry()
+        self._is_backing_up = is_running
+        self.choose_folder.setEnabled(not is_running)
+
+    def _card(self, title: str) -> Card:
+        card = Card(self._look, padding=20, spacing=10)
+        card.column.addWidget(Text(self._look, title, size=16, weight=SEMIBOLD, wraps=True))
+        self._column.addWidget(card)
+        return card
+
+    def _add_left(self, card: Card, *widgets: QWidget) -> None:
+        """Give controls the width that they need, one beside the other."""
+        row = QHBoxLayout()
+        for widget in widgets:
+            row.addWidget(widget)
+        row.addStretch(1)
+        card.column.addLayout(row)
+
+    def _on_scale_chosen(self, _index: int) -> None:
+        self.scale_chosen.emit(float(self.scale.currentData()))
+
+    def _on_side_chosen(self, key: str) -> None:
+        self.side_chosen.emit(key == BEHIND)
+
+    def _on_edited(self, _text: str) -> None:
+        for field in (self.old, self.new, self.again, self.code, self.name, self.first):
+            field.set_wrong("")
+        self._strength.setText(strength_in_words(self.new.text, self._shortest))
+
+    def _on_change(self) -> None:
+        if len(self.new.text.strip()) < self._shortest:
+            self.new.set_wrong(strength_in_words(self.new.text or "-", self._shortest))
+        elif self.new.text != self.again.text:
+            self.again.set_wrong(tr("The two are not the same. Type the second one again."))
+        else:
+            self.passphrase_wished.emit(self.old.text, self.new.text)
+
+    def _on_print(self) -> None:
+        self.print_wished.emit(self._key)
+
+    def _on_save(self) -> None:
+        self.save_wished.emit(self._key)
+
+    def _on_back_up(self) -> None:
+        (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
+
+    def _on_add(self) -> None:
+        if not self.code.text.strip():
+            self.code.set_wrong(tr("Type a code."))
+        elif not self.name.text.strip():
+            self.name.set_wrong(tr("Type a name."))
+        elif len(self.first.text.strip()) < self._shortest:
+            self.first.set_wrong(strength_in_words(self.first.text or "-", self._shortest))
+        else:
+            name = self.name.text.strip()
+            self.operator_added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self.setMaximumWidth(px(COLUMN + 48))
+        self._column.setContentsMargins(px(24), px(16), px(24), px(20))
+        self._column.setSpacing(px(16))
+        self._rows.setSpacing(px(4))
+
+
+class _OperatorRow(QWidget):
+    switched = Signal(str, bool)
+
+    def __init__(self, look: Look, operator: OperatorLine) -> None:
+        super().__init__()
+        self._operator = operator
+        row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        row.setContentsMargins(0, 0, 0, 0)
+        words = ", ".join([operator.code, operator.name, operator.role])
+        row.addWidget(Text(look, words, size=15, wraps=True), 1)
+        self.button = Button(
+            look, tr("Works here no longer") if operator.is_active else tr("Works here again"), height=44
+        )
+        self.button.setAccessibleName(f"{self.button.text()}, {operator.code}")
+        self.button.setVisible(not operator.is_self)
+        self.button.clicked.connect(self._on_clicked)
+        row.addWidget(self.button)
+
+    def _on_clicked(self) -> None:
+        self.switched.emit(self._operator.code, not self._operator.is_active)

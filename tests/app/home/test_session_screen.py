@@ -1,0 +1,522 @@
+"""A session of a folder: opening, stopping, refusals, methods, and whether every word fits."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QFontInfo, QPalette
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QStyleOptionViewItem, QWidget
+from pytestqt.qtbot import QtBot
+
+from app.home import session_screen
+from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
+from app.plots.angle_chart import AngleChart
+from app.theme import DARK, LIGHT, Look, load_fonts
+from app.widgets.facts_table import FactsTable
+from app.widgets.figures_table import FiguresTable
+from app.widgets.findings_list import FindingRow
+from app.widgets.result_page import (
+    BOTH,
+    FACTS,
+    FIGURES,
+    MEAN,
+    ORIENTATION,
+    PUBLISHED,
+    RESULT,
+    WHOLE,
+    ResultPage,
+)
+from app.workers.background import Report, Stopped, Work
+from app.workers.opening import Opened
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.findings import Finding, Severity
+from core.results import (
+    Analysis,
+    AxisSource,
+    Calibration,
+    JointAngle,
+    JointCalibration,
+    Method,
+    RecordingAnalysis,
+    ZeroKind,
+)
+from core.samples import FloatArray, Patient, RecordingKind, Session
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+
+TIME_S = np.arange(600) / 100
+GAP = slice(200, 260)
+SOME_FINDINGS = (
+    Finding("simulated", Severity.INFO, ""),
+    Finding("gaps", Severity.WARNING, "left_foot, walk 1", {"count": 3, "missing_percent": 2.5, "longest_s": 0.42}),
+    Finding("all_zero", Severity.GRAVE, "right_foot, walk 1"),
+)
+
+
+def calibration(joint: Joint) -> JointCalibration:
+    axis = np.array([0.0, 1.0, 0.0])
+    return JointCalibration(
+        joint=joint,
+        method=Method.ROBUST,
+        axis_proximal=axis,
+        axis_distal=axis,
+        axis_source=AxisSource.FREE_MOTION if joint.is_knee else AxisSource.POOLED,
+        axis_sd_rad=np.deg2rad(4.2),
+        centre_proximal_m=None,
+        centre_distal_m=None,
+        centre_sd_m=None,
+        sign_margin=1.1 if joint is Joint.LEFT_ANKLE else 3.4,
+        clinical_sign=1,
+        is_sign_certain=joint is not Joint.RIGHT_ANKLE,
+        clinical_sign_margin=2.0,
+        lag_s=-0.012 if joint.is_knee else 0.0,
+        lag_sd_s=None,
+        hinge_residual_rad_s=0.3,
+        is_hinge=False,
+        gyro_bias_proximal_rad_s=None,
+        gyro_bias_distal_rad_s=None,
+        zero=ZeroKind.STANDING if joint.side is Side.LEFT else ZeroKind.NONE,
+        zero_rad=0.0,
+        offset_rad=0.0,
+        standing_from="standing",
+        free_motion_from="free motion",
+        walks_from=("walk 1",),
+    )
+
+
+def angle(joint: Joint, has_orientation: bool) -> JointAngle:
+    highest = 1.0 if joint.is_knee else 0.3
+    result = highest * np.sin(2 * np.pi * TIME_S + (joint.side is Side.RIGHT)) ** 2
+    result[GAP] = np.nan
+    return JointAngle(result, np.full(600, 0.03), result + 0.02, 0.8 * result if has_orientation else None)
+
+
+def analysis(is_simulated: bool = False, has_orientation: bool = True) -> Analysis:
+    recordings = tuple(
+        RecordingAnalysis(name, name, kind, TIME_S, {joint: angle(joint, has_orientation) for joint in Joint})
+        for name, kind in (("free motion", RecordingKind.FREE_MOTION), ("walk 1", RecordingKind.WALKING))
+    )
+    calibrated = Calibration(("walk 1",), {joint: calibration(joint) for joint in Joint})
+    return Analysis(Method.ROBUST, is_simulated, (calibrated,), recordings, SOME_FINDINGS)
+
+
+def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
+    patient = Patient(code="P-0147", birth_year=1968, sex="male", prosthetic_side="left")
+    return Opened(Session((), patient, is_simulated=is_simulated), analysis(is_simulated, has_orientation))
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def window(qtbot: QtBot, look: Look) -> SessionScreen:
+    def end_work(window: SessionScreen) -> None:
+        window._background.stop()
+        qtbot.waitUntil(lambda: window._background.is_idle)
+
+    window = SessionScreen(look)
+    window.resize(1280, 800)
+    qtbot.addWidget(window, before_close_func=end_work)
+    with qtbot.waitActive(window):  # only then a widget can have the focus
+        window.show()
+        window.activateWindow()
+    return window
+
+
+OpenWork = Callable[[Work], None]
+
+
+@pytest.fixture
+def open_work(monkeypatch: pytest.MonkeyPatch, window: SessionScreen) -> OpenWork:
+    """Open a folder whose reading and analysis is the given work."""
+
+    def open_it(work: Work) -> None:
+        monkeypatch.setattr(session_screen, "opening_folder", lambda _folder: work)
+        window.open_folder(Path("visit"))
+
+    return open_it
+
+
+@pytest.fixture
+def results(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> ResultPage:
+    """The page of an analysis with all four joints and all methods."""
+    open_work(lambda _report: opened())
+    qtbot.waitUntil(lambda: not window.is_working)
+    assert window.results is not None
+    return window.results
+
+
+def endless(ended: Event) -> Work:
+    def work(report: Report) -> None:
+        try:
+            while True:
+                report(0.4, "left_knee")
+        except Stopped:
+            ended.set()
+            raise
+
+    return work
+
+
+def drawn_deg(page: ResultPage, joint: Joint) -> FloatArray:
+    frame = page.charts.knee if joint.is_knee else page.charts.ankle
+    return frame.chart.curve_points(joint.side)[1]
+
+
+def test_the_empty_window_offers_the_two_ways_on(window: SessionScreen) -> None:
+    assert window.pages.currentWidget() is window.empty
+    assert window.empty.open_folder.isVisible()
+    assert window.empty.open_demonstration.isVisible()
+    assert window.empty.open_folder.hasFocus()
+    assert not window.bar.isVisible()
+
+
+def test_a_session_is_shown_with_its_patient_and_its_first_walk(window: SessionScreen, results: ResultPage) -> None:
+    assert window.pages.currentWidget() is results
+    assert window.header._code.text() == "P-0147"
+    assert window.header._facts.text() == "1968, male · left prosthetic"
+    assert results.recordings.currentText() == "walk 1"
+    for joint in Joint:
+        expected = np.rad2deg(angle(joint, True).angle_rad)
+        np.testing.assert_allclose(drawn_deg(results, joint), expected)
+
+
+def test_progress_is_shown_in_words(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
+    open_work(endless(Event()))
+    qtbot.waitUntil(lambda: window.working.progress == (0.4, "Left knee"))
+    assert window.pages.currentWidget() is window.working
+    assert window.working.stop.hasFocus()
+
+
+def test_stopping_ends_the_analysis_and_the_window_goes_on(
+    qtbot: QtBot, window: SessionScreen, open_work: OpenWork
+) -> None:
+    ended = Event()
+    open_work(endless(ended))
+    qtbot.waitUntil(lambda: window.working.progress[0] > 0)
+    QTest.mouseClick(window.working.stop, Qt.MouseButton.LeftButton)
+    assert window.pages.currentWidget() is window.empty
+    assert window.banner.text == " ".join(STOPPED)
+    qtbot.waitUntil(lambda: window._background.is_idle)
+    assert ended.is_set()
+    open_work(lambda _report: opened())
+    qtbot.waitUntil(lambda: window.results is not None)
+    assert not window.banner.isVisible()
+
+
+def test_stopping_brings_the_session_before_back(
+    qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
+) -> None:
+    open_work(endless(Event()))
+    QTest.mouseClick(window.working.stop, Qt.MouseButton.LeftButton)
+    assert window.pages.currentWidget() is results
+    assert window.header._code.text() == "P-0147"
+
+
+def test_stopping_for_good_waits_for_the_thread(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
+    ended = Event()
+    open_work(endless(ended))
+    qtbot.waitUntil(lambda: window.working.progress[0] > 0)
+    window.stop()
+    window.finish()
+    assert ended.is_set()
+    assert window._background.is_idle
+
+
+def test_a_folder_that_is_no_session_is_refused_in_the_page(
+    qtbot: QtBot, window: SessionScreen, tmp_path: Path
+) -> None:
+    window.open_folder(tmp_path)
+    qtbot.waitUntil(window.banner.isVisible)
+    assert "session.toml" in window.banner.text
+    assert str(tmp_path) in window.banner.text
+    assert QApplication.activeModalWidget() is None
+    assert window.pages.currentWidget() is window.empty
+    QTest.mouseClick(window.banner._dismiss, Qt.MouseButton.LeftButton)
+    assert not window.banner.isVisible()
+
+
+def test_what_nobody_foresaw_is_told_and_logged(
+    qtbot: QtBot, window: SessionScreen, open_work: OpenWork, caplog: pytest.LogCaptureFixture
+) -> None:
+    def work(_report: Report) -> None:
+        raise ZeroDivisionError
+
+    open_work(work)
+    qtbot.waitUntil(window.banner.isVisible)
+    assert window.banner.text == " ".join(ENDED_EARLY)
+    assert "ZeroDivisionError" in caplog.text
+
+
+def test_the_method_changes_what_is_drawn(results: ResultPage) -> None:
+    knee = angle(Joint.LEFT_KNEE, True)
+    assert knee.orientation_rad is not None
+    for method, expected in ((PUBLISHED, knee.published_rad), (ORIENTATION, knee.orientation_rad)):
+        results.methods.choose(method)
+        np.testing.assert_allclose(drawn_deg(results, Joint.LEFT_KNEE), np.rad2deg(expected))
+        assert results.charts.knee.chart.curves[Side.LEFT].sd_deg is None
+    results.methods.choose(BOTH)
+    curve = results.charts.knee.chart.curves[Side.LEFT]
+    np.testing.assert_allclose(curve.angle_deg, np.rad2deg(knee.angle_rad))
+    assert curve.second_deg is not None
+    np.testing.assert_allclose(curve.second_deg, np.rad2deg(knee.published_rad))
+
+
+def test_enter_presses_the_button_in_focus(window: SessionScreen) -> None:
+    pressed: list[None] = []
+    window.empty.open_demonstration.clicked.disconnect()
+    window.empty.open_demonstration.clicked.connect(lambda: pressed.append(None))
+    QTest.keyClick(window.empty.open_folder, Qt.Key.Key_Tab)
+    focused = QApplication.focusWidget()
+    assert focused is window.empty.open_demonstration
+    QTest.keyClick(focused, Qt.Key.Key_Return)
+    assert pressed == [None]
+
+
+def test_arrows_change_the_method(qtbot: QtBot, results: ResultPage) -> None:
+    results.methods.focus()
+    focused = QApplication.focusWidget()
+    assert focused is not None
+    QTest.keyClick(focused, Qt.Key.Key_Right)
+    assert results.methods.choice == PUBLISHED
+
+
+def test_gaps_stay_gaps_with_every_method(results: ResultPage) -> None:
+    for method in (RESULT, PUBLISHED, ORIENTATION, BOTH):
+        results.methods.choose(method)
+        for joint in Joint:
+            drawn = drawn_deg(results, joint)
+            assert np.isnan(drawn[GAP]).all()
+            assert np.isfinite(drawn[: GAP.start]).all()
+
+
+def test_without_orientations_that_method_is_off_and_says_why(
+    qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
+) -> None:
+    results.methods.choose(ORIENTATION)
+    open_work(lambda _report: opened(has_orientation=False))
+    qtbot.waitUntil(lambda: not window.is_working)
+    segment = results.methods._segments[ORIENTATION]
+    assert results.methods.choice == RESULT
+    assert not segment.isEnabled()
+    assert segment.accessibleName() == "Orientation, no magnetometer"
+
+
+def test_another_recording_is_shown_whole(results: ResultPage) -> None:
+    results.charts.zoom(0.5)
+    assert results.whole.isVisible()
+    results.recordings.setCurrentIndex(0)
+    assert results.charts.accessibleName() == "Knee and ankle angles of free motion"
+    assert results.charts.is_whole
+    assert not results.whole.isVisible()
+
+
+def test_the_way_back_to_the_whole_is_in_sight_when_it_is_needed(qtbot: QtBot, results: ResultPage) -> None:
+    assert not results.whole.isVisible()
+    results.charts.zoom(0.5)
+    assert results.shown.text() == "1.5 to 4.5 s of 6.0 s"
+    QTest.mouseClick(results.whole, Qt.MouseButton.LeftButton)
+    assert results.charts.is_whole
+
+
+def test_simulated_is_said_in_header_and_charts_and_only_then(
+    qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
+) -> None:
+    assert not window.header._simulated.isVisible()
+    assert not results.charts.knee._simulated.isVisible()
+    open_work(lambda _report: opened(is_simulated=True))
+    qtbot.waitUntil(lambda: not window.is_working)
+    assert window.header._simulated.isVisible()
+    assert results.charts.knee._simulated.isVisible()
+
+
+def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
+    rows = [line.split("\t") for line in results.facts.as_text().split("\n")]
+    assert rows == [
+        ["", "left knee", "right knee", "left ankle", "right ankle"],
+        ["Axis from", "free motion", "free motion", "free motion, walking", "free motion, walking"],
+        ["Axis certainty", "± 4.2°", "± 4.2°", "± 4.2°", "± 4.2°"],
+        ["Margin", "3.4", "3.4", "1.1", "3.4"],
+        ["Direction", "sure", "sure", "sure", "uncertain"],
+        ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
+        ["Zero", "standing", "none", "standing", "none"],
+    ]
+    model = results.facts.facts
+    marked = {(r, c) for r in range(6) for c in range(4) if model.cell(model.index(r, c)).needs_look}
+    assert marked == {(2, 2), (3, 3), (5, 1), (5, 3)}
+
+
+def test_findings_are_told_the_gravest_first(results: ResultPage) -> None:
+    told = [row.accessibleName() for row in results.findings.findChildren(FindingRow)]
+    assert [text.split(":")[0] for text in told] == ["grave", "warning", "info"]
+    assert "0.42 s" in told[1]
+
+
+def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
+    nothing = replace(opened(), analysis=Analysis(Method.ROBUST, False, (), ()))
+    open_work(lambda _report: nothing)
+    qtbot.waitUntil(lambda: window.results is not None)
+    assert window.results is not None
+    assert window.results.recording is None
+    assert window.results.findings.accessibleDescription() == "Nothing stands out."
+
+
+def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionScreen) -> None:
+    window.open_demonstration()
+    qtbot.waitUntil(lambda: not window.is_working, timeout=60_000)
+    page = window.results
+    assert page is not None, window.banner.text
+    assert window.header._simulated.isVisible()
+    for joint, lowest, highest in (
+        (Joint.LEFT_KNEE, 45, 75),
+        (Joint.RIGHT_KNEE, 45, 75),
+        (Joint.LEFT_ANKLE, 5, 25),
+        (Joint.RIGHT_ANKLE, 5, 25),
+    ):
+        assert lowest < np.nanmax(drawn_deg(page, joint)) < highest
+
+
+def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: Look, qapp: QApplication) -> None:
+    for is_dark, colours in ((True, DARK), (False, LIGHT)):
+        look.set_dark(is_dark)
+        assert qapp.palette().color(QPalette.ColorRole.Window).name().upper() == colours.ground
+        picture = results.charts.knee.chart.grab().toImage()
+        assert picture.pixelColor(picture.width() - 2, 2).name().upper() == colours.surface
+
+
+def test_the_bundled_fonts_are_used(look: Look) -> None:
+    assert QFontInfo(look.theme.font(14)).family() == "Inter"
+    assert QFontInfo(look.theme.font(26)).family() == "Inter Display"
+
+
+def visible(window: QWidget) -> list[QWidget]:
+    return [widget for widget in window.findChildren(QWidget) if widget.isVisible()]
+
+
+def is_cut(widget: QWidget) -> bool:
+    """Tell whether a widget has less room than its words need."""
+    if isinstance(widget, QLabel):
+        margins = widget.contentsMargins()
+        room = widget.size().shrunkBy(margins)
+        flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
+        needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
+        return needed.width() > room.width() or needed.height() > room.height()
+    if isinstance(widget, FactsTable):
+        option, model = QStyleOptionViewItem(), widget.facts
+        cells = [model.index(r, c) for r in range(model.rowCount()) for c in range(model.columnCount())]
+        needs = [(cell, widget.itemDelegate().sizeHint(option, cell)) for cell in cells]
+        return any(
+            need.width() > widget.columnWidth(cell.column()) or need.height() > widget.rowHeight(cell.row())
+            for cell, need in needs
+        )
+    if isinstance(widget, FiguresTable):
+        return widget.width() < sum(widget.needed_widths) or widget.height() < widget.minimumSizeHint().height()
+    if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
+        need = widget.minimumSizeHint()
+        return need.width() > widget.width() or need.height() > widget.height()
+    return False
+
+
+def sticks_out(widget: QWidget, window: SessionScreen) -> bool:
+    """Tell whether a widget can never be seen whole: beside the window, or wider than the page that scrolls."""
+    left = widget.mapTo(window, QPoint(0, 0)).x()
+    return left < 0 or left + widget.width() > window.width()
+
+
+@pytest.fixture(scope="module")
+def walked() -> Opened:
+    """A simulated session whose walk is long enough for a spread."""
+    settings = replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.9)))
+    session = simulate(settings).session
+    return Opened(session, analyse(session))
+
+
+@pytest.mark.parametrize(
+    ("size", "scale"),
+    [
+        ((1280, 800), 0.8),
+        ((1280, 800), 1.0),
+        ((1280, 800), 2.0),
+        ((960, 600), 0.8),
+        ((960, 600), 1.0),
+        ((800, 560), 1.0),
+        ((1920, 1080), 1.0),
+        ((1920, 1080), 2.0),
+    ],
+)
+def test_every_word_fits(
+    qtbot: QtBot,
+    window: SessionScreen,
+    open_work: OpenWork,
+    walked: Opened,
+    look: Look,
+    qapp: QApplication,
+    size: tuple[int, int],
+    scale: float,
+) -> None:
+    open_work(lambda _report: walked)
+    qtbot.waitUntil(lambda: not window.is_working)
+    results = window.results
+    assert results is not None
+    window.resize(*size)
+    look.set_scale(scale)
+    window.banner.tell("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
+    results.charts.zoom(0.5)
+    results.charts._read_at(4.0)
+    pages: list[tuple[QWidget, str]] = [(results, view) for view in (MEAN, WHOLE, FIGURES, FACTS)]
+    for page, view in (*pages, (window.empty, MEAN), (window.working, MEAN)):
+        if results.view._segments[view].isHidden():
+            continue
+        results.view.choose(view)
+        window._show_page(page)
+        for _ in range(3):  # what wraps settles its height in a second round
+            qapp.processEvents()
+        shown = [widget for widget in visible(window) if not isinstance(widget, AngleChart)]
+        cut = [(type(w).__name__, w.accessibleName() or getattr(w, "text", str)()) for w in shown if is_cut(w)]
+        assert cut == []
+        out = [type(w).__name__ for w in shown if isinstance(w, QLabel | QAbstractButton) and sticks_out(w, window)]
+        assert out == []
+
+
+def test_everything_that_takes_the_focus_has_a_name(window: SessionScreen, results: ResultPage) -> None:
+    for page in (results, window.empty, window.working):
+        window._show_page(page)
+        takers = [w for w in visible(window) if w.focusPolicy() & Qt.FocusPolicy.TabFocus and w.isEnabled()]
+        assert takers
+        assert [(w, w.parentWidget()) for w in takers if not w.accessibleName()] == []
+
+
+def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, results: ResultPage) -> None:
+    results.focus()
+    passed: list[str] = []
+    for _ in range(8):
+        focused = QApplication.focusWidget()
+        assert focused is not None
+        passed.append(focused.accessibleName().split(",")[0])
+        QTest.keyClick(focused, Qt.Key.Key_Tab)
+    assert passed == [
+        "Whole walk",
+        "Recording",
+        "Result",
+        "Knee and ankle angles of walk 1",
+        "How each joint was found",
+        "Findings",
+        "Open a session folder",
+        "Open the demonstration",
+    ]
+
+
+def test_a_click_on_a_curve_gives_its_keys_the_focus(qtbot: QtBot, results: ResultPage) -> None:
+    QTest.mouseClick(results.charts.ankle.chart.viewport(), Qt.MouseButton.LeftButton)
+    assert results.charts.hasFocus()
