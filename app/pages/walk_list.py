@@ -21,10 +21,11 @@ from app.widgets.card import Card
 from app.widgets.icons import Icon, IconMark, paint_icon
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import tr
+from app.wording import tr, tr_n
 
 BADGE = 28
 ROW, BETWEEN = 56, 4
+LEAST_WIDTH = 180
 LEAST_ROWS = 1.5  # in sight: half a row says that there are more
 
 
@@ -49,7 +50,9 @@ class WalkRow:
     @property
     def note(self) -> str:
         """What is so, in the second line."""
-        strides = "" if self.strides is None else tr("{count} strides").format(count=self.strides)
+        strides = ""
+        if self.strides is not None:
+            strides = tr_n("{count} stride", "{count} strides", self.strides).format(count=self.strides)
         return {
             WalkState.RECORDING: tr("recording"),
             WalkState.ASKING: tr("keep or discard?"),
@@ -127,7 +130,7 @@ class WalkList(Card):
         px = self._look.theme.px
         rows = len(self._rows) if self._is_compact else min(LEAST_ROWS, len(self._rows))
         self._scroll.setMinimumHeight(px((ROW + BETWEEN) * rows))
-        self._scroll.setMinimumWidth(px(180))
+        self._scroll.setMinimumWidth(max(px(LEAST_WIDTH), self._inside.minimumSizeHint().width()))
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

@@ -1,6 +1,4 @@
-"""Walks, one condition after the other: live curves, phases and steps while the patient walks, and in between what
-became of the last walk and what the next one is called.
-"""
+"""How does the patient walk now, and what becomes of each walk? Live curves and steps, and the next walk's label."""
 
 import math
 from collections.abc import Mapping
@@ -32,7 +30,7 @@ from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import tr
+from app.wording import tr, tr_n
 from core.body import Side
 
 MARGIN, BETWEEN = 24, 12
@@ -40,7 +38,7 @@ MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
 NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when something is to be said
 SIDE_WIDTH, SIDE_WIDTH_WIDE = 244, 320
 FIGURE, FIGURE_WIDE, FIGURE_COMPACT = 60, 72, 36
-STACKED_BELOW = 660  # of the page: a question above its answers
+NARROW_BELOW = 660  # of the page: a question stands above its answers, a word above its figure
 WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
 SECONDS, SECONDS_WIDE = 8.0, 12.0
@@ -257,7 +255,6 @@ class WalkingPage(QWidget):
         self._place(self.figures, self._column if self._is_compact else self._right, 0)
         after_stopped = self._column.indexOf(self.stopped) + 1
         self._place(self.next, self._column, after_stopped if self._is_compact else -1)
-        self.figures.set_compact(self._is_compact)
         self._middle.setDirection(_DOWN if self._is_compact else _ACROSS)
         self._fit()
 
@@ -272,9 +269,11 @@ class WalkingPage(QWidget):
         is_wide = self.width() >= px(WIDE_FROM) and not self._is_compact
         self.charts.set_seconds(SECONDS_WIDE if is_wide else SECONDS)
         self.figures.set_size(FIGURE_COMPACT if self._is_compact else FIGURE_WIDE if is_wide else FIGURE)
-        self.stopped.set_room(self.width())
+        is_narrow = self.width() < px(NARROW_BELOW)
+        self.stopped.set_narrow(is_narrow)
+        self.figures.set_compact(self._is_compact, is_narrow)
+        side = max(px(SIDE_WIDTH_WIDE if is_wide else SIDE_WIDTH), self.walks.minimumSizeHint().width())
         for card in (self.figures, self.walks):
-            side = px(SIDE_WIDTH_WIDE if is_wide else SIDE_WIDTH)
             card.setMinimumWidth(0 if self._is_compact else side)
             card.setMaximumWidth(ANY_WIDTH if self._is_compact else side)
         margin = px(MARGIN_COMPACT if self._is_compact else MARGIN)
@@ -374,12 +373,12 @@ class _Figures(Card):
         self._reserve_room()
         self._unit.setContentsMargins(0, 0, 0, self._look.theme.px(size * UNDER_FIGURES))
 
-    def set_compact(self, is_compact: bool) -> None:
-        """Stand in one line."""
+    def set_compact(self, is_compact: bool, is_narrow: bool) -> None:
+        """Stand in one line; where it is narrow, with the words above the figures."""
         self._both.setDirection(_ACROSS if is_compact else _DOWN)
         self._sides.setDirection(_ACROSS if is_compact else _DOWN)
         for part in self._parts:
-            part.setDirection(_ACROSS if is_compact else _DOWN)
+            part.setDirection(_ACROSS if is_compact and not is_narrow else _DOWN)
         self._line.setVisible(not is_compact)
         self._padding = 8.0 if is_compact else 16.0
         self._on_look_changed()
@@ -433,14 +432,16 @@ class _StoppedCard(Card):
         self._title.setText(title.format(label=f"{walk.letter}  {walk.label}"))
         self._facts.setText(facts)
         self._facts.setVisible(bool(facts))
-        keep = tr("Keep walk") if walk.strides is None else tr("Keep {count} strides").format(count=walk.strides)
+        keep = tr("Keep walk")
+        if walk.strides is not None:
+            keep = tr_n("Keep {count} stride", "Keep {count} strides", walk.strides).format(count=walk.strides)
         self.keep.setText(keep)
         self.keep.setAccessibleName(keep)
         self.keep.updateGeometry()
 
-    def set_room(self, width: int) -> None:
+    def set_narrow(self, is_narrow: bool) -> None:
         """Put the buttons below the words where the width is too small for both."""
-        self._row.setDirection(_DOWN if width < self._look.theme.px(STACKED_BELOW) else _ACROSS)
+        self._row.setDirection(_DOWN if is_narrow else _ACROSS)
 
     def _on_look_changed(self) -> None:
         super()._on_look_changed()

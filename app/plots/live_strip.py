@@ -77,7 +77,8 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._axis.linkToView(self._view)
         self._view.setDefaultPadding(0.0)
         self._view.disableAutoRange()
-        self._base.setStyle(showValues=False, tickLength=0)
+        self._base.setStyle(showValues=False)
+        self._base.setTicks([])  # only its line
         for axis in (self._axis, self._base):
             axis.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)  # they never move, the curves always
         self.setCentralItem(self._layout)
