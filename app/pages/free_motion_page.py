@@ -87,8 +87,9 @@ class FreeMotionPage(QWidget):
         self.figure.setVisible(not is_compact)
         self._on_look_changed()
 
-    def show_labels(self, what: str, then: str = "") -> None:
+    def show_labels(self, what: str, then: str = "", can_swap: bool = True) -> None:
         """Say that labels seem swapped and offer to change them; empty takes it back."""
+        self.labels.swap.setVisible(can_swap)
         self.labels.notice.tell(Icon.WARNING, what, then)
         self.labels.setVisible(bool(what))
 

@@ -1,7 +1,8 @@
 """Which words ask for the motion that is missing, and what does stopping now cost?"""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Collection
+from dataclasses import dataclass, replace
 
 from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, two_digits
 from app.widgets.hint import Hint
@@ -44,11 +45,42 @@ def first_hint() -> Hint:
     return Hint(tr("Move any leg"), how, tr("One leg, then the other. Seated is fine."))
 
 
+def unplaced_hint() -> Hint:
+    """While the motion is to tell which sensor is where: the leg that moves first is the left one."""
+    how = tr("Then the right one: the motion tells which sensor is where.")
+    return Hint(tr("Move the left leg first"), how, tr("Then the right one."))
+
+
 def last_hint(motion: FreeMotionState) -> Hint:
     """When nothing is left to do: all ready, or some only as good as the motion gave."""
-    is_whole = all(state.is_closed for state in motion.joints.values())
-    how = tr("Walking comes next, by itself.")
-    return Hint(tr("All joints are ready") if is_whole else tr("As good as it gets"), how, how, Icon.CHECK)
+    if all(state.is_closed for state in motion.joints.values()):
+        how = tr("Walking comes next, by itself.")
+        return Hint(tr("All joints are ready"), how, how, Icon.CHECK)
+    how = tr("Go on to walking, or repeat one leg.")
+    return Hint(tr("As good as it gets"), how, how, Icon.INFO)
+
+
+def recorded_hint(motion: FreeMotionState) -> Hint:
+    """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
+    how = tr("Go on to walking, or repeat one leg.")
+    if not motion.joints:
+        return Hint(tr("Free motion is recorded"), how, how, Icon.CHECK)
+    if motion.is_done:
+        return replace(last_hint(motion), how=how, how_short=how)
+    return Hint(tr("Stopped early"), how, how, Icon.INFO)
+
+
+def absent_note(joint: Joint, worn: Collection[Site], without_ankle: Collection[Side]) -> str:
+    """Say why a joint has no gauge; empty where it has one."""
+    if not joint.is_knee and joint.side in without_ankle and joint.proximal in worn and joint.distal in worn:
+        return tr("Foot without ankle joint: nothing to find. Its angle is called foot against shank.")
+    missing = [site for site in (joint.proximal, joint.distal) if site not in worn]
+    if not missing:
+        return ""
+    told = tr("{sites} without sensor: no {joint} angle.")
+    sites = [name_of(site) for site in missing]
+    both = tr("{first} and {last}").format(first=sites[0], last=sites[-1]) if len(sites) == 2 else sites[0]
+    return told.format(sites=both, joint=name_of(joint))
 
 
 @dataclass(frozen=True, slots=True)

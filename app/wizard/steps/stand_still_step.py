@@ -5,7 +5,9 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
 
+from app import sounds
 from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
+from app.sounds import Sound
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
@@ -35,6 +37,7 @@ class StandStillStep(Step):
         self._phase = StandPhase.READY
         self._is_for_nothing = False  # the recording that goes on is not to be kept
         self._moved: tuple[str, ...] = ()
+        self._heard = 0  # the second that was sounded last
         self._ticks = 0
         self._shown = QTimer(self)
         self._shown.setSingleShot(True)
@@ -61,17 +64,24 @@ class StandStillStep(Step):
     def note(self) -> str:
         if self._visit.has_skipped_standing:
             return tr("skipped, printed")
-        return tr("{seconds:.1f} s, zero set").format(seconds=self._stood_s) if self._visit.rests else ""
+        return tr("{seconds:.1f} s, zero set").format(seconds=self._stood_s) if self._has_stood else ""
 
     @property
     def state(self) -> StepState:
         if self._visit.has_skipped_standing:
             return StepState.SKIPPED
-        return StepState.DONE if self._visit.rests else StepState.TODO
+        return StepState.DONE if self._has_stood else StepState.TODO
 
     @property
     def cannot_enter(self) -> str:
-        return "" if self._visit.sensors.acquisition is not None else tr("No sensor is heard yet. Connect them first.")
+        sensors = self._visit.sensors
+        if self._visit.session is None:
+            return tr("Type the patient's code first.")
+        if sensors.acquisition is None:
+            return tr("Choose the source of the sensors first.")
+        if not sensors.site_of and not sensors.is_left_to_motion:
+            return tr("Say first which sensor is worn where.")
+        return ""
 
     @property
     def topic(self) -> str:
@@ -98,6 +108,7 @@ class StandStillStep(Step):
         if self._ticks % TICKS == 0 and self._work is not None:
             standing = self._work.state.standing
             self._moved = standing.moved or self._moved
+            self._sound(standing.wanted_s - standing.still_s)
             if self._phase is StandPhase.COUNTING and standing.is_done and self._is_recording:
                 self._finish()
             self._show()
@@ -137,13 +148,17 @@ class StandStillStep(Step):
         return ongoing is not None and ongoing.told.kind is RecordingKind.STANDING
 
     @property
+    def _has_stood(self) -> bool:
+        return bool(self._visit.rests) and not self._visit.takes.is_restrapped
+
+    @property
     def _stood_s(self) -> float:
         return min((rest.duration_s for rest in self._visit.rests.values()), default=0.0)
 
     def _settled_phase(self) -> StandPhase:
         if self._visit.has_skipped_standing:
             return StandPhase.SKIPPED
-        return StandPhase.DONE if self._visit.rests else StandPhase.READY
+        return StandPhase.DONE if self._has_stood else StandPhase.READY
 
     def _start(self) -> None:
         """Begin to count, anew if need be; what is being recorded goes on."""
@@ -159,6 +174,13 @@ class StandStillStep(Step):
             takes.begin(acquisition, RecordingKind.STANDING)
         self._show()
         self.changed.emit()
+
+    def _sound(self, left_s: float) -> None:
+        """Let each second of the count be heard."""
+        left = math.ceil(left_s)
+        if self._phase is StandPhase.COUNTING and self._is_recording and left != self._heard:
+            self._heard = left
+            sounds.play(Sound.COUNT)
 
     def _watch(self) -> None:
         """Look at the movement from now on."""
@@ -176,6 +198,7 @@ class StandStillStep(Step):
         self._visit.rests = dict(self._work.state.standing.rest)
         self._phase = StandPhase.DONE
         self._visit.takes.stop()
+        sounds.play(Sound.READY)
         self._shown.start()
         self.changed.emit()
 

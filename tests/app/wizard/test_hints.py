@@ -6,7 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wizard.hints import HELD_S, LETTERS, HintHold, first_hint, hint_for, last_hint, price_of_stopping
+from app.wizard.hints import (
+    HELD_S,
+    LETTERS,
+    HintHold,
+    absent_note,
+    first_hint,
+    hint_for,
+    last_hint,
+    price_of_stopping,
+    unplaced_hint,
+)
 from core.body import Joint, Side, Site
 from core.live.excitation import ExcitationState, Missing, Movement
 from core.live.free_motion import FreeMotionState
@@ -42,6 +52,7 @@ def every_hint() -> Iterator[str]:
         for movement in Movement:
             yield hint_for(Missing(site, movement)).sentence
     yield first_hint().sentence
+    yield unplaced_hint().sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)})).sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)})).sentence
 
@@ -126,3 +137,11 @@ def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
 def test_of_a_prosthesis_more_is_wanted() -> None:
     said = price_of_stopping(motion({Joint.LEFT_KNEE: state(1.2, 6)}), frozenset({Side.LEFT}))
     assert said.startswith("Left knee: 1.2°, 0.5° wanted.")
+
+
+def test_a_joint_without_gauge_says_why() -> None:
+    worn = set(Site) - {Site.RIGHT_FOOT}
+    assert absent_note(Joint.RIGHT_ANKLE, worn, ()) == "R foot without sensor: no right ankle angle."
+    assert absent_note(Joint.RIGHT_KNEE, worn, ()) == ""
+    assert absent_note(Joint.LEFT_ANKLE, worn, {Side.LEFT}).startswith("Foot without ankle joint: nothing to find.")
+    assert absent_note(Joint.LEFT_KNEE, worn, {Side.LEFT}) == ""

@@ -1,0 +1,401 @@
+"""The legs are moved freely until every joint is known well enough. It ends by itself; one leg can be repeated."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, QTimer
+
+from app import sounds
+from app.sounds import Sound
+from app.theme import Look
+from app.widgets.action_bar import BarState, Verb
+from app.widgets.icons import Icon
+from app.widgets.step_rail import StepState
+from app.wizard.hints import (
+    Asked,
+    HintHold,
+    absent_note,
+    first_hint,
+    price_of_stopping,
+    recorded_hint,
+    unplaced_hint,
+    wanted_of,
+)
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.step import Step
+from app.wizard.takes import Take
+from app.wording import name_of, tr
+from core.body import Joint, Side, Site
+from core.live.free_motion import FreeMotionState
+from core.samples import RecordingKind
+
+if TYPE_CHECKING:
+    from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
+    from app.pages.free_motion_page import FreeMotionPage
+    from app.widgets.body_figure import SensorMark
+    from app.widgets.gauge import GaugeFace
+    from app.wizard.visit import Visit
+
+SETTLED_MS = 2000  # all ready: time to see it, and to say otherwise
+TICKS = 3  # of 30 Hz: ten looks a second
+SILENT_S = 1.0
+KIND = RecordingKind.FREE_MOTION
+
+
+class FreeMotionStep(Step):
+    """Recorded from the moment the step is entered, unless a free motion is in force already."""
+
+    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+        super().__init__(look, visit, parent)
+        self._page: FreeMotionPage | None = None
+        self._work: FreeMotionWork | UnplacedFreeMotionWork | None = None
+        self._hold = HintHold()
+        self._motion = FreeMotionState()
+        self._before = FreeMotionState()  # of the leg that is not repeated
+        self._repeated: Side | None = None
+        self._elapsed_s: float | None = None
+        self._kept_labels: set[tuple[Site, ...]] = set()
+        self._doubted: tuple[Site, ...] = ()
+        self._ready: frozenset[Joint] = frozenset()
+        self._is_in_sight = self._goes_on = self._is_for_nothing = self._must_correct = False
+        self._ticks = 0
+        self._settled = QTimer(self)
+        self._settled.setSingleShot(True)
+        self._settled.setInterval(SETTLED_MS)
+        self._settled.timeout.connect(self._on_settled)
+        visit.takes.begun.connect(self._on_begun)
+        visit.takes.ended.connect(self._on_ended)
+
+    @property
+    def page(self) -> "FreeMotionPage":
+        if self._page is None:
+            from app.pages.free_motion_page import FreeMotionPage
+
+            self._page = FreeMotionPage(self._look)
+            self._page.swap_pressed.connect(self._on_swap)
+            self._page.keep_pressed.connect(self._on_keep)
+        return self._page
+
+    @property
+    def title(self) -> str:
+        return tr("Free motion")
+
+    @property
+    def note(self) -> str:
+        joints = self._motion.joints
+        if not self._has_moved or not joints:
+            return ""
+        ready = sum(state.is_closed for state in joints.values())
+        if ready == len(joints):
+            return tr("All {count} ready").format(count=ready)
+        return tr("{ready} of {count} ready").format(ready=ready, count=len(joints))
+
+    @property
+    def state(self) -> StepState:
+        if not self._has_moved:
+            return StepState.TODO
+        is_whole = all(state.is_closed for state in self._motion.joints.values())
+        return StepState.DONE if is_whole else StepState.ATTENTION
+
+    @property
+    def cannot_enter(self) -> str:
+        sensors = self._visit.sensors
+        if self._visit.session is None:
+            return tr("Type the patient's code first.")
+        if sensors.acquisition is None:
+            return tr("Choose the source of the sensors first.")
+        if not sensors.site_of and not sensors.is_left_to_motion:
+            return tr("Say first which sensor is worn where.")
+        return ""
+
+    @property
+    def topic(self) -> str:
+        return "free-motion"
+
+    def enter(self) -> None:
+        self._is_in_sight = True
+        self._hold = HintHold(self._visit.prosthetic_sides)
+        if not self._has_moved and not self._is_recording:
+            self._begin()
+        self._show()
+
+    def leave(self) -> None:
+        self._is_in_sight = False
+        self._settled.stop()
+        if self._is_recording and not self._goes_on:  # not to its end
+            self._is_for_nothing = True
+            self._visit.takes.stop()
+        if (acquisition := self._visit.sensors.acquisition) is not None:
+            acquisition.set_work(None)
+        self._work = None
+
+    def tick(self) -> None:
+        self._ticks += 1
+        if self._ticks % TICKS or not self._is_in_sight:
+            return
+        if self._work is not None and self._is_recording:
+            self._look_at_motion()
+        elif not self._has_moved and not self._visit.takes.is_recording and not self._is_for_nothing:
+            self._begin()  # what was recorded before has been closed by now
+        self._show()
+
+    def bar(self) -> BarState:
+        price = price_of_stopping(self._motion, self._visit.prosthetic_sides)
+        repeat = tuple(
+            Verb(text, key, Icon.REPEAT) for text, key in ((tr("Repeat left"), "L"), (tr("Repeat right"), "R"))
+        )
+        go_on = Verb(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
+        if not self._is_recording:
+            if not self._has_moved:
+                return BarState()
+            again = Verb(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
+            return BarState(primary=go_on, others=(again,), quiet=repeat)
+        if self._is_done:
+            return BarState(primary=go_on, quiet=repeat, note=price or tr("Goes on by itself."))
+        stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+        return BarState(primary=stop, quiet=repeat if self._motion.joints else (), note=price)
+
+    def on_primary(self) -> None:
+        if self._is_recording:
+            self._stop()
+        elif self._has_moved:
+            self.done.emit()
+
+    def on_other(self, number: int) -> None:
+        self._begin()
+
+    def on_quiet(self, number: int) -> None:
+        self._repeat(Side.LEFT if number == 0 else Side.RIGHT)
+
+    def on_intent(self, intent: Intent) -> bool:
+        if intent.action is Action.RUN:
+            if self._is_recording:
+                self._stop()
+            else:
+                self._begin()
+            return True
+        if intent.action in (Action.LEFT_LEG, Action.RIGHT_LEG):
+            self._repeat(Side.LEFT if intent.action is Action.LEFT_LEG else Side.RIGHT)
+            return True
+        return False
+
+    # the recording
+
+    @property
+    def _is_recording(self) -> bool:
+        ongoing = self._visit.takes.ongoing
+        return ongoing is not None and ongoing.told.kind is KIND
+
+    @property
+    def _has_moved(self) -> bool:
+        """Whether a free motion holds: kept, and made since sensors were strapped last."""
+        takes = self._visit.takes
+        if takes.is_restrapped:
+            return False
+        for take in reversed(takes.every):
+            if take.told.kind is KIND and take.told.is_kept:
+                return True
+            if take.told.is_restrapped_before:
+                return False
+        return False
+
+    @property
+    def _is_done(self) -> bool:
+        return self._motion.is_done
+
+    def _begin(self, side: Side | None = None) -> None:
+        """Record; one leg alone takes only that leg's sensors, so that what the other's motion told stays in force."""
+        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
+        if acquisition is None or self._visit.session is None or takes.is_recording:
+            return
+        self._before = self._other_leg(side) if side is not None else FreeMotionState()
+        self._repeated, self._motion, self._elapsed_s = side, self._before, None
+        self._goes_on = self._is_for_nothing = False
+        self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
+        if side is not None:
+            self._visit.place_sensors(only=side)
+        acquisition.ask(KIND)
+        takes.begin(acquisition, KIND)
+        self.changed.emit()
+
+    def _watch(self) -> None:
+        """Follow the motion from now on."""
+        from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
+        from app.acquisition.works import live_sensors
+
+        visit = self._visit
+        acquisition, sensors = visit.sensors.acquisition, visit.sensors
+        if acquisition is None:
+            return
+        standing = {name: rest.acc_m_s2 for name, rest in visit.rests.items()}
+        prosthetic, without = visit.prosthetic_sides, visit.without_ankle
+        self._hold = HintHold(prosthetic)
+        if sensors.is_left_to_motion and not sensors.site_of:
+            live = live_sensors(acquisition.sensors, visit.rests, sensors.status)
+            self._work = UnplacedFreeMotionWork(live, Side.LEFT, prosthetic, without, standing)
+        else:
+            site_of = {
+                name: site
+                for name, site in sensors.site_of.items()
+                if self._repeated is None or site.side is self._repeated
+            }
+            self._work = FreeMotionWork(site_of, visit.live_sensors(), prosthetic, without, standing)
+        acquisition.set_work(self._work)
+
+    def _look_at_motion(self) -> None:
+        assert self._work is not None
+        view, sensors = self._work.state, self._visit.sensors
+        self._elapsed_s = view.elapsed_s
+        if view.site_of and not sensors.site_of:  # the motion has told it
+            sensors.assign_all(view.site_of)
+            self._must_correct = True
+        had_joints, was_done = bool(self._motion.joints), self._is_done
+        self._motion = self._joined(view.motion)
+        self._doubt(view.exchanged)
+        ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
+        if ready - self._ready:
+            sounds.play(Sound.READY)
+        self._ready = ready
+        is_whole = self._is_done and len(ready) == len(self._motion.joints) and not self._doubted
+        if is_whole and not self._settled.isActive():
+            self._settled.start()
+        elif not is_whole:
+            self._settled.stop()
+        if was_done != self._is_done or had_joints != bool(self._motion.joints) or self._ticks % (5 * TICKS) == 0:
+            self.changed.emit()  # what stopping costs is read, not watched
+
+    def _joined(self, motion: FreeMotionState) -> FreeMotionState:
+        """With what the other leg's motion told before, if one leg alone is repeated."""
+        return replace(
+            motion, joints={**self._before.joints, **motion.joints}, lags={**self._before.lags, **motion.lags}
+        )
+
+    def _other_leg(self, side: Side) -> FreeMotionState:
+        joints = {joint: state for joint, state in self._motion.joints.items() if joint.side is not side}
+        return FreeMotionState(joints, {joint: lag for joint, lag in self._motion.lags.items() if joint in joints})
+
+    def _repeat(self, side: Side) -> None:
+        """Begin one leg anew, and leave the other as it is."""
+        if self._is_recording and self._work is not None:
+            self._settled.stop()
+            self._work.repeat(side)
+        elif self._has_moved and any(site.side is side for site in self._visit.sensors.site_of.values()):
+            self._begin(side)
+
+    def _stop(self) -> None:
+        self._settled.stop()
+        self._goes_on = True
+        self._visit.takes.stop()
+        self.changed.emit()
+
+    # the labels
+
+    def _doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
+        """Say which labels the motion contradicts, until somebody has answered."""
+        doubted = next((group for group in exchanged if group not in self._kept_labels), ())
+        if doubted == self._doubted:
+            return
+        self._doubted = doubted
+        if not doubted:
+            self.page.show_labels("")
+        elif len(doubted) == 2:
+            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
+            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
+            self.page.show_labels(named, tr("Swap them, or keep as worn."))
+        else:
+            names = ", ".join(name_of(site) for site in doubted)
+            self.page.show_labels(
+                tr("{sites} seem mixed up: the legs move otherwise.").format(sites=names),
+                tr("Go back to Sensors to place them anew, or keep as worn."),
+                can_swap=False,
+            )
+
+    def _on_swap(self) -> None:
+        if len(self._doubted) != 2:
+            return
+        sensors = self._visit.sensors
+        sensors.assign(sensors.sensor_at[self._doubted[0]], self._doubted[1])
+        self._must_correct = True
+        self._doubted = ()
+        self.page.show_labels("")
+        self._watch()  # what the motion told was told of others
+
+    def _on_keep(self) -> None:
+        self._kept_labels.add(self._doubted)
+        self._doubt(())
+
+    # the page
+
+    def _show(self) -> None:
+        if self._page is None:
+            return
+        from app.pages.free_motion_page import FreeMotionView
+
+        asked = self._asked()
+        self._page.show_state(
+            FreeMotionView(
+                gauges=self._faces(asked.joint),
+                hint=asked.hint,
+                elapsed_s=self._elapsed_s if self._is_recording else None,
+                emphasised=asked.site,
+                worn=self._marks(),
+            )
+        )
+
+    def _asked(self) -> Asked:
+        acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
+        if not self._is_recording:
+            return Asked(recorded_hint(self._motion) if self._has_moved else first_hint())
+        if sensors.is_left_to_motion and not sensors.site_of:
+            return Asked(unplaced_hint())
+        return self._hold.ask(self._motion, acquisition.now_s if acquisition is not None else 0.0)
+
+    def _faces(self, now: Joint | None) -> "dict[Joint, GaugeFace]":
+        from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
+
+        worn, prosthetic = self._visit.sensors.sensor_at, self._visit.prosthetic_sides
+        faces = {}
+        for joint in Joint:
+            note = absent_note(joint, worn, self._visit.without_ankle) if worn else ""
+            if note:
+                faces[joint] = GaugeFace(GaugeState.ABSENT, note=note)
+            else:
+                wanted = wanted_of(joint, prosthetic)
+                faces[joint] = gauge_face(joint, self._motion.joints.get(joint), wanted, is_now=joint is now)
+        return faces
+
+    def _marks(self) -> "dict[Site, SensorMark]":
+        from app.widgets.body_figure import SensorMark
+
+        status = self._visit.sensors.status
+        return {
+            site: SensorMark.SILENT if name in status and status[name].silent_s > SILENT_S else SensorMark.WORN
+            for name, site in self._visit.sensors.site_of.items()
+        }
+
+    # slots
+
+    def _on_begun(self) -> None:
+        if self._is_recording:
+            self._watch()  # only what is recorded counts
+
+    def _on_settled(self) -> None:
+        if self._is_recording and self._is_done:
+            self._stop()
+
+    def _on_ended(self, take: Take) -> None:
+        if take.told.kind is not KIND:
+            return
+        if self._repeated is not None:  # the other leg's sensors are worn as before
+            self._repeated = None
+            self._visit.place_sensors()
+        if self._is_for_nothing:
+            self._is_for_nothing = False
+            self._visit.takes.keep(take, is_kept=False)
+        if self._must_correct:
+            self._must_correct = False
+            self._visit.correct_placement()
+        self.changed.emit()
+        if self._goes_on and self._is_in_sight:
+            self._goes_on = False
+            self.done.emit()
