@@ -111,7 +111,7 @@ class ActionBar(QWidget):
         return [button for button in self._quiet if not button.isHidden()]
 
     @property
-    def buttons(self) -> list[QWidget]:
+    def buttons(self) -> list["VerbButton"]:
         """All buttons, also hidden ones, in the order of reading."""
         return [self.back, *self._quiet, self.sound, *self._others, self.primary]
 
@@ -212,6 +212,8 @@ class ActionBar(QWidget):
         margin = side_margin(self.width(), self._look.theme)
         gap = px(16 if self.width() >= px(NARROW_BELOW) else 8)
         room = max(self.width(), px(LEAST)) - 2 * margin
+        for button in self.buttons:
+            button.set_room(room)
         left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
         right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
         before = _width(left, gap) + (2 * gap if left else 0)
@@ -288,6 +290,7 @@ class VerbButton(Button):
     def __init__(self, look: Look, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
         self._is_primary, self._is_inverse = is_primary, False
+        self._verb = Verb("")
         self.hide()
 
     @property
@@ -298,7 +301,8 @@ class VerbButton(Button):
         self.setVisible(verb is not None)
         if verb is None:
             return
-        self._kind, self._icon, self._key, self._is_inverse = kind, verb.icon, verb.key, is_inverse
+        self._verb, self._kind, self._is_inverse = verb, kind, is_inverse
+        self._icon, self._key = verb.icon, verb.key
         self._height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
         self.setText(verb.text)
         self.setAccessibleName(verb.text)
@@ -306,6 +310,14 @@ class VerbButton(Button):
         self.setEnabled(verb.is_enabled)
         self.updateGeometry()
         self.update()
+
+    def set_room(self, width: int) -> None:
+        """Leave away the key cap, then the icon, where the words alone fill `width` pixels."""
+        self._icon, self._key = self._verb.icon, self._verb.key
+        if self.sizeHint().width() > width:
+            self._key = ""
+        if self.sizeHint().width() > width:
+            self._icon = None
 
     def sizeHint(self) -> QSize:
         size = super().sizeHint()

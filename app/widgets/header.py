@@ -103,16 +103,21 @@ class Header(QWidget):
         taken = sum(widget.sizeHint().width() + gap for widget in right)
         is_one_line = others + min(facts, px(FACTS_AT_LEAST)) + taken <= room
         free = room - others - (taken if is_one_line else 0)
-        width = max(min(facts, free), 1)
-        height = max(self._facts.heightForWidth(width) if facts else 0, line - px(8))
+        has_own_line = facts > 0 and free < min(facts, px(FACTS_AT_LEAST))  # below the rest, from edge to edge
+        width = max(min(facts, room if has_own_line else free), 1)
+        high = self._facts.heightForWidth(width) if facts else 0
+        height = max(0 if has_own_line else high, line - px(8))
         top = px(4)
         x = margin
         for widget in left:
-            size = widget.sizeHint()
-            if widget is self._facts:
-                size = QSize(width, self._facts.heightForWidth(width))
+            if widget is self._facts and has_own_line:
+                continue
+            size = QSize(width, high) if widget is self._facts else widget.sizeHint()
             widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
             x += size.width() + gap
+        if has_own_line:
+            self._facts.setGeometry(margin, top + height, width, high)
+            height += high
         rows = [right]
         if not is_one_line:
             top += height

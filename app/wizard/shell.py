@@ -3,14 +3,14 @@
 from enum import Enum, auto
 from itertools import pairwise
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt, QVariantAnimation, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QSize, Qt, QVariantAnimation, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.theme import Look
 from app.widgets.action_bar import ActionBar
 from app.widgets.banner import Banner
-from app.widgets.grid import COMPACT_BELOW, CONTENT, WIDE_FROM, side_margin
+from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
 from app.widgets.motion import duration_ms
 from app.widgets.sensor_strip import SensorStrip
@@ -18,6 +18,7 @@ from app.widgets.step_rail import RailForm, StepRail
 from app.widgets.toast import Toast
 
 FADE_MS = 120
+LEAST_PAGE = 40
 LOW_BELOW = 480  # of the window, px of the design: tiles would leave the page no room
 
 
@@ -55,6 +56,7 @@ class WizardShell(QWidget):
         self.banner = Banner(look)
         self._pages = _Pages()
         self._scroll = QScrollArea()
+        self._outer = QScrollArea()  # scrolls only in a window that is too low for header and bar, as 400 x 280 is
         self.bar = ActionBar(look)
         self._build()
         self.toast = Toast(look, self)
@@ -131,6 +133,8 @@ class WizardShell(QWidget):
             goal.focus()
         else:
             goal.setFocus(Qt.FocusReason.OtherFocusReason)
+        if goal is not self.rail:
+            self._outer.ensureWidgetVisible(goal, 0, 0)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -153,34 +157,41 @@ class WizardShell(QWidget):
         QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
 
     def _build(self) -> None:
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        for scroll in (self._scroll, self._outer):
+            scroll.setWidgetResizable(True)
+            scroll.setFrameShape(QFrame.Shape.NoFrame)
+            scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+            scroll.setMinimumSize(1, 1)  # the hint of a scroll area would be more than a low window has
         self._scroll.setWidget(self._pages)
-        self._scroll.setMinimumSize(1, 1)  # the hint of a scroll area would be more than a low window has
         self._banner_row = QVBoxLayout()
         self._banner_row.addWidget(self.banner)
         self._middle = QVBoxLayout()
         self._middle.setSpacing(0)
         self._middle.addLayout(self._banner_row)
         self._middle.addWidget(self._scroll, 1)
-        right = QVBoxLayout()
+        self._column = QWidget()
+        right = QVBoxLayout(self._column)
+        right.setContentsMargins(0, 0, 0, 0)
         right.setSpacing(0)
         right.addWidget(self.header)
         right.addWidget(self.strip)
         right.addLayout(self._middle, 1)
         right.addWidget(self.bar)
+        self._outer.setWidget(self._column)
+        self._outer.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         row = QHBoxLayout(self)
         row.setContentsMargins(0, 0, 0, 0)
         row.setSpacing(0)
         row.addWidget(self.rail)
-        row.addLayout(right, 1)
+        row.addWidget(self._outer, 1)
 
     def _connect(self) -> None:
         self.header.fold.toggled.connect(self._on_fold_toggled)
         self.strip.tiles_changed.connect(self._on_tiles_changed)
         self.strip.turned_bad.connect(self._on_turned_bad)
         self.bar.recording_changed.connect(self._on_recording_changed)
+        self._outer.verticalScrollBar().rangeChanged.connect(self._on_range_changed)
+        self._outer.verticalScrollBar().valueChanged.connect(self._place_toast)
         self._scroll.viewport().installEventFilter(self)
         for widget in (self.bar, self.toast):
             widget.installEventFilter(self)
@@ -196,6 +207,7 @@ class WizardShell(QWidget):
         self.rail.set_form(RailForm.COMPACT if self._is_compact else form)
         self.header.set_compact(self._is_compact)
         self.strip.set_compact(self._is_compact)
+        self._scroll.setMinimumHeight(self._look.theme.px(LEAST_PAGE))
         free = self.width() - self.rail.width()
         beside = max(free - self._look.theme.px(CONTENT), 0) // 2
         self._middle.setContentsMargins(beside, 0, beside, 0)
@@ -244,10 +256,13 @@ class WizardShell(QWidget):
 
     def _place_toast(self) -> None:
         px = self._look.theme.px
-        bar = self.bar.geometry()
+        bar = QRect(self.bar.mapTo(self, QPoint(0, 0)), self.bar.size())
         margin = side_margin(bar.width(), self._look.theme)
+        if bar.width() <= px(LEAST):
+            margin = px(4)
         self.toast.set_room(bar.width() - 2 * margin)
-        self.toast.move(bar.left() + margin, bar.top() - px(16) - self.toast.height())
+        above = min(bar.top(), self.height()) - px(16) - self.toast.height()
+        self.toast.move(bar.left() + margin, max(above, px(8)))
 
     def _on_fold_toggled(self) -> None:
         self._show_strip()
@@ -264,6 +279,11 @@ class WizardShell(QWidget):
         policy = self.banner.sizePolicy()
         policy.setRetainSizeWhenHidden(is_recording)
         self.banner.setSizePolicy(policy)
+
+    def _on_range_changed(self) -> None:
+        """Keep what stops a recording in sight where the frame itself has to scroll."""
+        if self.bar.state.recording is not None:
+            self._outer.ensureWidgetVisible(self.bar.primary, 0, self._look.theme.px(8))
 
     def _on_look_changed(self) -> None:
         self._fit()
