@@ -121,7 +121,7 @@ class StepRail(QWidget):
         self._keep(self.rows, len(rows), self._steps, self._on_step_clicked)
         for number, (widget, row) in enumerate(zip(self.rows, rows, strict=True)):
             widget.show_row(row, number + 1, len(rows))
-        self._set_tab_stop()
+        self._set_tab_stop(next((row for row in self._all() if row.hasFocus()), None))
 
     def show_below(self, rows: tuple[BelowRow, ...], note: str = "") -> None:
         """Show the rows at the bottom, and a word above them."""
