@@ -6,7 +6,6 @@ kind and where in our own source it was raised. Of what other libraries say, onl
 """
 
 import errno
-import importlib.metadata
 import logging
 import os
 import platform
@@ -179,6 +178,8 @@ def _is_own(module: str) -> bool:
 @cache
 def version_of(distribution: str) -> str:
     """What is installed of a library, or of this program."""
+    import importlib.metadata  # it takes a twentieth of the time that the window may
+
     try:
         return importlib.metadata.version(distribution)
     except importlib.metadata.PackageNotFoundError:

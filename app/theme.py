@@ -1,7 +1,7 @@
 """How does the window look? The frozen tokens of colour, type and space; no other file names a colour."""
 
 from dataclasses import dataclass, replace
-from importlib.resources import files
+from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette, QPen
@@ -233,7 +233,7 @@ def load_fonts() -> None:
     FileNotFoundError
         The installation is incomplete.
     """
-    folder = files("resources") / "fonts"
+    folder = Path(__file__).parents[1] / "resources" / "fonts"
     for name in FONT_FILES:
         QFontDatabase.addApplicationFontFromData(QByteArray((folder / name).read_bytes()))
 
