@@ -1,6 +1,6 @@
 """Of all ways to put the sensors on the sites, which lets the fewest strangers share a joint?"""
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass
 from itertools import combinations, permutations
 
@@ -38,8 +38,10 @@ class Neighbours:
     length_m: FloatArray
 
 
-def neighbours(together: Together, standing: Mapping[str, FloatArray]) -> Neighbours | None:
-    """Try a joint between every two sensors; None where two of them were never heard together.
+def neighbours_in_steps(
+    together: Together, standing: Mapping[str, FloatArray]
+) -> Generator[None, None, Neighbours | None]:
+    """Try a joint between every two sensors, a step each; None where two of them were never heard together.
 
     Parameters
     ----------
@@ -58,6 +60,7 @@ def neighbours(together: Together, standing: Mapping[str, FloatArray]) -> Neighb
         height_m[a, b] = found.centre_1_m @ ups[a] - found.centre_2_m @ ups[b]
         height_m[b, a] = -height_m[a, b]
         length_m[a, b] = length_m[b, a] = np.linalg.norm(found.centre_1_m) + np.linalg.norm(found.centre_2_m)
+        yield
     return Neighbours(names, cost, height_m, length_m)
 
 

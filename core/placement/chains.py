@@ -1,14 +1,15 @@
 """Which sensors make up a leg, which end of it is up, and which leg moved first? Found without any label."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.body import Segment, Side, Site, ankle_of, knee_of
 from core.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
-from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours, statures
-from core.placement.felt import Tracks, felt_together
+from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours_in_steps, statures
+from core.placement.felt import Tracks, felt_in_steps
+from core.placement.steps import at_once
 from core.samples import FloatArray
 
 MIN_MARGIN = 1.7  # wrong sensors at a joint had 1.5 at most, in motions of two seconds; right ones seldom under 2
@@ -108,10 +109,17 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
     ValueError
         Fewer than two sensors, or more than six.
     """
+    return at_once(chains_in_steps(tracks, standing))
+
+
+def chains_in_steps(
+    tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
+) -> Generator[None, None, Chains | None]:
+    """As `find_chains`, in steps."""
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")
-    together = felt_together(tracks)
-    told = neighbours(together, standing or {}) if together else None
+    together = yield from felt_in_steps(tracks)
+    told = (yield from neighbours_in_steps(together, standing or {})) if together else None
     if told is None:
         return None
     arrangements = Arrangements(USUAL_SITES[len(tracks)], told)

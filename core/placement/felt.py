@@ -5,12 +5,13 @@ tissue, impacts and small lags do between two neighbours, and leaves the slow sw
 share.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from core.pair import FAST_RAD_S, OrientedTrack, angular_acceleration, lever_matrix
+from core.placement.steps import at_once
 from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray, IntArray
 from core.tracks import at_positions
@@ -63,7 +64,15 @@ Tracks = Mapping[str, Sequence[OrientedTrack]]
 
 
 def felt_together(tracks: Tracks) -> Together | None:
-    """What all sensors felt in the liveliest minute they have in common; None where one was not heard for a second."""
+    """As `felt_in_steps`, at once."""
+    return at_once(felt_in_steps(tracks))
+
+
+def felt_in_steps(tracks: Tracks) -> Generator[None, None, Together | None]:
+    """What all sensors felt in the liveliest minute they have in common; None where one was not heard for a second.
+
+    A step for each sensor.
+    """
     if not all(tracks.values()):
         return None
     start_s = max(min(one.track.start_s for one in stretches) for stretches in tracks.values())
@@ -72,7 +81,10 @@ def felt_together(tracks: Tracks) -> Together | None:
         return None
     start_s, end_s = _liveliest(tracks, start_s, end_s)
     time_s = np.arange(start_s, end_s, STEP_S)
-    sensors = {name: _felt(stretches, time_s) for name, stretches in tracks.items()}
+    sensors = {}
+    for name, stretches in tracks.items():
+        sensors[name] = _felt(stretches, time_s)
+        yield
     if any(np.isnan(felt.terms).all() for felt in sensors.values()):
         return None
     index = np.arange(1, len(time_s) - 1, -(-len(time_s) // MAX_INSTANTS))

@@ -1,12 +1,20 @@
 """Do the labels contradict the motion? Then which sensors seem to have been exchanged?"""
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.placement.arrangements import Arrangement, Arrangements, Neighbours, joints_between, neighbours, statures
+from core.placement.arrangements import (
+    Arrangement,
+    Arrangements,
+    Neighbours,
+    joints_between,
+    neighbours_in_steps,
+    statures,
+)
 from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
-from core.placement.felt import Tracks, felt_together
+from core.placement.felt import Tracks, felt_in_steps
+from core.placement.steps import at_once
 from core.samples import FloatArray, Recording, RecordingKind
 from core.sensors import SensorTracks
 
@@ -62,8 +70,15 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
     standing
         Mean specific force (3,) in standing, by site.
     """
-    together = felt_together(tracks) if tracks else None
-    told = neighbours(together, standing) if together else None
+    return at_once(exchanged_in_steps(tracks, standing))
+
+
+def exchanged_in_steps(
+    tracks: Tracks, standing: Mapping[str, FloatArray]
+) -> Generator[None, None, list[tuple[Site, ...]]]:
+    """As `exchanged_sites`, in steps."""
+    together = (yield from felt_in_steps(tracks)) if tracks else None
+    told = (yield from neighbours_in_steps(together, standing)) if together else None
     if told is None:
         return []
     labelled = {Site(name): sensor for sensor, name in enumerate(told.names)}
