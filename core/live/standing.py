@@ -17,7 +17,8 @@ from core.tracks import is_possible
 
 WANTED_S = 3.0
 WINDOW_S = 0.25  # how soon a movement is told
-KEPT_S = 10.0  # who stands longer is measured over the last ten seconds
+KEPT_S = 10.0  # who stands longer is measured over the last nine or ten seconds,
+REST_EVERY_S = 1.0  # once a second
 SILENT_S = 0.5
 SAME_BOUT_S = 1.0  # movements less far apart are one
 
@@ -65,6 +66,8 @@ class Standing(Generic[Sensor]):
     def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S) -> None:
         self._watches = {sensor: _Watch() for sensor in sensors}
         self._bouts = _Bouts()
+        self._rest_of = np.inf, np.inf
+        self._found: Mapping[Sensor, Rest] = {}
         self._state: StandingState[Sensor] = StandingState(0.0, wanted_s)
 
     @property
@@ -99,13 +102,22 @@ class Standing(Generic[Sensor]):
             return replace(state, still_s=0.0, moved=(), silent=silent, rest={})
         since_s = max(watch.still_since_s for watch in watches.values())
         until_s = min(watch.judged_s for watch in watches.values())
-        rest: dict[Sensor, Rest] = {}
-        if until_s - since_s >= self._state.wanted_s:
-            found = {sensor: watch.rest(since_s) for sensor, watch in watches.items()}
-            known = {sensor: one for sensor, one in found.items() if one is not None}
-            rest = known if len(known) == len(found) else {}
+        still_s = until_s - since_s
+        rest = self._rest(since_s, still_s) if still_s >= self._state.wanted_s else {}
         moved = tuple(sensor for sensor, watch in watches.items() if watch.is_moving)
-        return replace(state, still_s=max(0.0, until_s - since_s), moved=moved, silent=(), rest=rest)
+        return replace(state, still_s=max(0.0, still_s), moved=moved, silent=(), rest=rest)
+
+    def _rest(self, since_s: float, still_s: float) -> Mapping[Sensor, Rest]:
+        """What all read while still since an instant, as of the last whole second after the wanted time."""
+        whole_s = np.floor((still_s - self._state.wanted_s) / REST_EVERY_S) * REST_EVERY_S
+        until_s = since_s + self._state.wanted_s + float(whole_s)
+        from_s = max(since_s, until_s - KEPT_S + REST_EVERY_S)
+        if (from_s, until_s) != self._rest_of:
+            self._rest_of = from_s, until_s
+            found = {sensor: watch.rest(from_s, until_s) for sensor, watch in self._watches.items()}
+            known = {sensor: one for sensor, one in found.items() if one is not None}
+            self._found = known if len(known) == len(found) else {}
+        return self._found
 
 
 class _Watch:
@@ -138,8 +150,10 @@ class _Watch:
             moved += self._judge(self._samples)
         return moved
 
-    def rest(self, since_s: float) -> Rest | None:
-        return None if self._samples is None else rest_of(_since(self._samples, since_s))
+    def rest(self, from_s: float, to_s: float) -> Rest | None:
+        if self._samples is None:
+            return None
+        return rest_of(_part(self._samples, slice(*np.searchsorted(self._samples.time_s, [from_s, to_s]).tolist())))
 
     def _judge(self, samples: ImuBlock) -> list[tuple[float, float]]:
         moved = []
