@@ -1,18 +1,14 @@
-"""Which sensors make up which leg, looked for once a second while the patient moves?
+"""Which sensors make up which leg? Looked for once a second while the patient moves."""
 
-A look takes some 0.1 s of the estimator's thread, in pieces of NumPy that let the screen in between; while nobody moves
-there is none.
-"""
-
-from collections.abc import Iterable, Mapping
+from collections.abc import Generator, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
 
-from app.acquisition.motion_memory import KEPT_S, MotionMemory, tracks_of
+from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
 from core.live.sensors import LiveSensor
 from core.pair import MOVING_WINDOW_S, moving_mean
-from core.placement.chains import LIFTED_RAD_S, USUAL_SITES, Chain, Chains, find_chains
+from core.placement.chains import LIFTED_RAD_S, USUAL_SITES, Chain, Chains, chains_in_steps
 from core.samples import FloatArray, ImuBlock
 from core.tracks import nominal_step_s
 
@@ -41,7 +37,7 @@ class ChainSearch:
         self._memory = MotionMemory(names)
         self._sensors, self._standing = sensors or {}, standing or {}
         self._lifted_at_s: dict[str, float] = {}
-        self._next_look_s: float | None = None
+        self._looks = Looks(self._memory, self._look, LOOK_S)
         self._alike = 0
 
     @property
@@ -49,24 +45,17 @@ class ChainSearch:
         return self._alike >= SURE_AFTER
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
-        """Take new samples, and look as often as they allow."""
-        self._memory.feed(blocks)
-        if self._next_look_s is None:
-            first_s = min((block.time_s[0] for block in blocks.values() if len(block)), default=None)
-            if first_s is None:
-                return
-            self._next_look_s = LOOK_S * (np.floor(first_s / LOOK_S) + 1)
-        while self._memory.has_passed(self._next_look_s):
-            self._look(self._next_look_s)
-            self._next_look_s += LOOK_S
-            self._memory.forget_before(self._next_look_s - KEPT_S)
+        """Take new samples of some or all sensors."""
+        self._looks.update(blocks)
 
-    def _look(self, at_s: float) -> None:
+    def _look(self, at_s: float) -> Generator[None, None, None]:
         speeds = self._note_lifts(at_s)
-        if max(speeds.values(), default=0.0) < LIFTED_RAD_S:
-            return
         blocks = {k: v for k, v in self._memory.between(at_s - KEPT_S, at_s).items() if k in speeds}
-        found = find_chains(tracks_of(blocks, self._sensors), self._standing) if len(blocks) in USUAL_SITES else None
+        if max(speeds.values(), default=0.0) < LIFTED_RAD_S or len(blocks) not in USUAL_SITES:
+            return
+        yield
+        tracks = yield from tracks_in_steps(blocks, self._sensors)
+        found = yield from chains_in_steps(tracks, self._standing)
         before, self.chains = self.chains, found and self._in_order(found)
         if found is None or not found.is_certain:
             self._alike = 0

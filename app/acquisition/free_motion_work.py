@@ -1,19 +1,19 @@
 """How well does the free motion show the joints, do the labels agree with it, and who is where if nobody said so?"""
 
-from collections.abc import Mapping
+from collections.abc import Generator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from app.acquisition.chain_search import ChainSearch
-from app.acquisition.motion_memory import KEPT_S, MotionMemory, tracks_of
+from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
 from app.acquisition.placing_work import sites_of
 from core.body import Side, Site
 from core.live.free_motion import FreeMotion, FreeMotionState
 from core.live.sensors import LiveSensor
 from core.placement.arrangements import joints_between
 from core.placement.chains import Chains
-from core.placement.labels import exchanged_sites
+from core.placement.labels import exchanged_in_steps
 from core.samples import FloatArray, ImuBlock
 
 LABELS_AFTER_S, LABELS_EVERY_S = 10.0, 5.0  # of motion, before labels are doubted; then two looks have to agree
@@ -204,26 +204,22 @@ class _LabelCheck:
         self._sensors = {str(site): sensor for site, sensor in sensors.items()}
         self._standing = {str(site): force for site, force in standing.items()}
         self._memory = MotionMemory(self._sensors)
-        self._next_look_s: float | None = None
+        self._looks = Looks(self._memory, self._look, LABELS_EVERY_S, LABELS_AFTER_S)
         self._last: list[tuple[Site, ...]] = []
         self.exchanged: tuple[tuple[Site, ...], ...] = ()
 
     def update(self, worn: Mapping[Site, ImuBlock]) -> None:
-        self._memory.feed({str(site): block for site, block in worn.items()})
-        if self._next_look_s is None:
-            first_s = min(float(block.time_s[0]) for block in worn.values())
-            self._next_look_s = LABELS_EVERY_S * float(np.ceil((first_s + LABELS_AFTER_S) / LABELS_EVERY_S))
-        while self._memory.has_passed(self._next_look_s):
-            found = self._found(self._memory.between(self._next_look_s - KEPT_S, self._next_look_s))
-            self.exchanged = tuple(found) if found == self._last else ()
-            self._last = found
-            self._next_look_s += LABELS_EVERY_S
-            self._memory.forget_before(self._next_look_s - KEPT_S)
+        self._looks.update({str(site): block for site, block in worn.items()})
 
-    def _found(self, blocks: Mapping[str, ImuBlock]) -> list[tuple[Site, ...]]:
+    def _look(self, at_s: float) -> Generator[None, None, None]:
+        blocks = self._memory.between(at_s - KEPT_S, at_s)
         ends = {end for joint in joints_between(tuple(map(Site, blocks))) for end in (joint.proximal, joint.distal)}
+        yield
         joined = {site: block for site, block in blocks.items() if Site(site) in ends}
-        return exchanged_sites(tracks_of(joined, self._sensors), self._standing)
+        tracks = yield from tracks_in_steps(joined, self._sensors)
+        found = yield from exchanged_in_steps(tracks, self._standing)
+        self.exchanged = tuple(found) if found == self._last else ()
+        self._last = found
 
 
 def _both(legs: Mapping[Side, FreeMotionState]) -> FreeMotionState:

@@ -1,17 +1,26 @@
-"""What did the sensors measure in the last half minute? For what looks at a whole motion again and again."""
+"""What did the sensors measure in the last half minute? For what looks at a whole motion again and again.
 
-from collections.abc import Iterable, Mapping
+A look at six sensors takes a tenth of a second or two. It is taken in steps of some ten milliseconds, a few with every
+update, so that what else the estimator's thread shows stays fresh.
+"""
+
+import math
+from collections.abc import Callable, Generator, Iterable, Mapping
 
 import numpy as np
 
 from core.live.sensors import LiveSensor
 from core.orientation import oriented
-from core.placement.felt import Tracks
+from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
 
 KEPT_S = 30.0
 WAIT_S = 1.0  # for a sensor that is behind the others; longer, and it is left out
+STEP_EVERY_S = 0.025  # of the stream, is a step of a look: the thirty of the longest take less than a second
+
+Look = Callable[[float], Generator[None, None, None]]
+"""Looks at what was measured before an instant, in steps."""
 
 
 class MotionMemory:
@@ -43,14 +52,57 @@ class MotionMemory:
         return {sensor: part for sensor, part in parts.items() if len(part)}
 
 
-def tracks_of(blocks: Mapping[str, ImuBlock], sensors: Mapping[str, LiveSensor]) -> Tracks:
-    """Oriented stretches of each block, with bias and kind of rate where `sensors` tell."""
+class Looks:
+    """Looks at the memory every `every_s` of the stream, the first one `after_s` after the first sample."""
+
+    def __init__(self, memory: MotionMemory, look: Look, every_s: float, after_s: float = 0.0) -> None:
+        self._memory, self._look = memory, look
+        self._every_s, self._after_s = every_s, after_s
+        self._next_s: float | None = None
+        self._going_on: Generator[None, None, None] | None = None
+        self._steps = 0  # that the stream so far has allowed
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        """Take new samples of some or all sensors, and as many steps as they allow."""
+        heard = [block for block in blocks.values() if len(block)]
+        if not heard:
+            return
+        self._memory.feed(blocks)
+        if self._next_s is None:
+            first_s = min(float(block.time_s[0]) for block in heard)
+            self._next_s = self._every_s * (math.floor((first_s + self._after_s) / self._every_s) + 1)
+            self._steps = math.floor(first_s / STEP_EVERY_S)
+        allowed = math.floor(max(float(block.time_s[-1]) for block in heard) / STEP_EVERY_S)
+        for _ in range(allowed - self._steps):
+            if self._going_on is None and not self._memory.has_passed(self._next_s):
+                break
+            self._next_s = self._step(self._next_s)
+        self._steps = max(self._steps, allowed)
+
+    def _step(self, at_s: float) -> float:
+        """The look at an instant goes on; returns which is next."""
+        if self._going_on is None:
+            self._going_on = self._look(at_s)
+        try:
+            next(self._going_on)
+        except StopIteration:
+            self._going_on = None
+            self._memory.forget_before(at_s + self._every_s - KEPT_S)
+            return at_s + self._every_s
+        return at_s
+
+
+def tracks_in_steps(
+    blocks: Mapping[str, ImuBlock], sensors: Mapping[str, LiveSensor]
+) -> Generator[None, None, dict[str, list[OrientedTrack]]]:
+    """Oriented stretches of each block, with bias and kind of rate where `sensors` tell; a step for each."""
     tracks = {}
     for name, block in blocks.items():
         sensor = sensors.get(name)
         bias = np.zeros(3) if sensor is None else sensor.gyro_bias_rad_s
         kind = RateKind.INSTANTANEOUS if sensor is None else sensor.rate_kind
         tracks[name] = [oriented(track, kind, bias) for track in even_tracks(block)]
+        yield
     return tracks
 
 
