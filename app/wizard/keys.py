@@ -1,7 +1,7 @@
 """What does a key mean while the wizard is in sight? One filter turns keys into intents; nobody else reads them.
 
 Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
-was written. A button that has the focus is pressed by Space and Enter, as everywhere; but while something runs Space
+was written; only a field of numbers, which has no use for Space, lets it through. A button that has the focus is pressed by Space and Enter, as everywhere; but while something runs Space
 stops it, whatever has the focus but a text field: who stops a walk looks at the patient and not at the screen.
 """
 
@@ -141,7 +141,7 @@ class Keys(QObject):
         if plain is None:
             intent = _modified_intent(event)
             return None if is_text and intent == Intent(Action.UNDO) else intent
-        if is_text:
+        if is_text and not (plain.action is Action.RUN and _takes_figures_only(focused)):
             return None
         if plain.action is Action.RUN and not self._is_running and isinstance(focused, _PRESSED_BY_SPACE):
             return None
@@ -160,6 +160,11 @@ def _takes_text(widget: QWidget) -> bool:
     if isinstance(widget, (QLineEdit, QPlainTextEdit, QTextEdit)):
         return not widget.isReadOnly()
     return isinstance(widget, _TEXT_FIELDS)
+
+
+def _takes_figures_only(widget: QWidget) -> bool:
+    figures = Qt.InputMethodHint.ImhFormattedNumbersOnly | Qt.InputMethodHint.ImhDigitsOnly
+    return isinstance(widget, QAbstractSpinBox) or bool(widget.inputMethodHints() & figures)
 
 
 def _plain_intent(event: QKeyEvent) -> Intent | None:

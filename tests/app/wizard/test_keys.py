@@ -121,6 +121,15 @@ def test_space_is_written_in_a_text_field_even_while_something_runs(window: Wind
     assert window.field.text() == " "
 
 
+def test_a_field_of_numbers_lets_space_through_and_keeps_the_rest(window: Window) -> None:
+    window.field.setInputMethodHints(Qt.InputMethodHint.ImhFormattedNumbersOnly)
+    window.field.setFocus()
+    assert window.press(Key.Key_Space) == [Intent(Action.RUN)]
+    assert window.press(Key.Key_1) == []
+    assert window.press(Key.Key_K) == []
+    assert window.field.text() == "1k"
+
+
 def test_a_field_that_is_only_read_takes_no_letters(window: Window) -> None:
     window.field.setReadOnly(True)
     window.field.setFocus()
