@@ -1,8 +1,9 @@
 """What does a key mean while the wizard is in sight? One filter turns keys into intents; nobody else reads them.
 
 Text has the first word: in a text field letters, figures, brackets and Space are written, and Ctrl Z takes back what
-was written; only a field of numbers, which has no use for Space, lets it through. A button that has the focus is pressed by Space and Enter, as everywhere; but while something runs Space
-stops it, whatever has the focus but a text field: who stops a walk looks at the patient and not at the screen.
+was written; only a field of numbers, which has no use for Space, lets it through. A button that has the focus is
+pressed by Space and Enter, as everywhere; but while something runs Space stops it, whatever has the focus but a text
+field: who stops a walk looks at the patient and not at the screen.
 """
 
 from dataclasses import dataclass
