@@ -6,7 +6,9 @@
 Times are seconds since `start`, of the sensors' own stamps.
 """
 
+import threading
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 
 import numpy as np
 
@@ -35,6 +37,7 @@ class Acquisition:
         self._readers = [Reader(source, now_ns) for source in sources]
         self._preview = Preview(self._readers)
         self._writer: JournalWriter | None = None
+        self._stopping = threading.Lock()
 
     def start(self) -> None:
         """Open all sources and read them from now on.
@@ -60,7 +63,7 @@ class Acquisition:
 
     def close(self) -> None:
         """Stop reading, and a recording that is being made; close all sources."""
-        if self._writer:
+        with suppress(RuntimeError):
             self.stop_recording()
         self._preview.close()
         for reader in self._readers:
@@ -101,7 +104,13 @@ class Acquisition:
         return ImuBlock(sensor, np.empty(0), np.empty((0, 3)), np.empty((0, 3)))
 
     def record(self, writer: JournalWriter) -> None:
-        """Keep what all sensors measured since the journal was opened, up to `stop_recording`."""
+        """Keep what all sensors measured since the journal was opened, up to `stop_recording`.
+
+        Raises
+        ------
+        RuntimeError
+            Something is being recorded already.
+        """
         if self._writer:
             raise RuntimeError("a recording is being made already")
         self._writer = writer
@@ -109,16 +118,23 @@ class Acquisition:
             reader.record(writer)
 
     def stop_recording(self) -> JournalSummary:
-        """End the recording with what was measured until now. Waits for sources, half a second at most, and disk."""
-        writer = self._writer
-        if writer is None:
-            raise RuntimeError("no recording is being made")
-        for reader in self._readers:
-            reader.finish_read()
-        for reader in self._readers:
-            reader.stop_recording()
-        self._writer = None
-        return writer.stop()
+        """End the recording with what was measured until now. Waits for sources, half a second at most, and disk.
+
+        Raises
+        ------
+        RuntimeError
+            None is being made, or `close` has ended it.
+        """
+        with self._stopping:
+            writer = self._writer
+            if writer is None:
+                raise RuntimeError("no recording is being made")
+            for reader in self._readers:
+                reader.finish_read()
+            for reader in self._readers:
+                reader.stop_recording()
+            self._writer = None
+            return writer.stop()
 
     def set_work(self, work: LiveWork | None) -> None:
         """What is done with new samples from now on; see `LiveWork`."""

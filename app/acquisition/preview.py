@@ -13,6 +13,7 @@ from core.samples import ImuBlock
 EVERY_S = 0.03
 LEAST_PAUSE_S = 0.005  # for the readers, where the work takes all there is
 MOST_BEHIND_S = 5.0
+CLOSE_S = 5.0  # an update takes no longer
 
 _log = logging.getLogger(__name__)
 
@@ -65,7 +66,7 @@ class Preview:
     def close(self) -> None:
         self._is_closing.set()
         if self._thread.is_alive():
-            self._thread.join()
+            self._thread.join(CLOSE_S)
 
     def _run(self) -> None:
         pause_s = EVERY_S

@@ -15,6 +15,7 @@ from devices.live import LiveSource, SensorTold, SourceLostError, SourceRefusedE
 
 REOPEN_S = 1.0
 RECALLED_S = 2.0  # a journal may be opened so long before it is handed over
+CLOSE_S = 5.0  # some ports answer no sooner
 LAST_READ_S = 0.5  # how long a stop waits for what already lies at the source
 NOTHING_TOLD = SensorTold()
 
@@ -59,8 +60,11 @@ class Reader:
     def close(self) -> None:
         self._is_closing.set()
         if self._thread.is_alive():
-            self._thread.join()
-        self.source.close()
+            self._thread.join(CLOSE_S)
+        if self._thread.is_alive():
+            _log.warning("%s does not let go", self.source.info.driver)  # its thread ends with the program
+        else:
+            self.source.close()
 
     @property
     def sensors(self) -> tuple[str, ...]:

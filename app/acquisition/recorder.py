@@ -7,6 +7,7 @@ the row follows, at the latest on stop; if the program ends before that, the jou
 import logging
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from uuid import UUID
 
 from app.acquisition.acquisition import Acquisition
@@ -95,7 +96,9 @@ class Recorder:
             The journal cannot be read.
         """
         if self.summary is None:
-            self.summary = self._acquisition.stop_recording()
+            with suppress(RuntimeError):  # the sources were closed, and the recording with them
+                self._acquisition.stop_recording()
+            self.summary = self._writer.stop()
         stored = self._entry.close(opened, self.summary, self._writer.header.segment)
         recording, _ = recording_with_samples(opened, stored, DECODERS)
         return stored, recording

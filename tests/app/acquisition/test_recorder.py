@@ -22,9 +22,10 @@ from app.storage.recovery import find_interrupted
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedSensor, RecordingState, Role
 from core.analysis import analyse
 from core.body import Joint
+from core.results import Analysis
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.replay import ReplayFaults, ReplaySource
-from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
+from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from tests.safety.live_material import Clock, numbered_session
 
 ANY_ROOM = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
@@ -152,9 +153,27 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
     assert again.findings == ()
     assert differences(tuple(live), again.recordings) == []
     assert differences(first, analyse(again)) == []
-    angle = first.recordings[-1].joints[Joint.LEFT_KNEE].angle_rad
-    assert np.mean(np.isfinite(angle)) > 0.8
-    assert np.nanmax(angle) - np.nanmin(angle) > np.deg2rad(40.0)
+    for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
+        assert rms_error_deg(simulated, live[-1], first, joint) < 1.0
+
+
+def rms_error_deg(simulated: SimulatedSession, recorded: Recording, found: Analysis, joint: Joint) -> float:
+    """Of the walk's angle against the truth, both since standing; the walk began somewhere in what was recorded."""
+    played = simulated.session.recordings[-1].imu[joint.proximal]
+    block = recorded.imu[joint.proximal]
+    begun_s = next(
+        float(block.time_s[k[0]] - time_s)
+        for row, time_s in zip(played.gyr_rad_s, played.time_s, strict=True)
+        if len(k := np.flatnonzero((block.gyr_rad_s == row).all(axis=1)))
+    )
+    truth = simulated.truth.recordings[recorded.name].joints[joint]
+    walk = found.recordings[-1]
+    since_s = walk.time_s - begun_s
+    expected_rad = np.interp(since_s, truth.time_s, truth.angle_rad - truth.standing_rad)
+    is_known = (since_s >= 0) & (since_s <= truth.time_s[-1])
+    error_rad = (walk.joints[joint].angle_rad - expected_rad)[is_known]
+    assert np.mean(np.isfinite(error_rad)) > 0.8
+    return float(np.rad2deg(np.sqrt(np.nanmean(error_rad**2))))
 
 
 def is_part_of(block: ImuBlock, played: ImuBlock) -> bool:
@@ -163,6 +182,17 @@ def is_part_of(block: ImuBlock, played: ImuBlock) -> bool:
     found = [rows.get(row.tobytes(), -1) for row in np.hstack([block.gyr_rad_s, block.acc_m_s2])]
     numbers = [number for number in found if number >= 0]
     return len(set(numbers)) > 0.9 * len(played)
+
+
+def test_sources_that_are_closed_first_end_the_recording_too(
+    opened: OpenedLibrary, session_id: UUID, acquisition: Acquisition
+) -> None:
+    recorder = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM)
+    time.sleep(0.2)
+    acquisition.close()
+    stored, recording = recorder.stop(opened)
+    assert stored.state is RecordingState.CLOSED
+    assert len(recording.imu) == 2
 
 
 def test_a_name_that_is_taken_is_refused_and_nothing_is_recorded(
