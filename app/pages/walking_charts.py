@@ -32,7 +32,7 @@ class WalkingCharts(Card):
         self.lanes = LiveLanes(look)
         self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
-        self._keys = [SideKey(look, side) for side in Side]
+        self._keys = {side: SideKey(look, side) for side in Side}
         self._legend_pairs: list[QHBoxLayout] = []
         self._lines = Hairline(look), Hairline(look)
         self._heads: list[QHBoxLayout] = []
@@ -69,6 +69,8 @@ class WalkingCharts(Card):
         self.knee.show_traces(now_s, knees)
         self.ankle.show_traces(now_s, ankles)
         self.lanes.show_lanes(now_s, lanes)
+        for side, key in self._keys.items():
+            key.setVisible(side in knees or side in ankles)
         self._say_provisional([side for side in Side if side in ankles and ankles[side].is_provisional])
 
     def clear(self) -> None:
@@ -87,7 +89,7 @@ class WalkingCharts(Card):
         knee.addWidget(self._simulated)
         knee.addStretch(1)
         knee.addLayout(self._key_row)
-        for key in self._keys:
+        for key in self._keys.values():
             self._key_row.addWidget(key)
         ankle = self._head(Text(self._look, tr("Ankle"), size=16, weight=SEMIBOLD), tr("dorsiflexion + (°)"))
         ankle.addStretch(1)

@@ -57,7 +57,7 @@ class MissingSpan:
 
 
 class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no types
-    """Axes that stay `fixed_deg`, widened by tens where a walk leaves them and kept so.
+    """Axes that stay `fixed_deg`, widened by tens where a walk leaves them, and kept so until the next one.
 
     `tick_deg` is what two figures of the axis lie apart.
     """
@@ -79,8 +79,6 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._view.disableAutoRange()
         self._base.setStyle(showValues=False)
         self._base.setTicks([])  # only its line
-        for axis in (self._axis, self._base):
-            axis.setCacheMode(pg.GraphicsObject.CacheMode.DeviceCoordinateCache)  # they never move, the curves always
         self.setCentralItem(self._layout)
         self._history = _HistoryItem(look, fixed_deg, self._view)
         self._view.sigResized.connect(self._history.on_resized)
@@ -117,8 +115,9 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
             self._set_range()
 
     def clear(self) -> None:
-        """Begin with an empty strip. The axis stays as wide as it became."""
+        """Begin with an empty strip and the axis as it is for everybody."""
         self._history.clear()
+        self._set_range()
 
     def _set_range(self) -> None:
         lowest, highest = self.range_deg
@@ -251,6 +250,7 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
 
     def clear(self) -> None:
         self._traces, self._began_s, self.missing = {}, np.nan, ()
+        self.range_deg = self._fixed
         self.redraw()
 
     def take(self, now_s: float, traces: Mapping[Side, LiveTrace]) -> None:

@@ -169,9 +169,10 @@ def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot, lo
     assert strip.range_deg == ANKLE_DEG
     strip.show_traces(2.0, {Side.LEFT: LiveTrace(1.0 + time_s, np.deg2rad(-33 * np.sin(6 * time_s)))})
     assert strip.range_deg == (-40.0, 40.0)
-    strip.clear()
     strip.show_traces(3.0, {Side.LEFT: LiveTrace(2.0 + time_s, np.zeros(100))})
     assert strip.range_deg == (-40.0, 40.0)
+    strip.clear()
+    assert strip.range_deg == ANKLE_DEG
 
 
 def test_a_clock_that_goes_back_begins_anew(strip: LiveStrip) -> None:
