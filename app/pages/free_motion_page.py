@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 from PySide6.QtCore import QPointF, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.theme import Look
 from app.widgets.body_figure import BodyFigure, SensorMark
@@ -14,7 +14,6 @@ from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.icons import Icon
 from app.widgets.notice import Notice
-from app.wording import tr
 from core.body import Joint, Site
 
 USUAL_S = 10.0
@@ -38,18 +37,17 @@ class FreeMotionPage(QWidget):
 
     Signals
     -------
-    swap_pressed, keep_pressed
-        The labels that the motion contradicts are changed, or stay.
+    answered
+        Number of the answer to what was asked.
     """
 
-    swap_pressed = Signal()
-    keep_pressed = Signal()
+    answered = Signal(int)
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
         self._is_compact = False
-        self.labels = _LabelBand(look)
+        self.question = _Question(look)
         self.band = HintBand(look)
         self.gauges = {joint: Gauge(look, joint) for joint in Joint}
         self.figure = BodyFigure(look, legs_only=True)
@@ -62,22 +60,21 @@ class FreeMotionPage(QWidget):
         for row in (0, 1):
             self._grid.setRowStretch(row, 1)
         self._column = QVBoxLayout(self)
-        self._column.addWidget(self.labels)
+        self._column.addWidget(self.question)
         self._column.addWidget(self.band)
         self._column.addLayout(self._grid, 1)
-        self.labels.swap.clicked.connect(self.swap_pressed)
-        self.labels.keep.clicked.connect(self.keep_pressed)
+        self.question.answered.connect(self.answered)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self.labels.swap, self.labels.keep]
+        return list(self.question.buttons)
 
     def focus(self) -> None:
         """Give the focus to the choice there is; without one the bar has it."""
-        if not self.labels.isHidden():
-            self.labels.swap.setFocus()
+        if not self.question.isHidden():
+            self.question.buttons[0].setFocus()
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
@@ -87,11 +84,9 @@ class FreeMotionPage(QWidget):
         self.figure.setVisible(not is_compact)
         self._on_look_changed()
 
-    def show_labels(self, what: str, then: str = "", can_swap: bool = True) -> None:
-        """Say that labels seem swapped and offer to change them; empty takes it back."""
-        self.labels.swap.setVisible(can_swap)
-        self.labels.notice.tell(Icon.WARNING, what, then)
-        self.labels.setVisible(bool(what))
+    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = ()) -> None:
+        """Say what the motion contradicts, or cannot tell, and offer one or two answers; empty takes it back."""
+        self.question.ask(what, then, answers)
 
     def show_state(self, view: FreeMotionView) -> None:
         """Show how far the motion has come; only what reads otherwise is painted anew."""
@@ -131,23 +126,35 @@ class FreeMotionPage(QWidget):
         self.update()
 
 
-class _LabelBand(QWidget):
-    """Two labels seem swapped: what speaks for it, and both answers."""
+class _Question(QWidget):
+    """What has to be answered by somebody who sees the patient; hidden while nothing has."""
+
+    answered = Signal(int)
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.notice = Notice(look, size=14)
-        self.swap = Button(look, tr("Swap them"), Kind.PRIMARY, height=44)
-        self.keep = Button(look, tr("Keep as worn"), Kind.SECONDARY, height=44)
+        self.buttons = (Button(look, "", Kind.PRIMARY, height=44), Button(look, "", Kind.SECONDARY, height=44))
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.notice, 1)
-        self._row.addWidget(self.swap)
-        self._row.addWidget(self.keep)
+        for button in self.buttons:
+            self._row.addWidget(button)
+        self.buttons[0].clicked.connect(self._on_first_clicked)
+        self.buttons[1].clicked.connect(self._on_second_clicked)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.hide()
+
+    def ask(self, what: str, then: str, answers: tuple[str, ...]) -> None:
+        for number, button in enumerate(self.buttons):
+            button.setVisible(number < len(answers))
+            if number < len(answers):
+                button.setText(answers[number])
+                button.setAccessibleName(answers[number])
+                button.updateGeometry()
+        self.setVisible(bool(what))
+        self.notice.tell(Icon.WARNING, what, then)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -162,3 +169,9 @@ class _LabelBand(QWidget):
         px = self._look.theme.px
         self._row.setContentsMargins(px(6), px(6), px(10), px(6))
         self._row.setSpacing(px(12))
+
+    def _on_first_clicked(self) -> None:
+        self.answered.emit(0)
+
+    def _on_second_clicked(self) -> None:
+        self.answered.emit(1)

@@ -35,7 +35,9 @@ if TYPE_CHECKING:
     from app.widgets.body_figure import SensorMark
     from app.widgets.gauge import GaugeFace
     from app.wizard.visit import Visit
+    from core.placement.chains import Chains
 
+SENSORS = 1  # the step that says who wears what
 SETTLED_MS = 2000  # all ready: time to see it, and to say otherwise
 TICKS = 3  # of 30 Hz: ten looks a second
 SILENT_S = 1.0
@@ -49,6 +51,7 @@ class FreeMotionStep(Step):
         super().__init__(look, visit, parent)
         self._page: FreeMotionPage | None = None
         self._work: FreeMotionWork | UnplacedFreeMotionWork | None = None
+        self._unplaced: UnplacedFreeMotionWork | None = None  # the same, where it has to find the sites
         self._hold = HintHold()
         self._motion = FreeMotionState()
         self._before = FreeMotionState()  # of the leg that is not repeated
@@ -58,6 +61,7 @@ class FreeMotionStep(Step):
         self._doubted: tuple[Site, ...] = ()
         self._ready: frozenset[Joint] = frozenset()
         self._is_in_sight = self._goes_on = self._is_for_nothing = self._must_correct = False
+        self._is_side_asked = False
         self._ticks = 0
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
@@ -72,8 +76,7 @@ class FreeMotionStep(Step):
             from app.pages.free_motion_page import FreeMotionPage
 
             self._page = FreeMotionPage(self._look)
-            self._page.swap_pressed.connect(self._on_swap)
-            self._page.keep_pressed.connect(self._on_keep)
+            self._page.answered.connect(self._on_answered)
         return self._page
 
     @property
@@ -232,8 +235,9 @@ class FreeMotionStep(Step):
         self._hold = HintHold(prosthetic)
         if sensors.is_left_to_motion and not sensors.site_of:
             live = live_sensors(acquisition.sensors, visit.rests, sensors.status)
-            self._work = UnplacedFreeMotionWork(live, Side.LEFT, prosthetic, without, standing)
+            self._work = self._unplaced = UnplacedFreeMotionWork(live, Side.LEFT, prosthetic, without, standing)
         else:
+            self._unplaced = None
             site_of = {
                 name: site
                 for name, site in sensors.site_of.items()
@@ -251,7 +255,10 @@ class FreeMotionStep(Step):
             self._must_correct = True
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
-        self._doubt(view.exchanged)
+        if sensors.site_of:
+            self._doubt(view.exchanged)
+        else:
+            self._ask_for_side(view.chains)
         ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if ready - self._ready:
             sounds.play(Sound.READY)
@@ -288,7 +295,7 @@ class FreeMotionStep(Step):
         self._visit.takes.stop()
         self.changed.emit()
 
-    # the labels
+    # what somebody has to answer
 
     def _doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
         """Say which labels the motion contradicts, until somebody has answered."""
@@ -296,33 +303,44 @@ class FreeMotionStep(Step):
         if doubted == self._doubted:
             return
         self._doubted = doubted
+        keep = tr("Keep as worn")
         if not doubted:
-            self.page.show_labels("")
+            self.page.ask("")
         elif len(doubted) == 2:
             what = tr("{first} and {last} seem swapped: the legs move otherwise.")
             named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
-            self.page.show_labels(named, tr("Swap them, or keep as worn."))
+            self.page.ask(named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep))
         else:
-            names = ", ".join(name_of(site) for site in doubted)
-            self.page.show_labels(
-                tr("{sites} seem mixed up: the legs move otherwise.").format(sites=names),
-                tr("Go back to Sensors to place them anew, or keep as worn."),
-                can_swap=False,
-            )
+            what = tr("{sites} seem mixed up: the legs move otherwise.")
+            named = what.format(sites=", ".join(name_of(site) for site in doubted))
+            self.page.ask(named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep))
 
-    def _on_swap(self) -> None:
-        if len(self._doubted) != 2:
+    def _ask_for_side(self, chains: "Chains | None") -> None:
+        """Both legs began together, so that the motion does not tell left from right."""
+        if chains is None or not chains.is_certain or chains.is_first_certain or len(chains.legs) < 2:
             return
-        sensors = self._visit.sensors
-        sensors.assign(sensors.sensor_at[self._doubted[0]], self._doubted[1])
-        self._must_correct = True
-        self._doubted = ()
-        self.page.show_labels("")
-        self._watch()  # what the motion told was told of others
+        first = chains.legs[0].shank
+        if not self._is_side_asked and first is not None:
+            self._is_side_asked = True
+            what = tr("Both legs moved at once. Which one wears {sensor} on its shank?").format(sensor=first)
+            self.page.ask(what, "", (tr("Left"), tr("Right")))
 
-    def _on_keep(self) -> None:
-        self._kept_labels.add(self._doubted)
-        self._doubt(())
+    def _on_answered(self, number: int) -> None:
+        self.page.ask("")
+        if self._is_side_asked:
+            self._is_side_asked = False
+            if self._unplaced is not None:
+                self._unplaced.name_first(Side.LEFT if number == 0 else Side.RIGHT)
+        elif number == 1:
+            self._kept_labels.add(self._doubted)
+        elif len(self._doubted) == 2:
+            sensors = self._visit.sensors
+            sensors.assign(sensors.sensor_at[self._doubted[0]], self._doubted[1])
+            self._must_correct = True
+            self._watch()  # what the motion told was told of others
+        else:
+            self.jumped.emit(SENSORS)
+        self._doubted = ()
 
     # the page
 

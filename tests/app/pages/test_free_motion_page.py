@@ -104,15 +104,15 @@ def test_only_the_gauge_that_reads_otherwise_is_painted(page: FreeMotionPage) ->
     assert paints.painted == [Joint.LEFT_KNEE]
 
 
-def test_labels_that_seem_swapped_are_asked_about_in_the_page(qtbot: QtBot, page: FreeMotionPage) -> None:
-    page.show_labels("Left thigh and shank seem swapped.", "Swap them, or keep as worn.")
-    assert page.labels.isVisible()
-    with qtbot.waitSignal(page.swap_pressed):
-        page.labels.swap.click()
-    with qtbot.waitSignal(page.keep_pressed):
-        page.labels.keep.click()
-    page.show_labels("")
-    assert page.labels.isHidden()
+def test_what_the_motion_contradicts_is_asked_in_the_page(qtbot: QtBot, page: FreeMotionPage) -> None:
+    page.ask("Left thigh and shank seem swapped.", "Swap them, or keep as worn.", ("Swap them", "Keep as worn"))
+    assert page.question.isVisible()
+    for number, button in enumerate(page.question.buttons):
+        with qtbot.waitSignal(page.answered) as answered:
+            button.click()
+        assert answered.args == [number]
+    page.ask("")
+    assert page.question.isHidden()
 
 
 def test_a_frame_in_which_all_four_gauges_move_is_painted_in_time(page: FreeMotionPage) -> None:

@@ -1,0 +1,215 @@
+"""The step of free motion on a simulated patient: gauges close, it ends by itself, and one leg can be repeated."""
+
+from collections.abc import Callable, Iterator
+from types import SimpleNamespace
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.free_motion_work import FreeMotionView
+from app.pages.free_motion_page import FreeMotionPage
+from app.theme import Look
+from app.widgets.gauge import GaugeState
+from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.free_motion_step import FreeMotionStep
+from app.wizard.visit import Visit
+from core.body import Joint, Side, Site
+from core.samples import RecordingKind
+from tests.app.wizard.test_visit import begin, record
+
+SPACE = Intent(Action.RUN)
+
+
+@pytest.fixture
+def step(
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> Iterator[FreeMotionStep]:
+    monkeypatch.setattr(visit, "evaluate", lambda: None)  # a second each, and tried elsewhere
+    begin(qtbot, visit, worn)
+    step = FreeMotionStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.page.show()
+    yield step
+    step.leave()
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    visit.evaluation.finish()
+
+
+def ticks(qtbot: QtBot, step: FreeMotionStep, until: Callable[[], bool]) -> None:
+    def reached() -> bool:
+        step.tick()
+        return until()
+
+    qtbot.waitUntil(reached, timeout=20_000)
+
+
+def states(page: FreeMotionPage) -> set[GaugeState]:
+    return {gauge.face.state for gauge in page.gauges.values()}
+
+
+def knows(step: FreeMotionStep) -> bool:
+    """Whether every gauge has a figure."""
+    centres = [gauge.face.centre for gauge in step.page.gauges.values()]
+    return all(centre is not None and centre.share > 0 for centre in centres)
+
+
+def test_it_records_at_once_closes_all_gauges_and_goes_on_by_itself(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    step.enter()
+    assert step.page.band.hint.sentence == "Move any leg"
+    with qtbot.waitSignal(step.done, timeout=30_000):
+        ticks(qtbot, step, lambda: states(step.page) == {GaugeState.READY})
+        verb = step.bar().primary
+        assert verb is not None
+        assert (verb.text, verb.is_wished) == ("Go on to walking", True)
+    moved = visit.takes.free_motion
+    assert moved is not None
+    assert moved.recording is not None
+    assert set(moved.recording.imu) == set(Site)
+    assert (step.state, step.note) == (StepState.DONE, "All 4 ready")
+
+
+def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+    bar = step.bar()
+    assert bar.primary is not None
+    assert (bar.primary.text, bar.primary.is_wished) == ("Stop early", False)
+    assert bar.note
+    with qtbot.waitSignal(step.done, timeout=10_000):
+        assert step.on_intent(SPACE)
+    assert visit.takes.free_motion is not None
+    assert step.state is StepState.ATTENTION
+
+
+def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+    assert step.on_intent(Intent(Action.RIGHT_LEG))
+    ticks(qtbot, step, lambda: step._work is not None and step._work.state.repeated is Side.RIGHT)
+    ticks(qtbot, step, lambda: True)
+    left, right = (step.page.gauges[joint].face for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE))
+    ticks(qtbot, step, lambda: step.page.gauges[Joint.RIGHT_KNEE].face != right)
+    assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left.centre
+
+
+def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+    with qtbot.waitSignal(step.done, timeout=10_000):
+        step.on_primary()
+    left = step.page.gauges[Joint.LEFT_KNEE].face.centre
+    step.on_quiet(1)
+    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_primary()
+    repeated = visit.takes.free_motion
+    assert repeated is not None
+    assert repeated.recording is not None
+    assert {site.side for site in repeated.recording.imu} == {Side.RIGHT}
+    qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.told.sensors) == set(Site))
+
+
+def test_leaving_before_its_end_keeps_nothing(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+    step.enter()
+    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    step.leave()
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.takes.free_motion is None, timeout=10_000)
+    assert step.state is StepState.TODO
+
+
+def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    record(qtbot, visit, RecordingKind.FREE_MOTION, 2.0)
+    step.enter()
+    assert not visit.takes.is_recording
+    assert step.page.band.hint.sentence == "Free motion is recorded"
+    with qtbot.waitSignal(step.done):
+        step.on_primary()
+
+
+def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    visit.sensors.assign_all({name: site for name, site in worn.items() if site is not Site.RIGHT_FOOT})
+    visit.without_ankle = frozenset({Side.LEFT})
+    step.enter()
+    assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
+    assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
+    ticks(qtbot, step, lambda: visit.takes.is_recording and step.page.band.hint.sentence != "Move any leg")
+    assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
+
+
+def test_labels_that_are_kept_are_not_asked_about_again(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+    pair = (Site.LEFT_THIGH, Site.LEFT_SHANK)
+    step.enter()
+    step._doubt((pair,))
+    assert step.page.question.notice.text == (
+        "L thigh and L shank seem swapped: the legs move otherwise. Swap them, or keep as worn."
+    )
+    step.page.answered.emit(1)
+    assert step.page.question.isHidden()
+    step._doubt((pair,))
+    assert step.page.question.isHidden()
+
+
+def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    step._doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
+    step.page.answered.emit(0)
+    assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
+    with qtbot.waitSignal(step.done, timeout=10_000):
+        step.on_primary()
+
+    def is_corrected() -> bool:
+        take = visit.takes.free_motion
+        placement = take.stored.placement if take is not None else None
+        return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
+
+    qtbot.waitUntil(is_corrected, timeout=10_000)
+
+
+def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    visit.sensors.leave_to_motion(True)
+    step.enter()
+    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Move the left leg first")
+    assert states(step.page) == {GaugeState.OPEN}
+    work = Told(site_of=worn)
+    step._work = work  # type: ignore[assignment]  # the search itself is slower than this patient
+    ticks(qtbot, step, lambda: visit.sensors.site_of == worn)
+
+
+def test_two_legs_that_begin_together_are_told_apart_by_asking(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    visit.sensors.leave_to_motion(True)
+    step.enter()
+    ticks(qtbot, step, lambda: step._unplaced is not None)
+    together = SimpleNamespace(
+        legs=(SimpleNamespace(shank="0A22"), SimpleNamespace(shank="0A2C")), is_certain=True, is_first_certain=False
+    )
+    step._ask_for_side(together)  # type: ignore[arg-type]  # chains, as far as they are asked
+    assert step.page.question.notice.text == "Both legs moved at once. Which one wears 0A22 on its shank?"
+    step.page.answered.emit(1)
+    assert step._unplaced is not None
+    assert step._unplaced._answer is Side.RIGHT
+    assert step.page.question.isHidden()
+
+
+class Told:
+    """A work that knows the sites."""
+
+    def __init__(self, site_of: dict[str, Site]) -> None:
+        self.state = FreeMotionView(site_of=site_of)
