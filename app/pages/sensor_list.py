@@ -16,6 +16,7 @@ from PySide6.QtGui import (
     QMouseEvent,
     QPainter,
     QPaintEvent,
+    QPen,
     QPolygonF,
     QResizeEvent,
 )
@@ -42,6 +43,7 @@ IDENTIFY = 44
 CHIP = 20
 CHEVRON = 14
 TRACE_AT_LEAST = 48
+PIXELS_PER_POINT = 2  # closer ones only cost, and blot
 TRACE_SPAN_DEG_S = 120.0  # what fills the trace's height, at least: a sensor at rest draws a still line
 LOST = 0.01  # of the samples; above it the radio wants a look
 
@@ -112,6 +114,7 @@ class SensorList(QWidget):
         super().__init__()
         self._look, self._is_narrow = look, False
         self.selection = ""
+        self._columns: tuple[int, dict[str, QRect]] | None = None  # measuring words takes longer than painting them
         self.rows: dict[str, SensorRowView] = {}
         self._heading = _Heading(look, self)
         self._column = QVBoxLayout(self)
@@ -123,16 +126,13 @@ class SensorList(QWidget):
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
-    @property
-    def is_narrow(self) -> bool:
-        return self._is_narrow
-
     def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
         """Show these in this order; a row that stays keeps its focus."""
         for name in self.rows.keys() - {sensor.name for sensor in sensors}:
             row = self.rows.pop(name)
             row.setParent(None)
             row.deleteLater()
+        is_other = len(sensors) != len(self.rows)
         for place, sensor in enumerate(sensors, start=1):  # the heading is the first
             if sensor.name not in self.rows:
                 row = self.rows[sensor.name] = SensorRowView(self._look, sensor.name, self)
@@ -141,7 +141,10 @@ class SensorList(QWidget):
             row = self.rows[sensor.name]
             if self._column.indexOf(row) != place:
                 self._column.insertWidget(place, row)
+            is_other |= row.takes_other_room(sensor)
             row.show_sensor(sensor)
+        if is_other:
+            self._arrange()
         self._heading.setVisible(bool(sensors))
         if self.selection not in self.rows:
             self.select(next(iter(self.rows), ""))
@@ -178,6 +181,11 @@ class SensorList(QWidget):
 
     def columns(self, width: int) -> dict[str, QRect]:
         """Where the columns lie in a row of `width`; the trace takes what is left."""
+        if self._columns is None or self._columns[0] != width:
+            self._columns = width, self._measured(width)
+        return self._columns[1]
+
+    def _measured(self, width: int) -> dict[str, QRect]:
         theme = self._look.theme
         px = theme.px
 
@@ -231,7 +239,7 @@ class SensorList(QWidget):
 
     def minimumSizeHint(self) -> QSize:
         px = self._look.theme.px
-        columns = self.columns(0)
+        columns = self._measured(0)
         return QSize(
             columns["identify"].right() + px(6 + COLUMN_GAP + TRACE_AT_LEAST), super().minimumSizeHint().height()
         )
@@ -241,12 +249,16 @@ class SensorList(QWidget):
         for name, row in self.rows.items():
             row.set_reached(name == self.selection)
 
-    def _on_look_changed(self) -> None:
-        self._column.setSpacing(self._look.theme.px(SPACING))
+    def _arrange(self) -> None:
+        self._columns = None
         self._heading.update()
         for row in self.rows.values():
             row.arrange()
         self.updateGeometry()
+
+    def _on_look_changed(self) -> None:
+        self._column.setSpacing(self._look.theme.px(SPACING))
+        self._arrange()
 
 
 class _Heading(QWidget):
@@ -265,12 +277,13 @@ class _Heading(QWidget):
         painter = QPainter(self)
         painter.setPen(QColor(theme.colours.ink2))
         painter.setFont(theme.font(12))
-        places = self._list.columns(self.width())
-        places["name"].setLeft(0)
-        is_narrow = self._list.is_narrow
+        places = {**self._list.columns(self.width())}
+        places["name"] = QRect(0, 0, places["name"].right(), 0)
+        movement = tr("Movement, last 5 s")
+        has_room = painter.fontMetrics().horizontalAdvance(movement) <= places["trace"].width()
         words = {
             "name": tr("Sensor"),
-            "trace": tr("Last 5 s") if is_narrow else tr("Movement, last 5 s"),
+            "trace": movement if has_room else tr("Last 5 s"),
             "rate": tr("Rate"),
             "battery": tr("Battery"),
             "worn": tr("Worn on"),
@@ -302,6 +315,11 @@ class SensorRowView(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setAccessibleDescription(tr("1 to 6 say where it is worn, Enter opens a list of the places"))
 
+    def takes_other_room(self, sensor: SensorRow) -> bool:
+        """Whether a column may have to be wider for `sensor` as it is now."""
+        one, other = self._list.second_line(sensor), self._list.second_line(self.sensor)
+        return not self.accessibleName() or len(one) > len(other)
+
     def show_sensor(self, sensor: SensorRow) -> None:
         if sensor == self.sensor and self.accessibleName():
             return
@@ -313,8 +331,23 @@ class SensorRowView(QAbstractButton):
         self.worn.show_site(sensor.site)
         self.worn.setAccessibleName(", ".join([sensor.name, worn]))
         self.identify.show_sensor(sensor)
-        self.arrange()
+        self.trace.show_ground(self._ground)
         self.update()
+
+    @property
+    def _ground(self) -> QColor:
+        """What the row is filled with, the thin layer under the mouse included."""
+        theme = self._look.theme
+        ground = QColor(theme.colours.caution if self.sensor.wants_look else theme.colours.surface)
+        if not (self.underMouse() or self.isDown()):
+            return ground
+        veil = theme.veil(self.isDown())
+        share = veil.alphaF()
+        mixed = [
+            round((1 - share) * under + share * over)
+            for under, over in zip(ground.getRgb()[:3], veil.getRgb()[:3], strict=True)  # type: ignore[index]
+        ]
+        return QColor(*mixed)
 
     def set_reached(self, is_reached: bool) -> None:
         policy = Qt.FocusPolicy.StrongFocus if is_reached else Qt.FocusPolicy.ClickFocus
@@ -384,14 +417,11 @@ class SensorRowView(QAbstractButton):
         ink, second = (c.caution_ink, c.caution_ink) if is_caution else (c.ink, c.ink2)
         edge = c.caution_edge if is_caution else c.control if is_selected else c.line
         painter.setPen(theme.pen(edge, 1.75 if is_selected else 1.25))
-        painter.setBrush(QColor(c.caution if is_caution else c.surface))
+        ground = self._ground
+        self.trace.show_ground(ground)
+        painter.setBrush(ground)
         radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.drawRoundedRect(box, radius, radius)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
         places = self._list.columns(self.width())
         grip = px(20)
         middle = QRectF((places["name"].x() - grip) / 2, (self.height() - grip) / 2, grip, grip)
@@ -443,7 +473,9 @@ class Trace(QWidget):
         self._look = look
         self._values: FloatArray = np.empty(0)
         self._silence = ""
+        self._ground = QColor(look.theme.colours.surface)
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)  # so that the row is not painted ten times a second
 
     def show_values(self, values: FloatArray) -> None:
         """
@@ -455,6 +487,12 @@ class Trace(QWidget):
         self._values = values
         self.update()
 
+    def show_ground(self, ground: QColor) -> None:
+        """Take the colour of the row, which the trace lies on."""
+        if ground != self._ground:
+            self._ground = ground
+            self.update()
+
     def show_silence(self, silent_s: float) -> None:
         words = tr("silent {seconds} s").format(seconds=max(round(silent_s), 1)) if silent_s > 0 else ""
         if words != self._silence:
@@ -465,6 +503,7 @@ class Trace(QWidget):
         theme = self._look.theme
         c = theme.colours
         painter = QPainter(self)
+        painter.fillRect(self.rect(), self._ground)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.setFont(theme.font(12, SEMIBOLD))
         ink = QColor(c.caution_ink if self._silence else c.ink)
@@ -474,7 +513,7 @@ class Trace(QWidget):
             painter.setPen(ink)
             painter.drawText(self.rect(), Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignRight, self._silence)
             width -= words + theme.px(8)
-        painter.setPen(theme.pen(ink, 1.25))
+        painter.setPen(QPen(ink, 1))  # of one pixel: wider ones take many times as long
         for part in _lines(self._values, width, self.height()):
             painter.drawPolyline(part)
 
@@ -483,7 +522,7 @@ def _lines(values: FloatArray, width: int, height: int) -> list[QPolygonF]:
     """Turn values into lines that fill `width`, broken where values are missing."""
     if width < 2 or len(values) < 2:
         return []
-    step = max(1, len(values) // width)  # more points than pixels only cost
+    step = max(1, PIXELS_PER_POINT * len(values) // width)
     values = values[::step]
     heard = np.isfinite(values)
     if not heard.any():

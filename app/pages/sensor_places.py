@@ -29,6 +29,7 @@ from core.body import Segment, Side, Site
 
 DRAGGED = "application/x-gaitwright-sensor"
 TILE = (112, 50)
+LINE = 17  # more, where name and note need a line each
 NARROW_TILE = 92
 CHIP = 16
 PADDING = 8
@@ -89,7 +90,6 @@ class SensorPlaces(QWidget):
         self.figure.emphasise(self._hovered or self._next)
         for site, place in places.items():
             self.tiles[site].show_place(place)
-        self._arrange()
 
     def set_names(self, names: tuple[str, ...]) -> None:
         """Make room on the tiles for these sensors with whatever may be said of them, so that no tile grows later."""
@@ -166,15 +166,25 @@ class SensorPlaces(QWidget):
             tile.set_welcome(one is site)
         self.hovered.emit(sensor, site)
 
+    @property
+    def has_notes_below(self) -> bool:
+        """Whether the names are so long that what is said of a sensor stands under its name."""
+        metrics = QFontMetrics(self._look.theme.font(12, SEMIBOLD, is_code=True))
+        room = self._look.theme.px(TILE[0] - 2 * PADDING - 2)
+        return any(metrics.horizontalAdvance(" · ".join((name, _notes()[0]))) > room for name in self._names)
+
     def _tile_width(self) -> int:
         theme = self._look.theme
         least = theme.px(NARROW_TILE if self._is_narrow else TILE[0])
         metrics = QFontMetrics(theme.font(12, SEMIBOLD, is_code=True))
-        notes = (tr("silent"), tr("charge"), tr("losses"))
-        lines = [tr("no sensor"), tr("shake it now"), tr("found later")]
-        lines += [" · ".join((name, note)) for name in self._names for note in notes]
+        lines = [tr("no sensor"), tr("shake it now"), tr("found later"), *self._names]
+        if not self.has_notes_below:
+            lines += [" · ".join((name, note)) for name in self._names for note in _notes()]
         widest = max(metrics.horizontalAdvance(line) for line in lines) + theme.px(2 * PADDING + 2)
         return max(least, widest, *(tile.first_line_width for tile in self.tiles.values()))
+
+    def _tile_height(self) -> int:
+        return self._look.theme.px(TILE[1] + (LINE if self.has_notes_below else 0))
 
     def _edge(self) -> int:
         return self._look.theme.px(NARROW_EDGE if self._is_narrow else EDGE)
@@ -187,7 +197,7 @@ class SensorPlaces(QWidget):
         px = self._look.theme.px
         self.figure.keep_beside(self._beside_legs())
         self.figure.setGeometry(self.rect().adjusted(1, 1, -1, -1))
-        width, height = self._tile_width(), px(TILE[1])
+        width, height = self._tile_width(), self._tile_height()
         lowest = self.height() - px(SENTENCE_ROOM) + px(4)
         for side in Side:
             is_right = (side is Side.LEFT) != self.figure.is_from_behind
@@ -240,7 +250,7 @@ class _Tile(QAbstractButton):
 
     def __init__(self, look: Look, site: Site, places: SensorPlaces) -> None:
         super().__init__(places)
-        self._look, self.site = look, site
+        self._look, self.site, self._places = look, site, places
         self._place = PlaceShown()
         self._is_welcome = False
         self._pressed_at: QPoint | None = None
@@ -249,6 +259,8 @@ class _Tile(QAbstractButton):
         self.show_place(PlaceShown())
 
     def show_place(self, place: PlaceShown) -> None:
+        if place == self._place and self.accessibleName():
+            return
         self._place = place
         words = [name_of(self.site), place.sensor or tr("no sensor"), place.note]
         name = ", ".join(filter(None, words))
@@ -263,9 +275,10 @@ class _Tile(QAbstractButton):
             self.update()
 
     @property
-    def second_line(self) -> str:
-        place = self._place
-        return " · ".join(filter(None, [place.sensor, place.note])) or tr("no sensor")
+    def lines(self) -> list[str]:
+        """Who is there and how that one is, in one line or two."""
+        said = [part for part in (self._place.sensor, self._place.note) if part] or [tr("no sensor")]
+        return said if self._places.has_notes_below else [" · ".join(said)]
 
     @property
     def first_line_width(self) -> int:
@@ -333,7 +346,13 @@ class _Tile(QAbstractButton):
         painter.setFont(theme.font(12))
         painter.drawText(first, align | Qt.AlignmentFlag.AlignRight, str(number_of(self.site)))
         painter.setFont(theme.font(12, MEDIUM if is_caution else SEMIBOLD if place.is_next else MEDIUM, is_code=True))
-        painter.drawText(first.translated(0, px(19)), align, self.second_line)
+        for number, line in enumerate(self.lines):
+            painter.drawText(first.translated(0, px(19 + number * LINE)), align, line)
+
+
+def _notes() -> tuple[str, ...]:
+    """What may be said of a sensor that is worn, the longest first."""
+    return tuple(sorted((tr("silent"), tr("charge"), tr("losses")), key=len, reverse=True))
 
 
 def segment_name(site: Site) -> str:

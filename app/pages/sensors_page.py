@@ -98,6 +98,7 @@ class SensorsPage(QWidget):
             look, tr("Strap them on thigh, shank and foot. Direction does not matter."), 15, tone="ink2", wraps=True
         )
         self.sources = Choice(look, tr("Source of the sensors"))
+        self.sources.setPlaceholderText(tr("Choose a source"))
         self.places = SensorPlaces(look)
         self.ways = Segmented(
             look,
@@ -144,7 +145,6 @@ class SensorsPage(QWidget):
     def set_compact(self, is_compact: bool) -> None:
         """Show legs instead of the whole person, and rows without columns, where the window is small."""
         self._is_compact = is_compact
-        self.places.set_narrow(is_compact)
         self.ways.set_brief(is_compact)
         self.list.set_narrow(is_compact)
         self._subtitle.setVisible(not is_compact)
@@ -422,6 +422,7 @@ class SensorsPage(QWidget):
         above = px(12 if self._is_compact else 20)
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
+        self.places.set_narrow(self._is_compact)
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())
         gap = px(12 if self._is_compact else 16)
@@ -430,6 +431,7 @@ class SensorsPage(QWidget):
         way = QBoxLayout.Direction.TopToBottom if is_stacked else QBoxLayout.Direction.LeftToRight
         self._body.setDirection(way)
         if is_stacked:
+            self.places.set_narrow(True)
             self.places.setFixedWidth(room)
         elif self._is_compact:
             spare = max(0, room - gap - rows - figure)

@@ -26,7 +26,8 @@ class Choice(QComboBox):
     def sizeHint(self) -> QSize:
         theme = self._look.theme
         metrics = QFontMetrics(theme.font(16, SEMIBOLD))
-        widest = max((metrics.horizontalAdvance(self.itemText(i)) for i in range(self.count())), default=0)
+        words = [self.placeholderText(), *(self.itemText(i) for i in range(self.count()))]
+        widest = max(metrics.horizontalAdvance(word) for word in words)
         return QSize(widest + theme.px(2 * PADDING + 8 + ICON), theme.px(HEIGHT))
 
     def minimumSizeHint(self) -> QSize:
@@ -47,7 +48,11 @@ class Choice(QComboBox):
         painter.setPen(QColor(c.ink))
         painter.setFont(theme.font(16, SEMIBOLD))
         text = self.rect().adjusted(px(PADDING), 0, -px(PADDING + ICON), 0)
-        painter.drawText(text, Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft, self.currentText())
+        painter.drawText(
+            text,
+            Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
+            self.currentText() or self.placeholderText(),
+        )
         side = px(ICON)
         arrow = QRectF(self.width() - px(PADDING) - side, (self.height() - side) / 2, side, side)
         paint_icon(painter, Icon.CHEVRON, arrow, c.ink)

@@ -13,7 +13,7 @@ from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
 from app.wording import name_of, tr
-from core.body import Site
+from core.body import Joint, Site
 from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
@@ -98,6 +98,7 @@ class SensorsStep(Step):
         self._visit.begin_session()
         self._begin_work()
         self._show()
+        self.page.focus()
 
     def leave(self) -> None:
         self._is_in_sight = False
@@ -135,7 +136,8 @@ class SensorsStep(Step):
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
         if (silent := self._silent_site) is not None:
             again = Verb(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
-            without = Verb(tr("Go on without {site}").format(site=name_of(silent)), is_wished=False)
+            lost = tr(" and ").join(name_of(one) for one in Joint if silent in (one.proximal, one.distal))
+            without = Verb(tr("Go on without {joints}").format(joints=lost), is_wished=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
             return BarState(primary=Verb(go_on, tr("Enter")), note=tr("The free motion tells who wears what."))
