@@ -60,6 +60,7 @@ class FreeMotion:
             joint: _JointMotion(
                 Excitation(joint, PROSTHESIS if joint.side in prosthetic_sides else HUMAN),
                 LiveLag(sensors[joint.proximal].step_s, sensors[joint.distal].step_s),
+                list(Joint).index(joint) * LOOK_S / len(Joint),
             )
             for joint in asked
         }
@@ -91,10 +92,16 @@ class _JointMotion:
     """One joint's excitation, and its lag, looked for whenever both sensors have passed a multiple of LOOK_S.
 
     What one of them tells beyond it waits for the other, so that a look sees the same whatever came first.
+
+    Parameters
+    ----------
+    later_s
+        By how much later than a multiple this joint is looked at: not all of them at the same moment.
     """
 
-    def __init__(self, excitation: Excitation, lag: LiveLag) -> None:
+    def __init__(self, excitation: Excitation, lag: LiveLag, later_s: float) -> None:
         self.excitation = excitation
+        self._later_s = later_s
         self.lag: LagState | None = None
         self._lag = lag
         self._one, self._two = NOTHING, NOTHING
@@ -104,7 +111,8 @@ class _JointMotion:
         if not len(proximal) and not len(distal):
             return
         if self._next_look_s is None and len(proximal):
-            self._next_look_s = LOOK_S * (np.floor(proximal.time_s[0] / LOOK_S) + 1)
+            since_s = float(proximal.time_s[0]) - self._later_s
+            self._next_look_s = LOOK_S * (np.floor(since_s / LOOK_S) + 1) + self._later_s
         self._one, self._two = joined([self._one, proximal]), joined([self._two, distal])
         while self._next_look_s is not None:
             one, self._one = _cut(self._one, self._next_look_s)
