@@ -115,7 +115,7 @@ STOPS: tuple[Stop, ...] = (
     Stop("16-report", at_step("ResultsStep"), ("ctrl+7",), ("Step 7",)),
     Stop("17-help", at_step("ReportStep"), ("F1",), ("Help",), lingers_s=1.0),
     Stop("18-manual", offers("Search the help"), ("Escape",), ("Back",), lingers_s=1.0),
-    Stop("19-leave", at_step("ReportStep"), ("to All patients", "Return"), ("All patients",)),
+    Stop("19-leave", at_step("ReportStep"), ("to Step 7", "Down", "Return"), ("All patients",)),
     Stop("20-home-again", offers("New session"), lingers_s=1.0),
 )
 

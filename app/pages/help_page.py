@@ -60,13 +60,13 @@ SHORTEST_SEARCH = 2
 
 
 class Topic(StrEnum):
-    """The pages of the manual in their order; each is a file of `resources/help`."""
+    """The pages of the manual in their order; each is a file of `resources/help`, and a step names it as its topic."""
 
     HOME = "home"
     PATIENT = "patient"
     SENSORS = "sensors"
-    STAND_STILL = "stand_still"
-    FREE_MOTION = "free_motion"
+    STAND_STILL = "stand-still"
+    FREE_MOTION = "free-motion"
     WALKING = "walking"
     RESULTS = "results"
     REPORT = "report"

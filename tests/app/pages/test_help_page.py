@@ -15,6 +15,7 @@ from app.theme import Look, load_fonts
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
+STEPS = Path(__file__).parents[3] / "app" / "wizard" / "steps"
 FORBIDDEN = re.compile(
     r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|heel strikes?|you|your)\b|!", re.IGNORECASE
 )
@@ -54,6 +55,13 @@ def search(page: HelpPage, words: str) -> None:
 
 def test_every_topic_is_written_and_nothing_else_lies_there() -> None:
     assert {file.stem for file in FOLDER.glob("*.md")} == set(Topic)
+
+
+def test_every_step_of_the_wizard_has_its_topic() -> None:
+    found = re.compile(r"def topic\(self\) -> str:\n        return \"([\w-]+)\"")
+    told = [found.findall(file.read_text(encoding="utf-8")) for file in STEPS.glob("*_step.py")]
+    assert len(told) == 7
+    assert {topic for (topic,) in told} <= set(Topic)
 
 
 @pytest.mark.parametrize("topic", Topic)
