@@ -3,6 +3,7 @@
 import signal
 import sys
 import time
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -18,6 +19,7 @@ from PySide6.QtGui import (
     QKeySequence,
     QPainter,
     QPaintEvent,
+    QResizeEvent,
     QShortcut,
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
@@ -30,10 +32,12 @@ from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import Look, load_fonts
 from app.widgets.focus_ring import FocusRing
+from app.workers.background import Background, Report
 from app.workers.library_desk import LibraryDesk, OpenedState
 
 if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them
     from app.home.home import Home
+    from app.pages.help_page import HelpPage
     from app.storage.stored import StoredPatient
     from app.wizard.wizard import Wizard
 
@@ -42,6 +46,7 @@ FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
 DROP_EDGE = 2.5
 POLL_MS = 1000
+COMPACT_BELOW = (1180, 720)
 ACTIVITY = frozenset(
     (
         QEvent.Type.KeyPress,
@@ -63,6 +68,9 @@ class MainWindow(QWidget):
         self.desk = LibraryDesk(self)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
+        self._preparing = Background(self)
+        self._help: HelpPage | None = None
+        self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
         self._is_dark: bool | None = None  # not yet known
         self.setWindowTitle("Gaitwright")
@@ -111,6 +119,7 @@ class MainWindow(QWidget):
 
     def finish(self) -> None:
         """Wait for the threads of what was running when the window was closed."""
+        self._preparing.finish()
         self.session.finish()
         self.desk.finish()
 
@@ -128,6 +137,10 @@ class MainWindow(QWidget):
             event.acceptProposedAction()
             self._show(self.session)
             self.session.open_dropped(event.mimeData().urls())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() in ACTIVITY:
@@ -187,15 +200,36 @@ class MainWindow(QWidget):
             self.entry.focus(screen)
         elif screen is self._home and self._home is not None:
             self._home.focus()
+        elif screen is self._help and self._help is not None:
+            self._help.text.setFocus()
 
     @property
     def _takes_folders(self) -> bool:
         """Whether a folder may take the place of what is in sight: not of a visit, nor of the cover."""
-        return not self.is_covered and (self._wizard is None or self.screens.currentWidget() is not self._wizard)
+        return not self.is_covered and (self._wizard is None or self._wizard.visit is None)
 
     @property
     def _is_recording(self) -> bool:
         return self._wizard is not None and self._wizard.is_recording
+
+    def _show_help(self, topic: str) -> None:
+        """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
+        from app.pages.help_page import HelpPage, Topic
+
+        if self._help is None:
+            self._help = HelpPage(self._look)
+            self.screens.addWidget(self._help)
+            self._help.closed.connect(self._on_help_closed)
+            self._fit()
+        if self.screens.currentWidget() is not self._help:
+            self._before_help = self.screens.currentWidget()
+        self._help.show_topic(Topic(topic) if topic in set(Topic) else Topic.HOME)
+        self._show(self._help)
+
+    def _on_help_closed(self) -> None:
+        before, self._before_help = self._before_help, None
+        if before is not None:
+            self._show(before)
 
     # a library is open
 
@@ -209,34 +243,29 @@ class MainWindow(QWidget):
             self._home.session_opened.connect(self._on_session_opened)
             self._home.demonstration_wished.connect(self.open_demonstration)
             self._home.own_library_wished.connect(self._log_out)
+            self._home.help_wished.connect(self._show_help)
         self.idle.unlock()
         self._home.show_library(state)
         self._show(self._home)
+        if self._wizard is None:
+            self._preparing.start(_import_wizard)
 
     def _on_session_wished(self, patient: "StoredPatient | None") -> None:
-        wizard = self._entered_wizard()
-        if wizard is not None:
-            wizard.begin(patient)
+        self._entered_wizard().begin(patient)
 
     def _on_session_opened(self, session_id: UUID) -> None:
-        wizard = self._entered_wizard()
-        if wizard is not None:
-            wizard.show_session(session_id)
-        else:
-            self._show(self.session)
-            self.session.open_stored(self.desk, session_id)
+        self._entered_wizard().show_session(session_id)
 
-    def _entered_wizard(self) -> "Wizard | None":
-        """The wizard, in sight: the one place where a session with a patient is entered. None: it is not there yet."""
+    def _entered_wizard(self) -> "Wizard":
+        """The wizard, in sight: the one place where a session with a patient is entered."""
         if self._wizard is None:
-            try:
-                from app.wizard.wizard import Wizard
-            except ImportError:
-                return None
+            from app.wizard.wizard import Wizard
+
             self._wizard = Wizard(self._look, self.desk)
             self.screens.addWidget(self._wizard)
             self._wizard.left.connect(self._on_wizard_left)
             self._wizard.settings_wanted.connect(self._on_settings_wanted)
+            self._wizard.help_wanted.connect(self._show_help)
         self._show(self._wizard)
         return self._wizard
 
@@ -253,7 +282,7 @@ class MainWindow(QWidget):
             self._home.show_settings()
 
     def _log_out(self) -> None:
-        self._covered = None
+        self._covered = self._before_help = None
         if self._wizard is not None:
             self._wizard.close_visit()
         if self._home is not None:
@@ -309,6 +338,13 @@ class MainWindow(QWidget):
 
     def _on_look_changed(self) -> None:
         self._settings.scale = self._look.theme.scale  # also when the keys changed it
+        self._fit()
+
+    def _fit(self) -> None:
+        if self._help is not None:
+            scale = self._look.theme.scale
+            width, height = self.width() / scale, self.height() / scale
+            self._help.set_compact(is_compact=width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1])
 
     def _on_larger(self) -> None:
         self._look.grow(1)
@@ -329,12 +365,21 @@ class MainWindow(QWidget):
             self.open_demonstration()
 
     def _on_escape(self) -> None:
-        if self.screens.currentWidget() is not self.session:
+        if self._help is not None and self.screens.currentWidget() is self._help:
+            self._on_help_closed()
             return
-        if self.session.is_working:
+        current = self.screens.currentWidget()
+        if current is self._home and self._home is not None:
+            self._home.escape()
+        elif current is self.session and self.session.is_working:
             self.session.stop()
-        else:
+        elif current is self.session:
             self.session.leave()
+
+
+def _import_wizard(_report: Report) -> None:
+    """Import beside the screen what the first session would wait for; importing is not to be stopped half-way."""
+    import_module("app.wizard.wizard")
 
 
 class _DropFrame(QWidget):

@@ -116,6 +116,15 @@ class Home(QWidget):
     def show_settings(self) -> None:
         self._go_to(self.settings.page)
 
+    def escape(self) -> None:
+        """End what runs, else go back to the patients, else search no longer."""
+        if self.current is self.working:
+            self._on_stop()
+        elif self.current is not self.page:
+            self._on_back()
+        else:
+            self.page.search.clear()
+
     def focus(self) -> None:
         page = self.current
         if isinstance(page, HomePage | ImportPage | SettingsPage):
@@ -175,7 +184,6 @@ class Home(QWidget):
             ("Ctrl+N", self._on_new_patient),
             ("Ctrl+Z", self.toast.undo),
             ("F1", self._on_help),
-            (Qt.Key.Key_Escape, self._on_escape),
         ):
             shortcut = QShortcut(QKeySequence(keys), self)
             shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
@@ -309,12 +317,6 @@ class Home(QWidget):
     def _on_back(self) -> None:
         self._to_import = None
         self._go_to(self.page)
-
-    def _on_escape(self) -> None:
-        if self.current is self.working:
-            self._on_stop()
-        elif self.current is not self.page:
-            self._on_back()
 
     def _on_find(self) -> None:
         if self.current is self.page:

@@ -4,7 +4,6 @@ import logging
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID
 
 from PySide6.QtCore import QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
@@ -28,8 +27,7 @@ from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.wording import later, place, side_name, tr
 from app.workers.background import Background, Work
-from app.workers.library_desk import LibraryDesk
-from app.workers.opening import opening_demonstration, opening_folder, opening_stored
+from app.workers.opening import opening_demonstration, opening_folder
 from core.body import Side
 from devices.files.refusal import FileRefusedError
 
@@ -64,7 +62,6 @@ class SessionScreen(QWidget):
         self._look = look
         self._background = Background(self)
         self._has_way_back = False
-        self._desk: LibraryDesk | None = None  # of a session that comes from a library
         self._results: ResultPage | None = None
         self._dialog: QFileDialog | None = None
         self.header = Header(look)
@@ -85,7 +82,7 @@ class SessionScreen(QWidget):
 
     @property
     def is_working(self) -> bool:
-        return self._background.is_busy or (self._desk is not None and self._desk.is_long_busy)
+        return self._background.is_busy
 
     def open_folder(self, folder: Path) -> None:
         """Read and analyse a session folder in the background, and show what comes of it."""
@@ -95,18 +92,10 @@ class SessionScreen(QWidget):
         """Let the simulated patient walk, in the background, and show what comes of it."""
         self._begin(opening_demonstration(), tr("Analysing the demonstration"))
 
-    def open_stored(self, desk: LibraryDesk, session_id: UUID) -> None:
-        """Analyse a session of the library that is open, and show what comes of it."""
-        self._desk = desk
-        self._wait(tr("Analysing the session"))
-        desk.run_long(opening_stored(session_id), self._on_done, self._on_refused, self._on_progressed, self)
-
     def stop(self) -> None:
         """End what is running, and go back to what was there before."""
         if self.is_working:
             self._background.stop()
-            if self._desk is not None:
-                self._desk.stop_long()
             self._show_page(self._results or self.empty)
             self.banner.tell(*map(tr, STOPPED))
 
@@ -180,13 +169,10 @@ class SessionScreen(QWidget):
         self._look.changed.connect(self._on_look_changed)
 
     def _begin(self, work: Work, title: str) -> None:
-        self._wait(title)
-        self._background.start(work)
-
-    def _wait(self, title: str) -> None:
         self.banner.hide()
         self.working.begin(title)
         self._show_page(self.working)
+        self._background.start(work)
 
     def _show_page(self, page: QWidget) -> None:
         self.pages.setCurrentWidget(page)
@@ -231,10 +217,6 @@ class SessionScreen(QWidget):
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
         self._show_page(self._results)
-
-    def _on_refused(self, what: str, remedy: str) -> None:
-        self._show_page(self._results or self.empty)
-        self.banner.tell(what, remedy)
 
     def _on_failed(self, error: Exception) -> None:
         self._show_page(self._results or self.empty)

@@ -278,6 +278,7 @@ class SettingsPage(QWidget):
         self._strength.setText(strength_in_words(self.new.text, self._shortest))
 
     def _on_change(self) -> None:
+        self._on_edited("")
         if len(self.new.text.strip()) < self._shortest:
             self.new.set_wrong(strength_in_words(self.new.text or "-", self._shortest))
         elif self.new.text != self.again.text:

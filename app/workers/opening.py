@@ -3,18 +3,15 @@
 Whatever takes long to import is imported inside the work: numpy alone would hold up the screen for a third of a second.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
-from uuid import UUID
 
 from app.wording import tr
 from app.workers.background import Report, Work
 
 if TYPE_CHECKING:
-    from app.storage.opened import OpenedLibrary
     from core.results import Analysis
     from core.samples import Session
 
@@ -49,22 +46,6 @@ def opening_demonstration() -> Work:
         from devices.walker import DEMONSTRATION, simulate
 
         return _analysed(simulate(DEMONSTRATION).session, report)
-
-    return work
-
-
-def opening_stored(session_id: UUID) -> "Callable[[OpenedLibrary, Report], Opened]":
-    """Give the work that reads a session of a library and analyses it; that it was looked at is noted there."""
-
-    def work(opened: "OpenedLibrary", report: Report) -> Opened:
-        report(0.0, "")
-        from app.library_commands import DECODERS
-        from app.storage.exchange import session_with_samples
-
-        visit = opened.library.sessions.view(session_id)
-        told = opened.library.patients.get(visit.patient_id).told
-        session = session_with_samples(opened, visit, DECODERS, lambda share, what: report(READING_SHARE * share, what))
-        return _analysed(replace(session, patient=told), report)
 
     return work
 

@@ -148,6 +148,42 @@ def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(qtbot: QtBot, open_
     assert QApplication.focusWidget() is window.home.page.search
 
 
+def test_escape_leads_back_to_the_patients_and_ends_a_search(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    QTest.keyClicks(window.home.page.search, "nobody")
+    QTest.keyClick(window.home.page.search, Qt.Key.Key_Escape)
+    assert window.home.page.search.text() == ""
+    window.home.show_settings()
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert window.home.current is window.home.page
+
+
+def test_help_opens_over_home_and_leads_back(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    QTest.keyClick(window.home.page.search, Qt.Key.Key_F1)
+    assert window.screens.currentWidget() is not window.home
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert window.screens.currentWidget() is window.home
+
+
+def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
+    wizard = window._wizard
+    assert wizard is not None
+    assert window.screens.currentWidget() is wizard
+    assert wizard.visit is not None
+    assert wizard.visit.patient.told.code == SECRET_CODE
+    wizard.leave()
+    assert window.screens.currentWidget() is window.home
+
+
 def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:

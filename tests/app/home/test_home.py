@@ -1,0 +1,302 @@
+"""Home with a library of its own: patients found, sessions listed, deleted and had back, imported, recovered."""
+
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from uuid import UUID
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.pages.home_lists import PatientLine, SessionLine
+from app.settings import Scheme, Settings
+from app.storage.database.ids import uuid7
+from app.storage.journal.disk import Room
+from app.storage.journal.payloads import layout_of
+from app.storage.journal.writer import JournalWriter
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.stored import Operator, PlacedSensor, Role, StoredJournal, StoredPatient
+from app.theme import Look, load_fonts
+from app.workers.library_desk import LibraryDesk, OpenedState
+from core.body import Site
+from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
+from devices.files.session_folder import write_session
+from devices.source import SourceInfo
+
+PASSPHRASE = "four short words here"
+WAIT_MS = 20_000  # on a busy machine
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A closed library of `hk` with two patients, the second of whom was here three times."""
+    folder = tmp_path_factory.mktemp("home")
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+        library.patients.create(Patient(code="P-0147", birth_year=1968, device="microprocessor knee"))
+        patient = library.patients.create(Patient(code="P-0163", birth_year=1951, sex="female", affected_side="right"))
+        for month in (3, 4, 5):
+            library.sessions.create(patient.id, Session((), started=f"2026-0{month}-20T09:00:00"))
+    return folder
+
+
+@pytest.fixture
+def folder(untouched: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(untouched, tmp_path / "library"))
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    return Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+
+
+@pytest.fixture
+def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
+    desk = LibraryDesk()
+    yield desk
+    desk.finish()
+
+
+@pytest.fixture
+def home(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path) -> Iterator[Home]:
+    load_fonts()
+    home = Home(Look(), desk, settings)
+    home.resize(1280, 800)
+    qtbot.addWidget(home)
+    with qtbot.waitActive(home):
+        home.show()
+        home.activateWindow()
+    open_library(qtbot, desk, home, folder)
+    yield home
+    qapp.setStyleSheet("")
+
+
+def open_library(qtbot: QtBot, desk: LibraryDesk, home: Home, folder: Path) -> None:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
+        desk.open(folder, PASSPHRASE)
+    (state,) = told.args or []
+    assert isinstance(state, OpenedState)
+    home.show_library(state)
+    qtbot.waitUntil(lambda: home.page.patients.lines.rowCount() > 0, timeout=WAIT_MS)
+
+
+def lines(home: Home) -> list[PatientLine]:
+    return [line for line in home.page.patients.lines.lines if isinstance(line, PatientLine)]
+
+
+def codes(home: Home) -> list[str]:
+    return [line.code for line in lines(home)]
+
+
+def sessions(home: Home) -> list[SessionLine]:
+    return [line for line in home.page.sessions.lines.lines if isinstance(line, SessionLine)]
+
+
+def test_the_latest_seen_comes_first_with_its_sessions(qtbot: QtBot, home: Home) -> None:
+    assert codes(home) == ["P-0163", "P-0147"]
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    assert [line.when for line in sessions(home)] == ["20 May 2026", "20 Apr 2026", "20 Mar 2026"]
+    first = home.page.patients.lines.lines[0]
+    assert isinstance(first, PatientLine)
+    assert (first.person, first.sessions) == ("1951, female · right affected", "3 sessions")
+    assert home.bar.primary.text() == "New session for P-0163"
+
+
+def test_typing_finds_by_code_birth_year_and_device(home: Home) -> None:
+    for typed, found in (("0147", ["P-0147"]), ("1951", ["P-0163"]), ("MICRO knee", ["P-0147"]), ("p-", 2)):
+        home.page.search.clear()
+        QTest.keyClicks(home.page.search, typed)
+        assert codes(home) == found or len(codes(home)) == found
+    QTest.keyClicks(home.page.search, "nobody")
+    assert codes(home) == []
+    assert home.page.patient_id is None
+    assert not home.bar.primary.isVisible()
+    QTest.keyClick(home.page.search, Qt.Key.Key_Escape)
+    assert len(codes(home)) == 2
+
+
+def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -> None:
+    assert home.page.search.hasFocus()
+    QTest.keyClick(home.page.search, Qt.Key.Key_Down)
+    assert home.bar.primary.text() == "New session for P-0147"
+    with qtbot.waitSignal(home.session_wished) as told:
+        QTest.keyClick(home.page.search, Qt.Key.Key_Return)
+    (patient,) = told.args or []
+    assert isinstance(patient, StoredPatient)
+    assert patient.told.code == "P-0147"
+
+
+def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -> None:
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    place = home.page.sessions.visualRect(home.page.sessions.lines.index(1)).center()
+    with qtbot.waitSignal(home.session_opened) as told:
+        QTest.mouseClick(home.page.sessions.viewport(), Qt.MouseButton.LeftButton, pos=place)
+    assert told.args == [sessions(home)[1].id]
+    QTest.keyClick(home.page.sessions, Qt.Key.Key_Down)
+    with qtbot.waitSignal(home.session_opened) as told:
+        QTest.keyClick(home.page.sessions, Qt.Key.Key_Return)
+    assert told.args == [sessions(home)[2].id]
+
+
+def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
+    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    home.toast.undo()
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
+    assert home.bar.primary.text() == "New session for P-0163"
+
+
+def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    home.page.sessions.setFocus()
+    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
+    home.toast.undo()
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+
+
+def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    time_s = np.arange(300) / 100
+    block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
+    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
+    write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
+    home.read_folder(tmp_path / "visit")
+    qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
+    assert home.import_page.code.text == "P-0200"
+    assert home.bar.primary.text() == "Import for P-0200"
+    QTest.keyClick(home.import_page.code.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: home.current is home.page and "P-0200" in codes(home), timeout=WAIT_MS)
+    assert home.bar.primary.text() == "New session for P-0200"
+    qtbot.waitUntil(lambda: [line.amount for line in sessions(home)] == ["1 recording"], timeout=WAIT_MS)
+
+
+def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    (tmp_path / "nothing").mkdir()
+    home.read_folder(tmp_path / "nothing")
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    assert "session.toml" in home.banner.text
+    assert home.current is home.page
+
+
+def leave_open(folder: Path) -> UUID:
+    """Leave a walk of 4 s as a kill does, in the latest session."""
+    data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    with Library.open(folder, data_key) as library:
+        library.log_in("hk")
+        opened = OpenedLibrary(library, folder, data_key)
+        line = library.sessions.list()[0]
+        library.sessions.place(line.id, {Site.LEFT_THIGH: PlacedSensor("LT-1", SensorInfo())})
+        recording_id = uuid7()
+        library.recordings.start(line.id, Recording("walk 3", RecordingKind.WALKING, "walk_3", {}), False, recording_id)
+        writer = JournalWriter.create(opened.recordings, recording_id, data_key, room=ANY_ROOM)
+        header = writer.header
+        journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
+        library.recordings.add_journal(recording_id, journal)
+        block = ImuBlock("LT-1", np.arange(400) / 100, np.ones((400, 3)), np.ones((400, 3)))
+        source = writer.source(SourceInfo("file", "1", sensors=("LT-1",)), layout_of(block))
+        writer.samples(source, 0, block, waits=True)
+        summary = writer.stop()
+        with summary.path.open("r+b") as file:  # without its footer, as a kill leaves it
+            file.truncate(summary.bytes - 40)
+        return line.id
+
+
+def test_what_was_being_recorded_is_recovered_and_marked(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+) -> None:
+    session_id = leave_open(folder)
+    load_fonts()
+    home = Home(Look(), desk, settings)
+    qtbot.addWidget(home)
+    home.show()
+    open_library(qtbot, desk, home, folder)
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    assert "of walk 3 was recovered" in home.banner.text
+    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+    (marked,) = (line for line in sessions(home) if line.needs_look)
+    assert (marked.id, marked.state) == (session_id, "recovered, look at it")
+    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
+    home._on_session_opened(session_id)
+    home.refresh()
+    qtbot.waitUntil(lambda: not any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+
+
+def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, desk: LibraryDesk, home: Home) -> None:
+    state = desk.state
+    assert state is not None
+    home.show_library(replace(state, is_end_lost=True))
+    assert "Look through the latest session." in home.banner.text
+
+
+def test_nothing_is_left_for_whoever_comes_next(home: Home) -> None:
+    home.clear()
+    assert codes(home) == []
+    assert sessions(home) == []
+    assert home.page._code.text() == ""
+
+
+def test_light_or_dark_is_set_for_the_next_start_too(home: Home, settings: Settings) -> None:
+    home._on_below_pressed("look")
+    assert settings.scheme is Scheme.DARK
+
+
+def test_the_passphrase_is_changed_with_the_old_one_only(qtbot: QtBot, home: Home, folder: Path) -> None:
+    home.show_settings()
+    page = home.settings.page
+    new = "four other words here"
+    for old, is_right in (("not this one", False), (PASSPHRASE, True)):
+        for field, text in ((page.old, old), (page.new, new), (page.again, new)):
+            field.set_text(text)
+        QTest.mouseClick(page.change, Qt.MouseButton.LeftButton)
+        qtbot.waitUntil(lambda: page.old.is_wrong or page.old.text == "", timeout=WAIT_MS)
+        assert page.old.is_wrong is not is_right
+    KeySlots(folder / KEYS).open("hk", new)
+
+
+def test_a_new_recovery_key_ends_the_old_one(qtbot: QtBot, home: Home, folder: Path) -> None:
+    home.show_settings()
+    page = home.settings.page
+    QTest.mouseClick(page.renew, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: bool(page._key), timeout=WAIT_MS)
+    KeySlots(folder / KEYS).open_with_recovery_key(page._key)
+    assert page.print.isVisible()
+
+
+def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    page = home.settings.page
+    (tmp_path / "disk").mkdir()
+    home.settings.set_backup_folder(str(tmp_path / "disk"))
+    qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
+    page.backup_wished.emit()
+    qtbot.waitUntil(lambda: "checked" in page._backup_said.text(), timeout=WAIT_MS)
+    assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
+
+
+def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path) -> None:
+    page = home.settings.page
+    page.code.set_text("vi")
+    page.name.set_text("V. Iten")
+    page.first.set_text("first words for now")
+    page.role.setCurrentIndex(page.role.findData("viewer"))
+    page._on_add()
+    qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
+    desk.close()
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
+        desk.open(folder, "first words for now", "vi")
+    (state,) = told.args or []
+    assert state.operator.role is Role.VIEWER
+    home.show_library(state)
+    home.show_settings()
+    assert not page._operators.isVisible()
+    assert not page._backup.isVisible()
+    assert page._access.isVisible()
