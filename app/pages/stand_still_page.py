@@ -120,8 +120,7 @@ class StandStillPage(QWidget):
         return self.zero.tab_order
 
     def focus(self) -> None:
-        """Give the focus to the first angle: the count itself is the bar's."""
-        next((one for one in self.tab_order if one.isEnabled()), self.zero.button).setFocus()
+        """Leave the focus to the bar: in a field of this page Space would be written, and not start the count."""
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact

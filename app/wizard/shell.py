@@ -242,10 +242,13 @@ class WizardShell(QWidget):
         if page is None:
             return
         focus = getattr(page, "focus", None)
-        if focus is not None:
-            focus()
-        else:
+        if focus is None:
             page.setFocus(Qt.FocusReason.OtherFocusReason)
+            return
+        focus()
+        focused = self.window().focusWidget()
+        if focused is None or not (focused is page or page.isAncestorOf(focused)):
+            self.bar.focus()  # nothing on this page waits for keys
 
     def _show_strip(self) -> None:
         mode = self._strip_mode
@@ -275,9 +278,12 @@ class WizardShell(QWidget):
             self.header.fold.setChecked(True)
 
     def _on_recording_changed(self, is_recording: bool) -> None:
-        """Keep the banner's place free while recording: what is read then must not jump."""
+        """Keep the banner's place free while recording: what is read then must not jump.
+
+        A page that has a place of its own for what is said while recording needs no second one.
+        """
         policy = self.banner.sizePolicy()
-        policy.setRetainSizeWhenHidden(is_recording)
+        policy.setRetainSizeWhenHidden(is_recording and not getattr(self.page, "keeps_place_for_messages", False))
         self.banner.setSizePolicy(policy)
 
     def _on_range_changed(self) -> None:

@@ -144,9 +144,8 @@ class FreeMotionStep(Step):
 
     def bar(self) -> BarState:
         price = price_of_stopping(self._motion, self._visit.prosthetic_sides)
-        repeat = tuple(
-            Verb(text, key, Icon.REPEAT) for text, key in ((tr("Repeat left"), "L"), (tr("Repeat right"), "R"))
-        )
+        words = {Side.LEFT: (tr("Repeat left"), "L"), Side.RIGHT: (tr("Repeat right"), "R")}
+        repeat = tuple(Verb(*words[side], Icon.REPEAT) for side in self._repeatable)
         go_on = Verb(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
         if not self._is_recording:
             if not self._has_moved:
@@ -156,7 +155,7 @@ class FreeMotionStep(Step):
         if self._is_done:
             return BarState(primary=go_on, quiet=repeat, note=price or tr("Goes on by itself."))
         stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-        return BarState(primary=stop, quiet=repeat if self._motion.joints else (), note=price)
+        return BarState(primary=stop, quiet=repeat, note=price)
 
     def on_primary(self) -> None:
         if self._is_recording:
@@ -168,7 +167,7 @@ class FreeMotionStep(Step):
         self._begin()
 
     def on_quiet(self, number: int) -> None:
-        self._repeat(Side.LEFT if number == 0 else Side.RIGHT)
+        self._repeat(self._repeatable[number])
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is Action.RUN:
@@ -201,6 +200,15 @@ class FreeMotionStep(Step):
             if take.told.is_restrapped_before:
                 return False
         return False
+
+    @property
+    def _repeatable(self) -> list[Side]:
+        """Legs that the bar offers to repeat: while they move, those whose motion brings no more. The keys do any."""
+        joints = self._motion.joints
+        if not self._is_recording:
+            worn = {site.side for site in self._visit.sensors.site_of.values()}
+            return [side for side in Side if side in worn]
+        return [side for side in Side if any(one.is_plateau for joint, one in joints.items() if joint.side is side)]
 
     @property
     def _is_done(self) -> bool:

@@ -124,10 +124,15 @@ def test_without_standing_the_page_says_what_is_lost_and_the_way_back(qtbot: QtB
         page.zero.button.click()
 
 
+def test_no_field_takes_the_focus_by_itself_for_space_starts_the_count(page: StandStillPage) -> None:
+    page.setFocus()
+    page.focus()
+    assert not any(one.line_edit.hasFocus() for one in page.zero.fields.values())
+
+
 def test_an_angle_is_told_with_its_joint_when_it_is_left(qtbot: QtBot, page: StandStillPage) -> None:
     knee = page.zero.fields[Joint.LEFT_KNEE].line_edit
-    page.focus()
-    assert knee.hasFocus()
+    knee.setFocus()
     knee.selectAll()
     QTest.keyClicks(knee, "15")
     with qtbot.waitSignal(page.zero_edited) as edited:
