@@ -26,6 +26,7 @@ from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
+from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
@@ -82,6 +83,8 @@ class WalkingPage(QWidget):
     discard_pressed = Signal(str)
     undo_pressed = Signal(str)
     restrapped_pressed = Signal()
+
+    keeps_place_for_messages = True
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -204,7 +207,9 @@ class WalkingPage(QWidget):
         return focused is not None and self.isAncestorOf(focused)
 
     def _build(self) -> None:
-        self.charts.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+        for region in (self.charts, self.empty):
+            region.setFocusPolicy(Qt.FocusPolicy.TabFocus)
+            region.setProperty(NO_RING, True)
         self.charts.setAccessibleName(tr("Live angles and gait phases"))
         self._left, self._right = QVBoxLayout(), QVBoxLayout()
         self._left.addWidget(self.empty, 1)
@@ -462,7 +467,6 @@ class _EmptyCard(Card):
             wraps=True,
         )
         super().__init__(look)
-        self.setFocusPolicy(Qt.FocusPolicy.TabFocus)
         self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)

@@ -9,6 +9,7 @@ from app.theme import CONTROL_RADIUS, Look
 
 DISTANCE = 3
 WIDTH = 2
+NO_RING = "has_no_focus_ring"  # property of a region that is read and not worked: its size tells nothing
 
 
 class FocusRing(QWidget):
@@ -54,7 +55,7 @@ class FocusRing(QWidget):
 
     def _follow(self) -> None:
         seen = self._chain[0].visibleRegion().boundingRect() if self._chain else QRect()
-        if seen.isEmpty():
+        if seen.isEmpty() or self._chain[0].property(NO_RING):
             self.hide()
             return
         reach = self._look.theme.px(DISTANCE + WIDTH)

@@ -7,6 +7,7 @@ from uuid import UUID
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
+from app import sounds
 from app.theme import Look
 from app.widgets.action_bar import BarState
 from app.widgets.sensor_strip import SensorTile
@@ -117,6 +118,7 @@ class Wizard(QWidget):
         shell.bar.primary_pressed.connect(self._on_primary)
         shell.bar.other_pressed.connect(self._on_other)
         shell.bar.quiet_pressed.connect(self._on_quiet)
+        shell.bar.sound_pressed.connect(self._on_sound_pressed)
         shell.toast.undone.connect(self._on_undo)
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self._on_intent)
@@ -257,6 +259,10 @@ class Wizard(QWidget):
 
     def _on_quiet(self, number: int) -> None:
         self._steps[self._current].on_quiet(number)
+
+    def _on_sound_pressed(self) -> None:
+        sounds.set_on(not sounds.is_on())
+        self.shell.bar.show_state(self._bar())
 
     def _on_back(self) -> None:
         if self._current > PATIENT:

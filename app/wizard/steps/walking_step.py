@@ -79,6 +79,8 @@ class WalkingStep(Step):
             if self._visit.takes.ongoing.told.kind is RecordingKind.WALKING:
                 return tr("Recording walk {number}").format(number=len(self._visit.takes.walks) + 1)
             return ""
+        if self._asked is not None:
+            return tr("keep or discard?")
         kept = sum(take.told.is_kept for take in self._visit.takes.walks)
         return tr("{count} kept").format(count=kept) if kept else ""
 
@@ -165,7 +167,7 @@ class WalkingStep(Step):
         if any(take.told.is_kept for take in takes.walks):
             again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
             return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,))
-        return BarState(primary=start, note=tr("As {label}").format(label=self._label))
+        return BarState(primary=start, note=tr("Next: {label}").format(label=self._label))
 
     def on_primary(self) -> None:
         takes = self._visit.takes
@@ -369,15 +371,16 @@ class WalkingStep(Step):
             if take.told.condition == condition:
                 for side, count in self._strides_of(take).items():
                     counts[side] = counts.get(side, 0) + count
-        few = {side: count for side, count in counts.items() if count < STRIDES_FOR_SPREAD}
-        if not few:
+        left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
+        if min(left, right) >= STRIDES_FOR_SPREAD:
             return NOTHING
-        words = {Side.LEFT: tr("{count} left strides"), Side.RIGHT: tr("{count} right strides")}
-        said = ", ".join(words[side].format(count=few[side]) for side in Side if side in few)
-        return (
-            tr("Only {strides}, {wanted} make a spread.").format(strides=said, wanted=STRIDES_FOR_SPREAD),
-            tr("Walk once more, or go on without a spread."),
-        )
+        said = tr("Only {left} left and {right} right strides, {wanted} make a spread.")
+        if left >= STRIDES_FOR_SPREAD:
+            said = tr("Only {right} right strides, {wanted} make a spread.")
+        elif right >= STRIDES_FOR_SPREAD:
+            said = tr("Only {left} left strides, {wanted} make a spread.")
+        what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
+        return what, tr("Walk once more, or go on without a spread.")
 
     # what is shown
 
@@ -401,8 +404,13 @@ class WalkingStep(Step):
         return next((take for take in self._visit.takes.walks if take.id == identity), None)
 
     def _strides_of(self, take: "Take") -> dict[Side, int]:
-        """As the analysis has counted them, or else as they were counted live."""
-        return self._visit.evaluation.strides(take.told.name) or dict(take.strides or {})
+        """As the analysis has counted them, or else as they were counted live: amid a walk it saw a part only."""
+        session = self._visit.evaluation.session
+        seen = {recording.name: recording for recording in session.recordings} if session is not None else {}
+        same = seen.get(take.told.name)
+        if same is None or take.recording is None or same.imu is not take.recording.imu:
+            return dict(take.strides or {})
+        return self._visit.evaluation.strides(take.told.name)
 
     @Slot()
     def _show(self) -> None:
