@@ -29,6 +29,7 @@ from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.chip import paint_chip
 from app.widgets.icons import Icon, paint_icon
+from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording import name_of, tr
 from core.body import Site
@@ -238,11 +239,12 @@ class SensorList(QWidget):
         return " · ".join(filter(None, [what or sensor.rate, charge]))
 
     def minimumSizeHint(self) -> QSize:
-        px = self._look.theme.px
-        columns = self._measured(0)
-        return QSize(
-            columns["identify"].right() + px(6 + COLUMN_GAP + TRACE_AT_LEAST), super().minimumSizeHint().height()
-        )
+        theme = self._look.theme
+        heading = QFontMetrics(theme.font(12)).horizontalAdvance(tr("Last 5 s")) + 1
+        trace = max(theme.px(TRACE_AT_LEAST), heading)
+        gap = theme.px(NARROW_GAP if self._is_narrow else COLUMN_GAP)
+        width = self._measured(0)["identify"].right() + theme.px(6) + gap + trace
+        return QSize(width, super().minimumSizeHint().height())
 
     def _let_tab_reach(self) -> None:
         """Let one row be in the way of the tabulator, with what can be pressed in it."""
@@ -273,14 +275,16 @@ class _Heading(QWidget):
         return QSize(0, self._look.theme.px(HEADING - SPACING))
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
         painter = QPainter(self)
-        painter.setPen(QColor(theme.colours.ink2))
-        painter.setFont(theme.font(12))
+        for text in self.painted_texts():
+            text.paint(painter, self._look.theme.colours)
+
+    def painted_texts(self) -> list[PaintedText]:
+        font = self._look.theme.font(12)
         places = {**self._list.columns(self.width())}
         places["name"] = QRect(0, 0, places["name"].right(), 0)
         movement = tr("Movement, last 5 s")
-        has_room = painter.fontMetrics().horizontalAdvance(movement) <= places["trace"].width()
+        has_room = QFontMetrics(font).horizontalAdvance(movement) <= places["trace"].width()
         words = {
             "name": tr("Sensor"),
             "trace": movement if has_room else tr("Last 5 s"),
@@ -289,10 +293,17 @@ class _Heading(QWidget):
             "worn": tr("Worn on"),
             "identify": tr("Identify"),
         }
-        for key, place in places.items():
-            if place.width():
-                align = Qt.AlignmentFlag.AlignRight if key == "identify" else Qt.AlignmentFlag.AlignLeft
-                painter.drawText(QRect(place.x(), 0, place.width(), self.height()), align, words[key])
+        return [
+            PaintedText(
+                words[key],
+                QRectF(place.x(), 0, place.width(), self.height()),
+                font,
+                "ink2",
+                RIGHT if key == "identify" else LEFT,
+            )
+            for key, place in places.items()
+            if place.width()
+        ]
 
 
 class SensorRowView(QAbstractButton):
@@ -426,30 +437,35 @@ class SensorRowView(QAbstractButton):
         grip = px(20)
         middle = QRectF((places["name"].x() - grip) / 2, (self.height() - grip) / 2, grip, grip)
         paint_icon(painter, Icon.GRIP, middle, second)
-        align = Qt.AlignmentFlag.AlignVCenter
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(16, SEMIBOLD, is_code=True))
-        painter.drawText(QRect(places["name"].x(), px(9), places["name"].width() + px(8), px(22)), align, sensor.name)
-        painter.setPen(QColor(second))
-        painter.setFont(theme.font(12, MEDIUM if is_caution else REGULAR))
-        under = QRect(places["name"].x(), px(31), places["name"].width() + px(8), px(18))
-        painter.drawText(under, align, self._list.second_line(sensor))
-        if places["rate"].width():
-            self._paint_rate_and_battery(painter, places, ink)
+        if places["battery"].width() and sensor.battery is not None and sensor.silent_s <= 0:
+            x, y = places["battery"].x(), (self.height() - px(CELL_HEIGHT)) / 2
+            paint_battery(painter, QRectF(x, y, px(CELL_WIDTH), px(CELL_HEIGHT)), sensor.battery, theme, ink)
+        for text in self.painted_texts():
+            text.paint(painter, c)
 
-    def _paint_rate_and_battery(self, painter: QPainter, places: Mapping[str, QRect], ink: str) -> None:
+    def painted_texts(self) -> list[PaintedText]:
         theme, sensor = self._look.theme, self.sensor
         px = theme.px
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(14, MEDIUM))
-        align = Qt.AlignmentFlag.AlignVCenter
-        painter.drawText(places["rate"], align, sensor.rate)
-        words = QRect(places["battery"])
-        if sensor.battery is not None and sensor.silent_s <= 0:
-            cell = QRectF(words.x(), (self.height() - px(CELL_HEIGHT)) / 2, px(CELL_WIDTH), px(CELL_HEIGHT))
-            paint_battery(painter, cell, sensor.battery, theme, ink)
-            words.setLeft(words.x() + px(CELL_WIDTH + 6))
-        painter.drawText(words, align, sensor.charge)
+        places = self._list.columns(self.width())
+        name, is_caution = places["name"], sensor.wants_look
+        tone, second = ("caution_ink", "caution_ink") if is_caution else ("ink", "ink2")
+        small = theme.font(12, MEDIUM if is_caution else REGULAR)
+        texts = [
+            PaintedText(
+                sensor.name,
+                QRectF(name.x(), px(9), name.width(), px(22)),
+                theme.font(16, SEMIBOLD, is_code=True),
+                tone,
+            ),
+            PaintedText(self._list.second_line(sensor), QRectF(name.x(), px(31), name.width(), px(18)), small, second),
+        ]
+        if places["rate"].width():
+            font, battery = theme.font(14, MEDIUM), QRectF(places["battery"])
+            if sensor.battery is not None and sensor.silent_s <= 0:
+                battery.setLeft(battery.left() + px(CELL_WIDTH + 6))
+            texts.append(PaintedText(sensor.rate, QRectF(places["rate"]), font, tone))
+            texts.append(PaintedText(sensor.charge, battery, font, tone))
+        return texts
 
     def _on_clicked(self) -> None:
         self._list.select(self.name)
@@ -563,18 +579,27 @@ class _WornOn(QAbstractButton):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(theme.veil(self.isDown()))
             painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
-        ink = c.caution_ink if self._row.sensor.wants_look else c.ink
-        words = self.rect()
         if self._site is not None:
             chip = px(CHIP)
             paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
-            words.setLeft(chip + px(6))
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(14, MEDIUM if self._site is not None else REGULAR))
-        word = segment_name(self._site) if self._site is not None else tr("nowhere")
-        painter.drawText(words, Qt.AlignmentFlag.AlignVCenter, word)
-        side, end = px(CHEVRON), words.left() + painter.fontMetrics().horizontalAdvance(word) + px(6)
-        paint_icon(painter, Icon.CHEVRON, QRectF(end, (self.height() - side) / 2 + 1, side, side), ink)
+        (word,) = self.painted_texts()
+        word.paint(painter, c)
+        side, end = px(CHEVRON), word.needed.right() + px(6)
+        middle = QRectF(end, (self.height() - side) / 2 + 1, side, side)
+        paint_icon(painter, Icon.CHEVRON, middle, getattr(c, word.tone))
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme = self._look.theme
+        px = theme.px
+        left = px(CHIP + 6) if self._site is not None else 0
+        return [
+            PaintedText(
+                segment_name(self._site) if self._site is not None else tr("nowhere"),
+                QRectF(left, 0, self.width() - left - px(CHEVRON + 6), self.height()),
+                theme.font(14, MEDIUM if self._site is not None else REGULAR),
+                "caution_ink" if self._row.sensor.wants_look else "ink",
+            )
+        ]
 
 
 class _Identify(QAbstractButton):

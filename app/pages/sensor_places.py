@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from PySide6.QtCore import QMimeData, QPoint, QPointF, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QMimeData, QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
     QDrag,
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QSizePolicy, QWidge
 from app.theme import CARD_RADIUS, CONTROL_RADIUS, Look
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
+from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
@@ -312,9 +313,8 @@ class _Tile(QAbstractButton):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         is_caution = place.mark in (SensorMark.LOOK, SensorMark.SILENT)
         fill, ink, edge = (c.caution, c.caution_ink, c.caution_edge) if is_caution else (c.surface, c.ink, c.control)
-        second = ink if is_caution else c.ink2
         if place.is_flashing:
-            fill, ink, edge, second = c.inv, c.inv_ink, c.inv, c.inv_ink
+            fill, ink, edge = c.inv, c.inv_ink, c.inv
         is_bold = self._is_welcome or place.is_next
         pen = theme.pen(c.ink if is_bold else edge, 2.5 if self._is_welcome else 1.75 if place.is_next else 1.25)
         if not place.sensor and not is_bold:
@@ -330,24 +330,38 @@ class _Tile(QAbstractButton):
             painter.setBrush(theme.veil(self.isDown()))
             painter.drawRoundedRect(box, radius, radius)
         chip = px(CHIP)
-        first = QRect(px(PADDING), px(7), self.width() - 2 * px(PADDING), px(18))
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(14, SEMIBOLD))
-        align = Qt.AlignmentFlag.AlignVCenter
-        where = QRectF(first.left(), first.center().y() - chip / 2 + 1, chip, chip)
+        where = QRectF(px(PADDING), px(16) - chip / 2 + 1, chip, chip)
         if place.is_flashing:  # the legs' hues do not stand out on dark; the letter does
+            painter.setPen(QColor(ink))
+            painter.setFont(theme.font(14, SEMIBOLD))
             painter.drawText(where, Qt.AlignmentFlag.AlignCenter, LETTERS[self.site.side])
         else:
             paint_chip(painter, where, self.site.side, theme)
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(14, SEMIBOLD))
-        painter.drawText(first.adjusted(chip + px(6), 0, 0, 0), align, segment_name(self.site))
-        painter.setPen(QColor(second))
-        painter.setFont(theme.font(12))
-        painter.drawText(first, align | Qt.AlignmentFlag.AlignRight, str(number_of(self.site)))
-        painter.setFont(theme.font(12, MEDIUM if is_caution else SEMIBOLD if place.is_next else MEDIUM, is_code=True))
-        for number, line in enumerate(self.lines):
-            painter.drawText(first.translated(0, px(19 + number * LINE)), align, line)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme, place = self._look.theme, self._place
+        px = theme.px
+        tone = second = "caution_ink"
+        if place.mark not in (SensorMark.LOOK, SensorMark.SILENT):
+            tone, second = "ink", "ink2"
+        if place.is_flashing:
+            tone = second = "inv_ink"
+        number_font, line_font = theme.font(12), theme.font(12, SEMIBOLD if place.is_next else MEDIUM, is_code=True)
+        left, right = px(PADDING), self.width() - px(PADDING)
+        digit = px(14)
+        name = QRectF(left + px(CHIP + 6), px(7), right - digit - left - px(CHIP + 6), px(18))
+        return [
+            PaintedText(segment_name(self.site), name, theme.font(14, SEMIBOLD), tone),
+            PaintedText(
+                str(number_of(self.site)), QRectF(right - digit, px(7), digit, px(18)), number_font, second, RIGHT
+            ),
+            *(
+                PaintedText(line, QRectF(left, px(26 + number * LINE), right - left, px(18)), line_font, second)
+                for number, line in enumerate(self.lines)
+            ),
+        ]
 
 
 def _notes() -> tuple[str, ...]:

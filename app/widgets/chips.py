@@ -8,6 +8,7 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.icons import Icon, paint_icon
+from app.widgets.painted_text import PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 
 HEIGHT = 44
@@ -156,18 +157,17 @@ class _Chip(QAbstractButton):
             painter.setPen(Qt.PenStyle.NoPen)
             painter.setBrush(theme.veil(self.isDown()))
             painter.drawRoundedRect(box, radius, radius)
-        x = px(PADDING)
         if self.isChecked():
             side = px(CHECK)
-            paint_icon(painter, Icon.CHECK, QRectF(x, (self.height() - side) / 2, side, side), c.ink)
-        x += self._check_width()
-        painter.setPen(QColor(c.ink))
-        painter.setFont(theme.font(14, SEMIBOLD if self.isChecked() else MEDIUM))
-        painter.drawText(
-            QRect(x, 0, self._word_width(), self.height()),
-            Qt.AlignmentFlag.AlignVCenter | Qt.AlignmentFlag.AlignLeft,
-            self.text(),
-        )
+            paint_icon(painter, Icon.CHECK, QRectF(px(PADDING), (self.height() - side) / 2, side, side), c.ink)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme = self._look.theme
+        x = theme.px(PADDING) + self._check_width()
+        font = theme.font(14, SEMIBOLD if self.isChecked() else MEDIUM)
+        return [PaintedText(self.text(), QRectF(x, 0, self._word_width(), self.height()), font)]
 
     def _check_width(self) -> int:
         return self._look.theme.px(CHECK + 4) if self.isChecked() else 0
