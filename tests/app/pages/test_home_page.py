@@ -1,0 +1,120 @@
+"""The lists of patients and sessions: quick with thousands, found as typed, no word cut."""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from time import process_time
+from uuid import UUID
+
+import pytest
+from PySide6.QtCore import Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.home_lists import PatientLine, Role, SessionLine
+from app.pages.home_page import HomePage
+from app.theme import Look, load_fonts
+
+MANY = 5000
+MOST_S = 0.1  # what the screen's thread may take for anything
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> Iterator[Look]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    yield look
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def page(qtbot: QtBot, look: Look) -> HomePage:
+    page = HomePage(look)
+    page.set_room(1064)
+    page.resize(1064, 728)
+    qtbot.addWidget(page)
+    with qtbot.waitExposed(page):
+        page.show()
+    return page
+
+
+def patient(number: int, person: str = "1968, male · left prosthetic") -> PatientLine:
+    code = f"P-{number:04d}"
+    return PatientLine(UUID(int=number), code, person, "24 Oct 2026", "5 sessions", f"{code} {person}".casefold())
+
+
+def session(number: int, conditions: str, state: str = "") -> SessionLine:
+    return SessionLine(UUID(int=number), "24 Oct 2026", conditions, "3 recordings", state, bool(state))
+
+
+def test_thousands_of_patients_are_shown_and_searched_in_no_time(page: HomePage, qapp: QApplication) -> None:
+    lines = [patient(number) for number in range(MANY)]
+    began_s = process_time()
+    page.show_patients(lines)
+    qapp.processEvents()
+    shown_s = process_time() - began_s
+    began_s = process_time()
+    QTest.keyClicks(page.search, "4")
+    qapp.processEvents()
+    searched_s = process_time() - began_s
+    assert page.patients.lines.rowCount() == sum("4" in f"P-{number:04d}" for number in range(MANY))
+    assert shown_s < 3 * MOST_S  # half of it is the first painting
+    assert searched_s < 2 * MOST_S
+
+
+def test_the_chosen_patient_stays_chosen_when_the_list_is_read_anew(page: HomePage) -> None:
+    page.show_patients([patient(1), patient(2), patient(3)], UUID(int=2))
+    assert page.patient_id == UUID(int=2)
+    page.show_patients([patient(3), patient(2), patient(1)])
+    assert page.patient_id == UUID(int=2)
+    page.show_patients([patient(3), patient(1)])
+    assert page.patient_id == UUID(int=3)
+
+
+def test_an_empty_library_offers_a_patient_and_the_demonstration(qtbot: QtBot, page: HomePage) -> None:
+    page.show_patients(())
+    assert page._nobody.isVisible()
+    with qtbot.waitSignal(page.demonstration_wished):
+        QTest.mouseClick(page._nobody.demonstration, Qt.MouseButton.LeftButton)
+    page.show_patients([patient(1)])
+    QTest.keyClicks(page.search, "nobody")
+    assert page._nobody.isVisible()
+    assert not page._nobody.demonstration.isVisible()
+
+
+def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
+    page.show_patients([patient(147)])
+    said = page.patients.lines.data(page.patients.lines.index(0), Qt.ItemDataRole.AccessibleTextRole)
+    assert said == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
+    page.show_sessions([session(1, "Alignment A", "recovered, look at it")])
+    said = page.sessions.lines.data(page.sessions.lines.index(0), Qt.ItemDataRole.AccessibleTextRole)
+    assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, look at it"
+
+
+@pytest.mark.parametrize(("width", "scale"), [(1064, 1.0), (736, 1.0), (736, 0.8), (1216, 2.0)])
+def test_no_word_of_a_line_is_cut_or_lies_on_another(
+    page: HomePage, look: Look, qapp: QApplication, width: int, scale: float
+) -> None:
+    look.set_scale(scale)
+    page.set_room(width / scale)
+    page.resize(width, 728)
+    page.show_patients([patient(1), patient(2, "1951, female · both sides affected, microprocessor knee")])
+    page.show_patient("P-0001", "1968, male")
+    page.show_sessions([session(1, "AFO, barefoot, alignment A, alignment B, alignment C", "recovered, look at it")])
+    for _ in range(3):
+        qapp.processEvents()
+    for view in (page.patients, page.sessions):
+        delegate = view.itemDelegate()
+        for line in view.lines.lines:
+            for row in delegate._rows(line, view.room):  # type: ignore[attr-defined]  # the delegate is our own
+                spans = []
+                for word in row:
+                    wide = delegate._width(word)  # type: ignore[attr-defined]  # as above
+                    left = view.room - wide - 2 * look.theme.px(24) if word.is_right else word.left
+                    spans.append((left, left + wide))
+                spans.sort()
+                assert all(before[1] <= after[0] for before, after in pairwise(spans))
+                assert spans[0][0] >= 0
+                assert spans[-1][1] <= view.room - 2 * look.theme.px(24)
+            assert view.model().index(0, 0).data(Role.LINE) is not None
