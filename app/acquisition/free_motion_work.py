@@ -7,7 +7,6 @@ import numpy as np
 
 from app.acquisition.chain_search import ChainSearch
 from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
-from app.acquisition.placing_work import sites_of
 from core.body import Side, Site
 from core.live.free_motion import FreeMotion, FreeMotionState
 from core.live.sensors import LiveSensor
@@ -38,6 +37,9 @@ class FreeMotionView:
         By the sensor's name: as was said, or as the motion has told.
     chains
         What is known of the legs where the placement is left to the motion.
+    is_side_open
+        The legs are certain, and which is left is not: both began together, or there is only one. `name_first` of
+        `UnplacedFreeMotionWork` settles it.
     """
 
     motion: FreeMotionState = field(default_factory=FreeMotionState)
@@ -46,6 +48,7 @@ class FreeMotionView:
     exchanged: tuple[tuple[Site, ...], ...] = ()
     site_of: Mapping[str, Site] = field(default_factory=dict)
     chains: Chains | None = None
+    is_side_open: bool = False
 
 
 class FreeMotionWork:
@@ -164,7 +167,8 @@ class UnplacedFreeMotionWork:
             self._look(worn)
         state = FreeMotionView() if self._placed is None else self._caught_up(self._placed)
         elapsed_s = self._now_s - self._first_s if state.repeated is None else state.elapsed_s
-        self.state = replace(state, elapsed_s=elapsed_s, chains=self._search.chains)
+        is_side_open = self._placed is None and self._search.is_sure
+        self.state = replace(state, elapsed_s=elapsed_s, chains=self._search.chains, is_side_open=is_side_open)
 
     def _caught_up(self, placed: FreeMotionWork) -> FreeMotionView:
         """Take a little of what was held back."""
@@ -194,7 +198,9 @@ class UnplacedFreeMotionWork:
             return {}
         if self._answer is not None:
             return chains.sites(self._answer)
-        return sites_of(chains, self._first_moved) if self._first_moved is not None else {}
+        if self._first_moved is None or not chains.is_first_certain:  # never of a single leg: it has no other to lead
+            return {}
+        return chains.sites(self._first_moved)
 
 
 class _LabelCheck:

@@ -37,7 +37,10 @@ class PlacingState:
 
     def sites(self, first_moved: Side) -> dict[str, Site]:
         """Every sensor's site, once it is certain, with the side that was asked to move first; a single leg's side."""
-        return sites_of(self.chains, first_moved) if self.is_sure else {}
+        if self.chains is None or not self.is_sure:
+            return {}
+        is_told = len(self.chains.legs) == 1 or self.chains.is_first_certain
+        return self.chains.sites(first_moved) if is_told else {}
 
 
 class PlacingWork:
@@ -67,10 +70,3 @@ class PlacingWork:
             self._search.chains,
             self._search.is_sure,
         )
-
-
-def sites_of(chains: Chains | None, first_moved: Side) -> dict[str, Site]:
-    """Name the sites where the order of the legs is certain too; a single leg needs no order."""
-    if chains is None or not (len(chains.legs) == 1 or chains.is_first_certain):
-        return {}
-    return chains.sites(first_moved)

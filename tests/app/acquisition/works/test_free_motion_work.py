@@ -96,7 +96,9 @@ def test_sensors_without_sites_are_placed_and_made_up_for(
         assert not told[-1].site_of
         assert told[-1].chains is not None
         assert told[-1].chains.is_first_certain
+        assert told[-1].is_side_open
         return
+    assert not told[-1].is_side_open
     assert all(state.site_of in ({}, worn.site_of) for state in told)
     assert told[-1].site_of == worn.site_of
     assert_same(told[-1].motion, usual[-1].motion)
@@ -111,6 +113,17 @@ def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(worn: Worn) -
         name: site.segment for name, site in worn.site_of.items()
     }
     assert all(last.site_of[name].side is not site.side for name, site in worn.site_of.items())
+
+
+def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(worn: Worn) -> None:
+    right = {name: worn.live_sensors[name] for name, site in worn.site_of.items() if site.side is Side.RIGHT}
+    work = UnplacedFreeMotionWork(right, Side.LEFT)
+    streams = {name: between(worn.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
+    assert fed(work, streams)[-1].is_side_open
+    assert not work.state.site_of
+    work.name_first(Side.RIGHT)
+    later = {name: between(worn.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
+    assert fed(work, later)[-1].site_of == {name: worn.site_of[name] for name in right}
 
 
 def test_no_more_than_half_a_minute_is_held_back(worn: Worn) -> None:
