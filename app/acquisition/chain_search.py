@@ -7,7 +7,7 @@ import numpy as np
 
 from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
 from core.live.sensors import LiveSensor
-from core.pair import MOVING_WINDOW_S, moving_mean
+from core.pair import MOVING_RAD_S, MOVING_WINDOW_S, moving_mean
 from core.placement.chains import LIFTED_RAD_S, USUAL_SITES, Chain, Chains, chains_in_steps
 from core.samples import FloatArray, ImuBlock
 from core.tracks import nominal_step_s
@@ -51,7 +51,8 @@ class ChainSearch:
     def _look(self, at_s: float) -> Generator[None, None, None]:
         speeds = self._note_lifts(at_s)
         blocks = {k: v for k, v in self._memory.between(at_s - KEPT_S, at_s).items() if k in speeds}
-        if max(speeds.values(), default=0.0) < LIFTED_RAD_S or len(blocks) not in USUAL_SITES:
+        moving = sum(speed > MOVING_RAD_S for speed in speeds.values())
+        if len(blocks) not in USUAL_SITES or moving < min(2, len(blocks) - 1):  # one alone is being shaken
             return
         yield
         tracks = yield from tracks_in_steps(blocks, self._sensors)
