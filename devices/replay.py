@@ -21,16 +21,25 @@ BUFFER_S = 5.0  # what a sensor or a port holds for a program that does not read
 SHAKE_S, SHAKE_HZ, SHAKE_RAD_S, SHAKE_M_S2 = 2.0, 4.0, 6.0, 15.0
 SHAKEN_ALONG = np.array([0.8, 0.5, 0.3])
 SEAM_S = 1e-4  # more than rounding, less than any sampling interval
-DEMONSTRATION_WALKS = 6
-
+DEMONSTRATION_TIMES = range(1, 7)
+# none but the patient's pose while standing joins them: each begins and ends with it
 DEMONSTRATION_SESSION = replace(
     DEMONSTRATION,
     recordings=(
         Standing(duration_s=10.0),
-        FreeMotion(duration_s=30.0),
-        *(Walk(name=f"walk {number}", strides=14) for number in range(1, DEMONSTRATION_WALKS + 1)),
+        *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in DEMONSTRATION_TIMES),
+        *(Walk(name=f"walk {number}", strides=14, standing_before_s=2.0) for number in DEMONSTRATION_TIMES),
     ),
 )
+# as on a label, so that a name does not say where the sensor is worn
+DEMONSTRATION_NAMES = {
+    Site.LEFT_THIGH: "DEMO-09",
+    Site.LEFT_SHANK: "DEMO-31",
+    Site.LEFT_FOOT: "DEMO-2C",
+    Site.RIGHT_THIGH: "DEMO-17",
+    Site.RIGHT_SHANK: "DEMO-1B",
+    Site.RIGHT_FOOT: "DEMO-22",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +73,7 @@ class _Clip:
     first_s: float
     length_s: float
     imu: Mapping[str, ImuBlock]
+    is_idle: bool
 
     @property
     def end_s(self) -> float:
@@ -80,6 +90,9 @@ class ReplaySource:
     ----------
     speed
         Above 1, time runs faster: for what listens too, if it is given this source's `now_ns`.
+    finishes
+        The patient ends a movement before the next one, and moves freely until something else is asked; else a
+        recording is cut short at once, and its last pose jumps to the next one's.
     """
 
     has_bytes = False
@@ -90,6 +103,7 @@ class ReplaySource:
         *,
         faults: ReplayFaults = NO_FAULTS,
         speed: float = 1.0,
+        finishes: bool = False,
         name: str = "demonstration",
         now_ns: Callable[[], int] = host_time_ns,
         sleep: Callable[[float], None] = time.sleep,
@@ -97,7 +111,7 @@ class ReplaySource:
         if not session.recordings or not all(_has_samples(recording) for recording in session.recordings):
             raise ValueError("a recording without samples cannot be played")
         self.now_ns = now_ns if speed == 1.0 else _faster(now_ns, speed)
-        self._sleep, self._faults = sleep, faults
+        self._sleep, self._faults, self._finishes = sleep, faults, finishes
         self._names = _names(session)
         self._by_kind = {kind: [r for r in session.recordings if r.kind is kind] for kind in RecordingKind}
         self._turns = {kind: count() for kind in RecordingKind}
@@ -111,6 +125,7 @@ class ReplaySource:
         self._chance = {name: np.random.default_rng([faults.seed, k]) for k, name in enumerate(self._told)}
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
+        self._asked: RecordingKind | None = None  # and not begun yet
         self._read_to_s = self._opened_s = 0.0
         self.is_open = self._is_away = False
         self._silenced: frozenset[str] = frozenset()
@@ -153,19 +168,30 @@ class ReplaySource:
         return self._told
 
     def identify(self, sensor: str) -> bool:
-        return False
+        """Shake it: nobody sees a light on it."""
+        self.shake(sensor)
+        return True
 
     def ask(self, kind: RecordingKind | None) -> None:
-        """Begin with the next recording of this kind, at once; then, or where there is none, stand."""
+        """Begin with the next recording of this kind, at once or after the present one; then stand."""
         with self._lock:
             if not self._clips:
                 return
             now_s = self._now_s()
             self._play_on(now_s)
+            self._asked = kind
             playing = self._clips[-1]
+            if self._finishes and not playing.is_idle:
+                return
             at_s = min(self._next_tick_s(playing.start_s, now_s), playing.end_s)
             self._clips[-1] = replace(playing, length_s=at_s - playing.start_s)
-            self._clips.append(self._clip(self._next(kind), at_s))
+            self._clips.append(self._next_clip(at_s))
+
+    def _next_clip(self, start_s: float) -> _Clip:
+        recording = self._next(self._asked)
+        if not (self._finishes and self._asked is RecordingKind.FREE_MOTION):
+            self._asked = None
+        return self._clip(recording, start_s)
 
     def _next(self, kind: RecordingKind | None) -> Recording:
         if kind is None or not self._by_kind[kind]:
@@ -207,13 +233,13 @@ class ReplaySource:
         first_s = min(block.time_s[0] for block in imu.values())
         # one step longer than from the first stamp to the last: there the next recording's first sample follows
         ends = [block.time_s[-1] + self._steps_s[name] for name, block in imu.items()]
-        return _Clip(start_s, float(first_s), float(max(ends) - first_s), imu)
+        return _Clip(start_s, float(first_s), float(max(ends) - first_s), imu, recording is self._idle)
 
     def _play_on(self, to_s: float) -> None:
         if to_s - self._clips[-1].end_s > BUFFER_S:  # the machine slept
             self._clips = [self._clip(self._idle, self._next_tick_s(self._clips[-1].end_s, to_s - BUFFER_S))]
         while self._clips[-1].end_s <= to_s:
-            self._clips.append(self._clip(self._idle, self._clips[-1].end_s))
+            self._clips.append(self._next_clip(self._clips[-1].end_s))
 
     def _next_tick_s(self, since_s: float, at_s: float) -> float:
         """The next instant of the sensors' clock that ticked at `since_s`: they go on as evenly as before."""
@@ -251,7 +277,15 @@ class ReplaySource:
 
 def demonstration(settings: WalkerSettings = DEMONSTRATION_SESSION) -> ReplaySource:
     """The patient that the application shows. Takes a second or two."""
-    return ReplaySource(simulate(settings).session)
+    session = simulate(settings).session
+    recordings = tuple(replace(recording, imu=_renamed(recording.imu)) for recording in session.recordings)
+    sensors = {site: replace(info, serial=DEMONSTRATION_NAMES[site]) for site, info in session.sensors.items()}
+    return ReplaySource(replace(session, recordings=recordings, sensors=sensors), finishes=True)
+
+
+def _renamed(imu: Mapping[Site, ImuBlock]) -> dict[Site, ImuBlock]:
+    by_name = sorted(imu, key=lambda site: DEMONSTRATION_NAMES[site])
+    return {site: replace(imu[site], sensor=DEMONSTRATION_NAMES[site]) for site in by_name}
 
 
 def _has_samples(recording: Recording) -> bool:

@@ -1,13 +1,14 @@
 """A patient who was recorded or simulated sends evenly, does what is asked, and fails on demand."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core.samples import ImuBlock, RecordingKind, Session
 from devices.live import SourceLostError, SourceRefusedError
-from devices.replay import BUFFER_S, SHAKE_RAD_S, ReplayFaults, ReplaySource
+from devices.replay import BUFFER_S, DEMONSTRATION_SESSION, SHAKE_RAD_S, ReplayFaults, ReplaySource, demonstration
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 RATE_HZ = 100.0
@@ -120,6 +121,36 @@ def test_asking_for_nothing_ends_a_walk(make: Make, clock: Clock) -> None:
     for block in listen(source, clock, 2.0).values():
         assert np.abs(block.gyr_rad_s[10:]).max() < 0.1
         assert is_even(block)
+
+
+def test_who_finishes_walks_on_and_moves_freely_until_something_else_is_asked(session: Session, clock: Clock) -> None:
+    source = ReplaySource(session, finishes=True, now_ns=clock, sleep=clock.sleep)
+    source.open()
+    name = source.info.sensors[0]
+    free, walk, standing = (
+        next(block.gyr_rad_s for block in session.recordings[k].imu.values() if block.sensor == name) for k in (1, 2, 0)
+    )
+    source.ask(RecordingKind.FREE_MOTION)
+    heard = listen(source, clock, 1.5 * len(free) / RATE_HZ)[name].gyr_rad_s
+    assert np.array_equal(heard[: len(free)], free)
+    assert np.array_equal(heard[len(free) :], free[: len(heard) - len(free)])
+    source.ask(RecordingKind.WALKING)
+    rest = free[len(heard) - len(free) :]
+    heard = listen(source, clock, (len(rest) + len(walk) + 100) / RATE_HZ)[name].gyr_rad_s
+    played = np.concatenate([rest, walk, standing])
+    assert np.array_equal(heard, played[: len(heard)])
+
+
+def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -> None:
+    few = replace(DEMONSTRATION_SESSION, recordings=(Standing(), FreeMotion(duration_s=6.0), Walk(strides=3)))
+    source, truth = demonstration(few), simulate(few).truth
+    assert sorted(source.info.sensors) == list(source.info.sensors)
+    assert {told.serial for told in source.told().values()} == set(source.info.sensors)
+    for name, recording in truth.recordings.items():
+        limit_deg = 6.0 if name.startswith("free motion") else 1.5  # a leg that hangs has its ankle at 0
+        for joint in recording.joints.values():
+            ends = np.array([joint.angle_rad[0], joint.angle_rad[-1]])
+            np.testing.assert_allclose(ends, joint.standing_rad, atol=np.deg2rad(limit_deg))
 
 
 def test_losses_a_lag_and_a_silence_are_as_told(make: Make, clock: Clock) -> None:

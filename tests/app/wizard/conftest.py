@@ -12,15 +12,16 @@ from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
 from core.samples import Session
-from devices.replay import DEMONSTRATION_SESSION, ReplaySource
-from devices.walker import simulate
+from devices.replay import ReplaySource
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 SPEED = 20.0
 
 
 @pytest.fixture(scope="session")
 def simulated_session() -> Session:
-    return simulate(replace(DEMONSTRATION_SESSION, recordings=DEMONSTRATION_SESSION.recordings[:4])).session
+    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
+    return simulate(replace(DEMONSTRATION, recordings=played)).session
 
 
 @pytest.fixture
