@@ -266,7 +266,7 @@ class FreeMotionStep(Step):
         if sensors.site_of:
             self._doubt(view.exchanged)
         else:
-            self._ask_for_side(view.chains)
+            self._ask_for_side(view.chains if view.is_side_open else None)
         ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if ready - self._ready:
             sounds.play(Sound.READY)
@@ -324,14 +324,15 @@ class FreeMotionStep(Step):
             self.page.ask(named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep))
 
     def _ask_for_side(self, chains: "Chains | None") -> None:
-        """Both legs began together, so that the motion does not tell left from right."""
-        if chains is None or not chains.is_certain or chains.is_first_certain or len(chains.legs) < 2:
+        """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
+        if chains is None:
             return
         first = chains.legs[0].shank
         if not self._is_side_asked and first is not None:
             self._is_side_asked = True
-            what = tr("Both legs moved at once. Which one wears {sensor} on its shank?").format(sensor=first)
-            self.page.ask(what, "", (tr("Left"), tr("Right")))
+            both = tr("Both legs moved at once. Which one wears {sensor} on its shank?")
+            what = both if len(chains.legs) > 1 else tr("Which leg wears {sensor} on its shank?")
+            self.page.ask(what.format(sensor=first), "", (tr("Left"), tr("Right")))
 
     def _on_answered(self, number: int) -> None:
         self.page.ask("")
