@@ -112,6 +112,7 @@ class ReplaySource:
             raise ValueError("a recording without samples cannot be played")
         self.now_ns = now_ns if speed == 1.0 else _faster(now_ns, speed)
         self._sleep, self._faults, self._finishes = sleep, faults, finishes
+        self._buffer_s = BUFFER_S * speed  # whoever reads is no faster
         self._names = _names(session)
         self._by_kind = {kind: [r for r in session.recordings if r.kind is kind] for kind in RecordingKind}
         self._turns = {kind: count() for kind in RecordingKind}
@@ -152,7 +153,7 @@ class ReplaySource:
             if self._is_away or not self.is_open:
                 raise SourceLostError("the simulated sensors went away")
             now_s = self._now_s()
-            from_s = max(self._read_to_s, now_s - BUFFER_S)
+            from_s = max(self._read_to_s, now_s - self._buffer_s)
             self._play_on(now_s)
             blocks = [block for name in self._told for block in self._sent(name, from_s, now_s)]
             oldest_s = min(from_s, now_s) - max(self._faults.lag_s.values(), default=0.0)
@@ -236,8 +237,8 @@ class ReplaySource:
         return _Clip(start_s, float(first_s), float(max(ends) - first_s), imu, recording is self._idle)
 
     def _play_on(self, to_s: float) -> None:
-        if to_s - self._clips[-1].end_s > BUFFER_S:  # the machine slept
-            self._clips = [self._clip(self._idle, self._next_tick_s(self._clips[-1].end_s, to_s - BUFFER_S))]
+        if to_s - self._clips[-1].end_s > self._buffer_s:  # the machine slept
+            self._clips = [self._clip(self._idle, self._next_tick_s(self._clips[-1].end_s, to_s - self._buffer_s))]
         while self._clips[-1].end_s <= to_s:
             self._clips.append(self._next_clip(self._clips[-1].end_s))
 

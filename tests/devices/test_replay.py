@@ -226,6 +226,14 @@ def test_what_nobody_reads_for_long_is_lost_but_for_what_is_buffered(make: Make,
         assert steps == pytest.approx(round(steps), abs=1e-3)
 
 
+def test_what_is_played_faster_is_buffered_for_as_long(make: Make, clock: Clock) -> None:
+    source = make(speed=20.0)
+    source.open()
+    clock.sleep(0.8 * BUFFER_S)
+    heard = [block for block in source.read(lambda _: None) if block.sensor == source.info.sensors[0]]
+    assert sum(map(len, heard)) > 20 * 0.8 * BUFFER_S * RATE_HZ
+
+
 def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: Clock) -> None:
     source = make(speed=20.0)
     source.open()
