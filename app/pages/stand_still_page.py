@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
@@ -121,6 +121,8 @@ class StandStillPage(QWidget):
 
     def focus(self) -> None:
         """Leave the focus to the bar: in a field of this page Space would be written, and not start the count."""
+        for one in self.zero.fields.values():
+            one.line_edit.clearFocus()
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
@@ -228,7 +230,7 @@ class _ZeroCard(Card):
         self._why = Text(look, size=14, tone="ink2", wraps=True)
         self._column.addWidget(self._why)
         self._column.addStretch(1)
-        self._scroll = QScrollArea()
+        self._scroll = _Fields()
         self._scroll.setWidget(self._inside)
         self._scroll.setWidgetResizable(True)
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
@@ -312,6 +314,13 @@ class _ZeroCard(Card):
             heading.setContentsMargins(0, px(8), 0, 0)
         self._grid.setHorizontalSpacing(px(12))
         self._grid.setVerticalSpacing(px(6))
+
+
+class _Fields(QScrollArea):
+    """Takes the room there is: what does not fit scrolls here, and not the page."""
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
 
 
 class _ZeroField(NumberField):

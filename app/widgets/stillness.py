@@ -59,8 +59,7 @@ class CountRing(QWidget):
         return QSize(side, side)
 
     def sizeHint(self) -> QSize:
-        side = self._look.theme.px(RING_SIZE)
-        return QSize(side, side)
+        return self.minimumSizeHint()  # it takes the room there is, and asks for none that would have to scroll
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme, face = self._look.theme, self._face
