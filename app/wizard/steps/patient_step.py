@@ -33,6 +33,7 @@ class PatientStep(Step):
         self._last: StoredSession | None = None
         self._last_of: UUID | None = None
         self._is_going_on = False
+        self._taken_code = ""
         visit.patient.changed.connect(self._on_patient_changed)
         visit.patient.code_taken.connect(self._on_code_taken)
         visit.patient.refused.connect(self._on_refused)
@@ -76,7 +77,10 @@ class PatientStep(Step):
     def bar(self) -> BarState:
         has_code = bool(self._visit.patient.told.code)
         note = tr("Saved as you type.") if has_code else tr("Type the patient's code to go on.")
-        return BarState(primary=Verb(tr("Put on sensors"), tr("Enter"), is_enabled=has_code), note=note)
+        if self._taken_code:
+            note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
+        can_go_on = has_code and not self._taken_code
+        return BarState(primary=Verb(tr("Put on sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
 
     def on_primary(self) -> None:
         patient = self._visit.patient
@@ -132,6 +136,8 @@ class PatientStep(Step):
     def _on_edited(self, draft: "PatientDraft") -> None:
         self._visit.without_ankle = draft.without_ankle
         self._visit.patient.edit(draft.patient)
+        if self._visit.patient.told.code != self._taken_code:
+            self._taken_code = ""
         self._show_saved()
         self.changed.emit()
 
@@ -139,6 +145,7 @@ class PatientStep(Step):
         self._visit.patient.commit()
 
     def _on_patient_changed(self) -> None:
+        self._taken_code = ""
         stored = self._visit.patient.stored
         if self._page is not None:
             if stored is not None and stored.id != self._shown_id and not self._page.draft.patient.code:
@@ -153,7 +160,9 @@ class PatientStep(Step):
 
     def _on_code_taken(self, code: str) -> None:
         self._is_going_on = False
+        self._taken_code = code
         self.page.show_code_taken(code)
+        self.changed.emit()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
         self._is_going_on = False  # the wizard's banner says why

@@ -55,6 +55,7 @@ def test_a_code_in_use_stops_and_offers_that_patient(
     with qtbot.waitSignal(visit.patient.code_taken, timeout=5000), qtbot.assertNotEmitted(step.done):
         step.on_primary()
     assert step.page.code.is_wrong
+    assert step.bar().note == "Not saved: demo-8 is another patient's code."
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
         step.page.open_pressed.emit("demo-8")
     assert step.page.draft.patient.birth_year == 1950
