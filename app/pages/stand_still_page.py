@@ -129,6 +129,7 @@ class StandStillPage(QWidget):
         self.bars.set_compact(is_compact)
         self.zero.set_compact(is_compact)
         self._on_look_changed()
+        self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
         """Show the goniometer's angle of each joint that has its sensors; the others have no field to type into."""
@@ -148,7 +149,7 @@ class StandStillPage(QWidget):
         self._limit.setText(tr("limit {limit:.1f} °/s").format(limit=view.limit_deg_s))
         moved = view.moved if view.tells_moved else ()
         self.bars.show_movement(view.movement_deg_s, view.limit_deg_s, moved, view.silent)
-        icon, what, then, is_caution = verdict(view)
+        icon, what, then, is_caution = verdict(view, self._is_compact)
         self.verdict.tell(icon, what, then, is_caution)
         self.zero.show_standing(view)
 
@@ -286,8 +287,12 @@ class _ZeroCard(Card):
         why = tr("Without standing there is no zero to set.") if is_skipped else _no_field(missing)
         self._why.setText(why)
         self._why.setVisible(bool(why))
-        self.button.setText(tr("Stand still after all") if is_skipped else tr("Patient cannot stand still"))
-        self.button.setAccessibleName(self.button.text())
+        cannot = tr("Patient cannot stand still")
+        self.button.setText(
+            tr("Stand still after all") if is_skipped else tr("Cannot stand still") if self._is_compact else cannot
+        )
+        self.button.setAccessibleName(tr("Stand still after all") if is_skipped else cannot)
+        self.button.updateGeometry()
         icon, what, then, is_caution = way_round(self._view, self._is_compact)
         self.note.tell(icon, what, then, is_caution)
 
@@ -365,7 +370,7 @@ def ring_face(view: StandStillView) -> RingFace:
     return RingFace(share, f"{left_s}", word=tr("second") if left_s == 1 else tr("seconds"))
 
 
-def verdict(view: StandStillView) -> tuple[Icon | None, str, str, bool]:
+def verdict(view: StandStillView, is_short: bool = False) -> tuple[Icon | None, str, str, bool]:
     """Say whether all are still: icon, what is so, what follows, and whether it needs a look."""
     if view.phase is StandPhase.SKIPPED or not view.movement_deg_s:
         return None, "", "", False
@@ -374,11 +379,12 @@ def verdict(view: StandStillView) -> tuple[Icon | None, str, str, bool]:
     if view.silent:
         is_one = len(view.silent) == 1
         what = (tr("{sites} is silent") if is_one else tr("{sites} are silent")).format(sites=_names(view.silent))
-        return Icon.SILENT, what, tr("The count waits. Switch the sensor off and on."), True
+        waits = tr("The count waits.")
+        return Icon.SILENT, what, waits if is_short else f"{waits} {tr('Switch the sensor off and on.')}", True
     if view.tells_moved:
         is_one = len(view.moved) == 1
         what = (tr("{sites} moves") if is_one else tr("{sites} move")).format(sites=_names(view.moved))
-        return Icon.WAVE, what, _moved(view), True
+        return Icon.WAVE, what, _moved(view, is_short), True
     then = tr("Movement restarts the count.")
     return Icon.CHECK, _all_still(len(view.movement_deg_s)), then, False
 
@@ -398,12 +404,12 @@ def way_round(view: StandStillView, is_short: bool = False) -> tuple[Icon | None
     return Icon.INFO, "", then, False
 
 
-def _moved(view: StandStillView) -> str:
+def _moved(view: StandStillView, is_short: bool) -> str:
     sides = {Site(sensor).side for sensor in view.moved if sensor in set(Site)}
     legs = [_leg_moved(side) for side in sides]
     what = tr("Both legs moved.") if len(legs) > 1 else "".join(legs)
     again = tr("The count starts again by itself.") if view.phase is StandPhase.COUNTING else ""
-    return " ".join(filter(None, [what, again]))
+    return again or what if is_short else " ".join(filter(None, [what, again]))
 
 
 def _leg_moved(side: Side) -> str:

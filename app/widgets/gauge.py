@@ -74,7 +74,7 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
     centre_mm = 1000 * found.centre_sd_m if found is not None else math.inf
     axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
     axis = _measure(axis_deg, axis_wanted, AXIS_FROM_DEG, "°", is_closed) if joint.is_knee else None
-    centre = _measure(centre_mm, centre_wanted, CENTRE_FROM_MM, tr("mm"), is_closed)
+    centre = _measure(centre_mm, centre_wanted, CENTRE_FROM_MM, "mm", is_closed)
     if found is None:
         return GaugeFace(GaugeState.NOW if is_now else GaugeState.OPEN, axis, centre)
     is_loose = wanted.is_hinge and found.axis_sd_with_floor_rad > AXIS_FLOOR_HUMAN_RAD
@@ -212,7 +212,7 @@ class Gauge(QWidget):
             mark.moveCenter(ring.center())
             paint_icon(painter, icon, mark, c.ink)
         words = QRectF(self.rect()).adjusted(px(14) + room + px(20), px(10), -px(18), -px(8))
-        name_width = self._paint_name(painter, words)
+        name_width = self._paint_name(painter, words.adjusted(0, 0, -0.38 * words.width(), 0))
         left = words.left() + name_width + px(12)
         beside = QRectF(left, words.top(), words.right() - left, words.height() - px(36))
         self._paint_state_word(painter, beside)
@@ -356,11 +356,13 @@ class Gauge(QWidget):
 
     def _paint_state_word(self, painter: QPainter, place: QRectF) -> None:
         theme, state = self._look.theme, self._face.state
+        word, is_open = state_word(state), state is GaugeState.OPEN
         is_short = state in (GaugeState.READY, GaugeState.NOW, GaugeState.OPEN)
-        painter.setPen(QColor(theme.colours.ink2 if state is GaugeState.OPEN else theme.colours.ink))
-        painter.setFont(theme.font(18 if is_short else 14, REGULAR if state is GaugeState.OPEN else SEMIBOLD))
+        painter.setPen(QColor(theme.colours.ink2 if is_open else theme.colours.ink))
+        longest = word if is_short else max(word.split(), key=len, default="")
+        painter.setFont(self._fitting(longest, 18 if is_short else 14, place.width(), REGULAR if is_open else SEMIBOLD))
         flags = int(Qt.AlignmentFlag.AlignRight) | int(Qt.TextFlag.TextWordWrap)
-        painter.drawText(place.adjusted(0, self._look.theme.px(3), 0, 0), flags, state_word(state))
+        painter.drawText(place.adjusted(0, theme.px(3), 0, 0), flags, word)
 
     def _figures(self) -> tuple[str, str]:
         """The main figure, and the second one or the main one's unit."""
@@ -373,11 +375,11 @@ class Gauge(QWidget):
         degree = axis.unit if axis.figure != UNKNOWN else ""
         return f"{axis.figure}{degree}", f"{centre.figure} {centre.unit}" if is_known else ""
 
-    def _fitting(self, text: str, size: float, width: float) -> QFont:
+    def _fitting(self, text: str, size: float, width: float, weight: QFont.Weight = SEMIBOLD) -> QFont:
         """The font of `size`, or of the largest below in which the text has its room."""
-        font = self._look.theme.font(size, SEMIBOLD)
+        font = self._look.theme.font(size, weight)
         wide = QFontMetrics(font).horizontalAdvance(text)
-        return font if wide <= width else self._look.theme.font(max(12.0, size * width / wide), SEMIBOLD)
+        return font if wide <= width else self._look.theme.font(max(12.0, size * width / wide - 0.5), weight)
 
     def _name(self) -> None:
         """Left knee, axis 11°, under 1.5° needed, centre 34 mm, under 10 mm needed, move now."""
