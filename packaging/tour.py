@@ -94,18 +94,17 @@ def offers(*controls: str) -> Callable[[Seen], bool]:
     return lambda seen: all(seen.has(control) for control in controls)
 
 
-SIX_PLACES = ("1", "Down", "2", "Down", "3", "Down", "4", "Down", "5", "Down", "6")
-
 STOPS: tuple[Stop, ...] = (
     Stop("01-first-start", lambda seen: seen.screen == "FirstStartPage", ("ctrl+d",), ("Look at the demonstration",)),
     Stop("02-home", offers("New session"), ("Return",), ("New session",), lingers_s=1.0),
     Stop("03-patient", offers("Put on sensors"), ("Return",), ("Put on sensors",), lingers_s=1.0),
     Stop("04-source", at_step("SensorsStep"), ("to Simulated patient", "Return"), ("Simulated patient",)),
-    Stop("05-sensors", offers("DEMO-left_thigh"), SIX_PLACES, ("Movement decides",), lingers_s=5.0),
+    Stop("05-sensors", offers("Movement decides"), ("to Drag", "Right", "Right"), ("Movement decides",), lingers_s=5.0),
     Stop("06-placed", offers("Stand still"), ("to Stand still", "Return"), ("Stand still",), lingers_s=1.0),
     Stop("07-stand-still", at_step("StandStillStep"), ("space",), ("Start the count",), lingers_s=1.0),
     Stop("08-standing", lambda seen: seen.is_recording, lingers_s=1.5),
     Stop("09-free-motion", at_step("FreeMotionStep"), lingers_s=6.0),
+    Stop("09-which-leg", lambda seen: seen.says("Which one wears"), ("to Left", "Return"), ("Left",), patience_s=60.0),
     Stop("10-walking", at_step("WalkingStep"), ("space",), ("Start walk",), lingers_s=1.0, patience_s=90.0),
     Stop("11-recording", lambda seen: seen.is_recording, lingers_s=20.0),
     Stop("12-still-recording", lambda seen: seen.is_recording, ("space",), ("Stop walk",)),

@@ -416,13 +416,15 @@ class _Reader(QTextBrowser):
         document.setDefaultFont(self._look.theme.font(BODY))
         document.setDocumentMargin(self._look.theme.px(8))
         document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
+        whole = QTextCursor(document)
+        whole.beginEditBlock()  # else every cell would lay the document out anew
         self._set_blocks()
         self._set_tables()
+        whole.endEditBlock()
 
     def _set_blocks(self) -> None:
         theme, block = self._look.theme, self.document().begin()
         cursor = QTextCursor(self.document())
-        cursor.beginEditBlock()
         while block.isValid():
             cursor.setPosition(block.position())
             level, is_in_table = block.blockFormat().headingLevel(), cursor.currentTable() is not None
@@ -434,7 +436,6 @@ class _Reader(QTextBrowser):
             cursor.setBlockFormat(form)
             self._set_letters(block, theme.font(HEADING_SIZES[level], SEMIBOLD) if level else None)
             block = block.next()
-        cursor.endEditBlock()
 
     def _set_letters(self, block: QTextBlock, heading: QFont | None) -> None:
         """Give a heading its size, and what is bold the weight that is bundled."""
