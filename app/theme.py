@@ -275,6 +275,10 @@ def _style_sheet(theme: Theme) -> str:
     QComboBox QAbstractItemView {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control};
         selection-background-color: {c.inv}; selection-color: {c.inv_ink}; outline: none; }}
     QComboBox QAbstractItemView::item {{ min-height: {px(44)}px; padding: 0 {px(12)}px; }}
+    QMenu {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control}; padding: {px(4)}px; }}
+    QMenu::item {{ background: transparent; padding: {px(12)}px {px(28)}px {px(12)}px {px(16)}px; }}
+    QMenu::item:selected {{ background: {c.inv}; color: {c.inv_ink}; }}
+    QMenu::indicator {{ width: 0; }}
     QProgressBar {{ background: {c.track}; border: none; border-radius: {px(4)}px; }}
     QProgressBar::chunk {{ background: {c.ink}; border-radius: {px(4)}px; }}
     QScrollBar:vertical {{ background: transparent; width: {px(12)}px; }}

@@ -649,13 +649,14 @@ class _PlaceMenu(QMenu):
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setAccessibleName(tr("Worn on"))
-        self.setFont(look.theme.font(16))
+        self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
         group = QActionGroup(self)
         for one in (*Site, None):
             words = tr("Nowhere") if one is None else f"&{number_of(one)}  {name_of(one)}"
             action = QAction(words, self)
             action.setCheckable(True)
             action.setChecked(one is site)
+            action.setFont(look.theme.font(16, SEMIBOLD if one is site else REGULAR))
             action.setData(None if one is None else one.value)
             group.addAction(action)
             self.addAction(action)
