@@ -15,7 +15,7 @@ from core.placement.chains import Chains
 from core.placement.labels import exchanged_in_steps
 from core.samples import FloatArray, ImuBlock
 
-LABELS_AFTER_S, LABELS_EVERY_S = 10.0, 5.0  # of motion, before labels are doubted; then two looks have to agree
+LABELS_AFTER_S, LABELS_EVERY_S = 4.0, 2.5  # of motion, before labels are doubted; two looks have to agree
 CAUGHT_UP_S = 1.0  # of what was held back, taken in one update
 
 
