@@ -114,6 +114,7 @@ class Home(QWidget):
         self._desk.run(lambda opened: opened.library.patients.search(), self._on_patients, self._on_refused, self)
 
     def show_settings(self) -> None:
+        self.settings.read_deleted()
         self._go_to(self.settings.page)
 
     def escape(self) -> None:
@@ -177,6 +178,7 @@ class Home(QWidget):
         self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
         self.working.stop_pressed.connect(self._on_stop)
         self.settings.told.connect(self.banner.tell)
+        self.settings.restored.connect(self.refresh)
         self.toast.undone.connect(self._on_undone)
         self._look.changed.connect(self._on_look_changed)
         for keys, slot in (

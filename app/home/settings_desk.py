@@ -1,15 +1,18 @@
 """What follows when something is set: on the screen at once, in the library through its desk."""
 
+import datetime
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import UUID
 
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.home.entry import SHORTEST
-from app.pages.settings_page import OperatorLine, SettingsPage
+from app.home.words import person, when
+from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.settings import Scheme, Settings
 from app.theme import Look
 from app.wording import tr
@@ -28,6 +31,7 @@ VIEWER, CLINICIAN, ADMINISTRATOR = "viewer", "clinician", "administrator"  # as 
 
 class SettingsDesk(QObject):
     told = Signal(str, str)
+    restored = Signal()  # something that was deleted
 
     def __init__(self, look: Look, desk: LibraryDesk, settings: Settings, parent: QWidget) -> None:
         super().__init__(parent)
@@ -45,7 +49,10 @@ class SettingsDesk(QObject):
         is_own = not state.is_demonstration
         may_write = is_own and state.operator.role.value != VIEWER
         is_administrator = is_own and state.operator.role.value == ADMINISTRATOR
-        self.page.show_library(has_access=is_own, has_backup=may_write, has_operators=is_administrator)
+        may_restore = state.operator.role.value != VIEWER
+        self.page.show_library(
+            has_access=is_own, has_backup=may_write, has_deleted=may_restore, has_operators=is_administrator
+        )
         self.page.renew.setVisible(is_administrator)
         self.page.choose_folder.setVisible(is_administrator)
         self._show_screen()
@@ -53,6 +60,26 @@ class SettingsDesk(QObject):
             self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
         if is_administrator:
             self._read_operators()
+
+    def read_deleted(self) -> None:
+        """Show what can be had back now."""
+        self._desk.run(_deleted_in, self._on_deleted_read, self._on_refused, self)
+
+    def _on_deleted_read(self, lines: tuple[DeletedLine, ...]) -> None:
+        self.page.show_deleted(lines)
+
+    def _on_restore_wished(self, row_id: UUID, is_patient: bool) -> None:
+        def restore(opened: "OpenedLibrary") -> None:
+            if is_patient:
+                opened.library.patients.restore(opened.library.patients.get(row_id))
+            else:
+                opened.library.sessions.restore(opened.library.sessions.get(row_id))
+
+        self._desk.run(restore, self._on_restored, self._on_refused, self)
+
+    def _on_restored(self, _nothing: object) -> None:
+        self.read_deleted()
+        self.restored.emit()
 
     def _connect(self) -> None:
         page = self.page
@@ -69,6 +96,7 @@ class SettingsDesk(QObject):
         page.stop_wished.connect(self._on_stop_wished)
         page.operator_added.connect(self._on_operator_added)
         page.operator_switched.connect(self._on_operator_switched)
+        page.restore_wished.connect(self._on_restore_wished)
         self._settings.changed.connect(self._show_screen)
         self._look.changed.connect(self._show_screen)
 
@@ -235,6 +263,16 @@ class SettingsDesk(QObject):
 
 def _backup_folder_of(opened: "OpenedLibrary") -> str:
     return str(opened.library.settings.get(BACKUP_FOLDER, ""))
+
+
+def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
+    now = datetime.datetime.now().astimezone()
+    patients = opened.library.patients.search(is_deleted=True)
+    sessions = opened.library.sessions.list(is_deleted=True)
+    return (
+        *(DeletedLine(one.id, ", ".join(filter(None, [one.told.code, person(one.told)])), True) for one in patients),
+        *(DeletedLine(one.id, f"{one.patient_code}, {when(one.started, now)}", False) for one in sessions),
+    )
 
 
 def _slots(opened: "OpenedLibrary") -> "KeySlots":

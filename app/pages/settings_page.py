@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from uuid import UUID
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
@@ -33,6 +34,15 @@ class OperatorLine:
     is_self: bool
 
 
+@dataclass(frozen=True, slots=True)
+class DeletedLine:
+    """What was deleted and can still be had back: a patient with all sessions, or one session."""
+
+    id: UUID
+    words: str
+    is_patient: bool
+
+
 class SettingsPage(QWidget):
     """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
 
@@ -49,6 +59,7 @@ class SettingsPage(QWidget):
     stop_wished = Signal()
     operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
     operator_switched = Signal(str, bool)  # code, whether they work here
+    restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
     def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
@@ -59,6 +70,7 @@ class SettingsPage(QWidget):
         self._build_screen()
         self._build_access()
         self._build_backup()
+        self._build_deleted()
         self._build_operators()
         self._column.addStretch(1)
         self._connect()
@@ -88,10 +100,13 @@ class SettingsPage(QWidget):
         self.side.choose(BEHIND if is_from_behind else FRONT)
         self.sound.setChecked(has_sound)
 
-    def show_library(self, *, has_access: bool, has_backup: bool, has_operators: bool) -> None:
+    def show_library(
+        self, *, has_access: bool, has_backup: bool, has_operators: bool, has_deleted: bool = False
+    ) -> None:
         """Show what the operator may set; nothing that was typed for another is kept."""
         self._access.setVisible(has_access)
         self._backup.setVisible(has_backup)
+        self._deleted.setVisible(has_deleted)
         self._operators.setVisible(has_operators)
         self.forget_typed()
         self.show_recovery_key("")
@@ -121,11 +136,24 @@ class SettingsPage(QWidget):
     def show_operators(self, operators: Sequence[OperatorLine]) -> None:
         while (item := self._rows.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:
+                widget.hide()
                 widget.deleteLater()
         for operator in operators:
             row = _OperatorRow(self._look, operator)
             row.switched.connect(self.operator_switched)
             self._rows.addWidget(row)
+
+    def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
+        """Show what can still be had back."""
+        while (item := self._deleted_rows.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for line in lines:
+            row = _DeletedRow(self._look, line)
+            row.restored.connect(self.restore_wished)
+            self._deleted_rows.addWidget(row)
+        self._none_deleted.setVisible(not lines)
 
     def refuse_operator(self, sentence: str) -> None:
         self.code.set_wrong(sentence)
@@ -202,6 +230,16 @@ class SettingsPage(QWidget):
         self._backup.column.addWidget(self._backup_said)
         self._add_left(self._backup, self.back_up, self.choose_folder)
         self.show_backup("", "")
+
+    def _build_deleted(self) -> None:
+        look = self._look
+        self._deleted = self._card(tr("Deleted in the last 30 days"))
+        self._deleted_rows = QVBoxLayout()
+        self._none_deleted = Text(
+            look, tr("Nothing. What is deleted can be had back from here."), tone="ink2", wraps=True
+        )
+        self._deleted.column.addLayout(self._deleted_rows)
+        self._deleted.column.addWidget(self._none_deleted)
 
     def _build_operators(self) -> None:
         look = self._look
@@ -312,6 +350,7 @@ class SettingsPage(QWidget):
         self._column.setContentsMargins(px(24), px(16), px(24), px(20))
         self._column.setSpacing(px(16))
         self._rows.setSpacing(px(4))
+        self._deleted_rows.setSpacing(px(4))
 
 
 class _OperatorRow(QWidget):
@@ -334,3 +373,21 @@ class _OperatorRow(QWidget):
 
     def _on_clicked(self) -> None:
         self.switched.emit(self._operator.code, not self._operator.is_active)
+
+
+class _DeletedRow(QWidget):
+    restored = Signal(object, bool)
+
+    def __init__(self, look: Look, line: DeletedLine) -> None:
+        super().__init__()
+        self._line = line
+        row = QHBoxLayout(self)
+        row.setContentsMargins(0, 0, 0, 0)
+        row.addWidget(Text(look, line.words, size=15, wraps=True), 1)
+        self.button = Button(look, tr("Restore"), height=44)
+        self.button.setAccessibleName(f"{self.button.text()}, {line.words}")
+        self.button.clicked.connect(self._on_clicked)
+        row.addWidget(self.button)
+
+    def _on_clicked(self) -> None:
+        self.restored.emit(self._line.id, self._line.is_patient)

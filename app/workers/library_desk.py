@@ -135,7 +135,7 @@ class LibraryDesk(QObject):
         if self._state is None:
             self._tell_refusal(job, *_nothing_open())
             return
-        if not self._long.is_idle:
+        if self._long.is_busy:  # what was stopped is waited for by the next
             self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
             return
         self._long_job, self._long_progressed = job, _weak(progressed)

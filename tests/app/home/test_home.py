@@ -25,6 +25,7 @@ from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
+from app.widgets.button import Button
 from app.workers.library_desk import LibraryDesk, OpenedState
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
@@ -101,6 +102,12 @@ def sessions(home: Home) -> list[SessionLine]:
     return [line for line in home.page.sessions.lines.lines if isinstance(line, SessionLine)]
 
 
+def restores(home: Home) -> dict[str, Button]:
+    """The buttons that bring back what was deleted, by name."""
+    buttons = home.settings.page.findChildren(Button)
+    return {one.accessibleName(): one for one in buttons if one.accessibleName().startswith("Restore,")}
+
+
 def test_the_latest_seen_comes_first_with_its_sessions(qtbot: QtBot, home: Home) -> None:
     assert codes(home) == ["P-0163", "P-0147"]
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
@@ -154,6 +161,24 @@ def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     home.toast.undo()
     qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0163"
+
+
+def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home: Home) -> None:
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    home.page.sessions.setFocus()
+    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
+    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    home.show_settings()
+    patient, session = "Restore, P-0163, 1951, female · right affected", "Restore, P-0163, 20 May 2026"
+    qtbot.waitUntil(lambda: list(restores(home)) == [patient], timeout=WAIT_MS)
+    restores(home)[patient].click()
+    qtbot.waitUntil(lambda: list(restores(home)) == [session], timeout=WAIT_MS)
+    restores(home)[session].click()
+    qtbot.waitUntil(lambda: restores(home) == {}, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.sessions for one in lines(home)] == ["3 sessions", "0 sessions"], timeout=WAIT_MS)
+    assert not home.settings.page._none_deleted.isHidden()
 
 
 def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
