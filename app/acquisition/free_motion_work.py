@@ -11,11 +11,12 @@ from core.body import Side, Site
 from core.live.free_motion import FreeMotion, FreeMotionState
 from core.live.sensors import LiveSensor
 from core.placement.arrangements import joints_between
-from core.placement.chains import Chains
+from core.placement.chains import LIFTED_RAD_S, Chains
 from core.placement.labels import exchanged_in_steps
 from core.samples import FloatArray, ImuBlock
 
 LABELS_AFTER_S, LABELS_EVERY_S = 4.0, 2.5  # of motion, before labels are doubted; two looks have to agree
+MOVED_S = 5.0  # of each leg
 CAUGHT_UP_S = 1.0  # of what was held back, taken in one update
 
 
@@ -222,6 +223,13 @@ class _LabelCheck:
         ends = {end for joint in joints_between(tuple(map(Site, blocks))) for end in (joint.proximal, joint.distal)}
         yield
         joined = {site: block for site, block in blocks.items() if Site(site) in ends}
+        moved_s = {Site(site).side: 0.0 for site in joined}
+        for site, block in joined.items():
+            is_moving = np.linalg.norm(block.gyr_rad_s, axis=1) > LIFTED_RAD_S
+            seconds = float(np.count_nonzero(is_moving)) * self._sensors[site].step_s
+            moved_s[Site(site).side] = max(moved_s[Site(site).side], seconds)
+        if min(moved_s.values(), default=0.0) < MOVED_S:  # a leg that rests could belong anywhere
+            return
         tracks = yield from tracks_in_steps(joined, self._sensors)
         found = yield from exchanged_in_steps(tracks, self._standing)
         self.exchanged = tuple(found) if found == self._last else ()

@@ -83,7 +83,8 @@ def test_labels_that_the_motion_contradicts_are_named(worn: Worn, one: Site, oth
     work = FreeMotionWork(exchanged(worn, one, other), worn.live_sensors, standing=standing)
     told = fed(work, dict(worn.free_motion))
     assert told[-1].exchanged == ((one, other),)
-    assert all(state.exchanged in ((), ((one, other),)) for state in told)
+    if one.side is other.side:  # across the legs another group may be named until both have moved for long
+        assert all(state.exchanged in ((), ((one, other),)) for state in told)
 
 
 @pytest.mark.parametrize("first", [Side.LEFT, None])
