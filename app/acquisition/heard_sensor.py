@@ -1,5 +1,6 @@
 """What was heard of one sensor: its last seconds, and what is missing of them."""
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,7 @@ from devices.source import SensorCounts
 
 KEPT_S = 30.0
 MOST_RATE_HZ = 400.0  # of a sensor that does not tell its rate
-HEARD_S, MOVEMENT_S = 2.0, 1.0
+HEARD_S, MOVEMENT_S, LOST_S = 2.0, 1.0, 10
 ROUNDING_S = 1e-6
 ON_ITS_WAY_S = 0.25  # so much later than measured a sample may come before anything is missed
 
@@ -32,6 +33,8 @@ class SensorStatus:
         Spread of the angular rate over the last second, all axes together.
     counts
         Since it was first heard, as they came; a recording's own come from its journal.
+    lost_share
+        Of the last ten seconds: what the radio does now, not what was lost while the sensor was off.
     """
 
     sensor: str
@@ -41,11 +44,7 @@ class SensorStatus:
     silent_s: float
     movement_rad_s: float
     counts: SensorCounts
-
-    @property
-    def lost_share(self) -> float:
-        expected = self.counts.received + self.counts.lost
-        return self.counts.lost / expected if expected else 0.0
+    lost_share: float
 
 
 class HeardSensor:
@@ -57,10 +56,15 @@ class HeardSensor:
         self.ring = RingBuffer(name, round(KEPT_S * self.usual_hz))
         self._heard_at_s = now_s
         self._received = self._lost = self._damaged = self._doubled = self._late = 0
+        self._noted_s = now_s
+        self._noted: deque[tuple[int, int]] = deque([(0, 0)], maxlen=LOST_S + 1)  # received and lost, second by second
 
     def hear(self, block: ImuBlock, time_s: FloatArray, now_s: float) -> None:
         """Take a block's samples, stamped `time_s` (n,); those that come late are counted, and not shown."""
         self._heard_at_s = now_s
+        if now_s - self._noted_s >= 1.0:
+            self._noted_s = now_s
+            self._noted.append((self._received, self._lost))
         last_s = self.ring.last_s
         step_s = _steps_s(time_s, last_s)
         if not (step_s > 0).all():  # neither of NaN
@@ -81,7 +85,12 @@ class HeardSensor:
             silent_s=max(now_s - self._heard_at_s, 0.0),
             movement_rad_s=self._movement_rad_s(now_s),
             counts=SensorCounts(self._received, self._lost, self._damaged, self._doubled, self._late),
+            lost_share=self._lost_share(),
         )
+
+    def _lost_share(self) -> float:
+        received, lost = self._received - self._noted[0][0], max(self._lost - self._noted[0][1], 0)
+        return lost / (received + lost) if received + lost else 0.0
 
     def _heard_hz(self, now_s: float) -> float:
         last_s = self.ring.last_s

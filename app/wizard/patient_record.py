@@ -15,7 +15,8 @@ SAVED_AFTER_MS = 500  # without a key pressed
 class PatientRecord(QObject):
     """`told` is what stands on the screen, `stored` what the library holds; the second follows the first.
 
-    A new patient is made by `commit`, when the code has been typed wholly: half a code is nobody's.
+    A new patient is made by `commit`, when the code has been typed wholly: half a code is nobody's. Whoever types
+    another code over that of a patient with sessions means somebody else, and nobody is renamed.
     """
 
     changed = Signal()
@@ -65,7 +66,9 @@ class PatientRecord(QObject):
                 return patients.change(stored, told)
             if patients.find(told.code) is not None:
                 return None
-            return patients.create(told) if stored is None else patients.change(stored, told)
+            if stored is None or stored.sessions > 0:
+                return patients.create(told)
+            return patients.change(stored, told)
 
         self._desk.run(save, self._on_saved, self._on_refused, self)
 

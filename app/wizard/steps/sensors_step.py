@@ -1,6 +1,5 @@
 """Six sensors on, and each known: heard through a source, and told where they are worn."""
 
-from collections import deque
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -25,7 +24,6 @@ if TYPE_CHECKING:
     from app.wizard.visit import Visit
 
 TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows four times
-LOSS_ROWS = 40  # ten seconds of rows: what the radio does now, not what a sensor lost while it was off
 TRACE_S, TRACE_POINTS = 5.0, 250
 TURNS_MORE = 2.0  # times the variance that another axis needs before the trace goes over to it
 
@@ -42,7 +40,6 @@ class SensorsStep(Step):
         self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
         self._without_light: set[str] = set()
         self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
-        self._counts: dict[str, deque[tuple[int, int]]] = {}  # received and lost, row by row
         self._silent_site: Site | None = None
         visit.sensors.changed.connect(self._on_sensors_changed)
         visit.sensors.opened.connect(self._on_opened)
@@ -235,15 +232,9 @@ class SensorsStep(Step):
             battery=status.told.battery,
             site=self._visit.sensors.site_of.get(status.sensor),
             silent_s=float(round(status.silent_s)) if is_silent else 0.0,
-            lost_share=round(self._recent_loss(status), 3),
+            lost_share=round(status.lost_share, 3),
             can_identify=status.sensor not in self._without_light,
         )
-
-    def _recent_loss(self, status: "SensorStatus") -> float:
-        rows = self._counts.setdefault(status.sensor, deque(maxlen=LOSS_ROWS))
-        rows.append((status.counts.received, status.counts.lost))
-        received, lost = max(rows[-1][0] - rows[0][0], 0), max(rows[-1][1] - rows[0][1], 0)
-        return lost / (received + lost) if received + lost else 0.0
 
     def _show_traces(self) -> None:
         acquisition = self._visit.sensors.acquisition
@@ -283,7 +274,6 @@ class SensorsStep(Step):
         assert sensors.acquisition is not None
         wanted = self._wanted or self._known_places or self._visit.placement_before
         self._wanted = {}
-        self._counts.clear()
         known = {name: site for name, site in wanted.items() if name in sensors.acquisition.sensors}
         if known:
             sensors.assign_all(known)

@@ -141,3 +141,21 @@ def test_closing_in_mid_walk_loses_nothing(
     assert walk.recording is not None
     assert all(np.ptp(block.time_s) > 0.8 * 0.5 * SPEED for block in walk.recording.imu.values())
     again.finish()
+
+
+def test_another_code_typed_over_a_patient_with_sessions_is_somebody_else(qtbot: QtBot, visit: Visit) -> None:
+    visit.patient.edit(Patient(code="DEMO-7"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    first = visit.patient.stored
+    assert first is not None
+    visit.patient.edit(Patient(code="DEMO-77"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    assert visit.patient.stored is not None
+    assert visit.patient.stored.id == first.id  # a slip of the pen: nobody has seen DEMO-7
+    visit.patient.choose(replace(visit.patient.stored, sessions=1))
+    visit.patient.edit(Patient(code="DEMO-78"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    assert visit.patient.stored.id != first.id

@@ -14,7 +14,7 @@ REST = Rest(np.array([0.01, -0.02, 0.005]), np.array([0.0, 0.0, 9.8]), 3.0)
 
 
 def status(name: str, told: SensorTold, heard_hz: float = 99.5) -> SensorStatus:
-    return SensorStatus(name, 0, told, heard_hz, 0.0, 0.0, SensorCounts())
+    return SensorStatus(name, 0, told, heard_hz, 0.0, 0.0, SensorCounts(), 0.0)
 
 
 def test_what_a_sensor_tells_goes_before_what_is_heard() -> None:
