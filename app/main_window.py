@@ -73,6 +73,7 @@ class MainWindow(QWidget):
         self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
         self._is_dark: bool | None = None  # not yet known
+        self._apply_settings()  # before there is anything to be styled anew
         self.setWindowTitle("Gaitwright")
         self.setAcceptDrops(True)
         self.setMinimumSize(*SMALLEST_SIZE)
@@ -85,7 +86,6 @@ class MainWindow(QWidget):
         self._poll.setInterval(POLL_MS)
         self._build()
         self._connect()
-        self._apply_settings()
         self._begin()
 
     @property
