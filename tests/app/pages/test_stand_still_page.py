@@ -27,7 +27,7 @@ STILL: dict[str, float] = dict.fromkeys(Site, 0.4)
 
 
 def counting(still_s: float = 1.2, **more: object) -> StandStillView:
-    return StandStillView(StandPhase.COUNTING, still_s, movement_deg_s=STILL, **more)  # type: ignore[arg-type]
+    return StandStillView(StandPhase.COUNTING, still_s, movement_deg_s=STILL, **more)  # type: ignore[arg-type]  # any of its fields
 
 
 @pytest.fixture

@@ -84,7 +84,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     ticks(qtbot, step, lambda: step._work is not None)
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
-    step._work = Told(worn, FreeMotionState(joints))  # type: ignore[assignment]
+    step._work = Told(worn, FreeMotionState(joints))  # type: ignore[assignment]  # as above, a work already done
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "As good as it gets")
     assert not step._settled.isActive()
     bar = step.bar()

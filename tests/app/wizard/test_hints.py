@@ -39,7 +39,7 @@ def state(axis_deg: float, centre_mm: float, missing: Missing | None = LEFT_LEG,
         missing=missing,
         moved_s=6.0,
     )
-    return replace(known, **more)  # type: ignore[arg-type]
+    return replace(known, **more)  # type: ignore[arg-type]  # any of its fields
 
 
 def motion(joints: Mapping[Joint, ExcitationState]) -> FreeMotionState:

@@ -1,6 +1,6 @@
 """The step of standing on a simulated patient: it ends by itself, begins anew when somebody moves, can be skipped."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 import pytest
@@ -32,10 +32,10 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Iterator[StandSti
     qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
 
 
-def ticks(qtbot: QtBot, step: StandStillStep, until: object) -> None:
+def ticks(qtbot: QtBot, step: StandStillStep, until: Callable[[], bool]) -> None:
     def reached() -> bool:
         step.tick()
-        return bool(until())  # type: ignore[operator]
+        return until()
 
     qtbot.waitUntil(reached, timeout=10_000)
 
