@@ -438,7 +438,7 @@ class _StoppedCard(Card):
         self._facts.setText(facts)
         self._facts.setVisible(bool(facts))
         keep = tr("Keep walk")
-        if walk.strides is not None:
+        if walk.strides:
             keep = tr_n("Keep {count} stride", "Keep {count} strides", walk.strides).format(count=walk.strides)
         self.keep.setText(keep)
         self.keep.setAccessibleName(keep)

@@ -1,5 +1,6 @@
 """What came of the walks: curves, figures and findings of those that are kept."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
@@ -15,9 +16,12 @@ from app.wizard.steps.step import Step
 from app.wording import place, tr
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from app.widgets.result_page import ResultPage
     from app.wizard.visit import Visit
     from core.results import Analysis
+    from core.samples import Recording
 
 
 class ResultsStep(Step):
@@ -62,7 +66,7 @@ class ResultsStep(Step):
             self._visit.end_stopwatch()
         evaluation = self._visit.evaluation
         recordings = self._visit.takes.recordings()
-        is_stale = evaluation.session is None or evaluation.session.recordings != recordings
+        is_stale = evaluation.session is None or not _are_same(evaluation.session.recordings, recordings)
         if recordings and is_stale and not evaluation.is_busy:
             self._visit.evaluate()
         self._show()
@@ -112,6 +116,14 @@ class ResultsStep(Step):
 
     def _on_sentence_pressed(self) -> None:
         self.jumped.emit(4)
+
+
+def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]") -> bool:
+    """Whether these are the recordings that were evaluated, with the very samples: amid a walk only a part was seen."""
+    return len(evaluated) == len(recordings) and all(
+        one.imu is other.imu and replace(one, imu={}) == replace(other, imu={})
+        for one, other in zip(evaluated, recordings, strict=True)
+    )
 
 
 class _ResultsFrame(QStackedWidget):

@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 from app.pages.walk_list import WalkState
 from app.theme import Look, load_fonts
 from app.wizard.keys import Action, Intent
+from app.wizard.steps.results_step import ResultsStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
 from core.body import Joint, Site
@@ -110,7 +111,7 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
-def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
+def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: WalkingStep, visit: Visit) -> None:
     calibrate(qtbot, visit)
     with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
         step.on_intent(RUN)
@@ -119,6 +120,9 @@ def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, step: WalkingStep,
     qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page._live.ankles.values()), timeout=20_000)
     with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
         step.on_intent(RUN)
+    results = ResultsStep(look, visit)
+    qtbot.addWidget(results.page)
+    results.enter()  # what was evaluated last holds a part of this walk only
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
