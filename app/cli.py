@@ -33,6 +33,7 @@ DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = ("xsens-mtmanager",)
+SUBCOMMANDS = ("analyse", "demo", "import", "recover", "audit")
 OF_LIBRARY = "the folder of the library (your own)"
 
 
@@ -52,7 +53,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     if argv is None:
         _begin_program()
     arguments = list(sys.argv[1:] if argv is None else argv)
-    if not arguments:
+    if not arguments or (len(arguments) == 1 and _is_folder(arguments[0])):
         return _open_window(arguments)
     wanted = _parser().parse_args(arguments)
     try:
@@ -105,7 +106,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="gaitwright",
         description="Knee and ankle angles from inertial sensors worn in any orientation. "
-        "Without a subcommand the window opens.",
+        "Without a subcommand the window opens, with a session folder if one is named.",
         epilog="Research use. Not a medical device.",
     )
     parser.add_argument("--version", action="version", version=f"gaitwright {version_of('gaitwright')}")
@@ -366,6 +367,11 @@ class _Progress:
         elif percent >= self._next_percent:
             print(text, file=self._stream, flush=True)
             self._next_percent = percent // 10 * 10 + 10
+
+
+def _is_folder(argument: str) -> bool:
+    """Whether a session folder is named in place of a subcommand, whose name goes first."""
+    return argument not in SUBCOMMANDS and Path(argument).is_dir()
 
 
 def _open_window(arguments: list[str]) -> int:

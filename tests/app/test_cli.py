@@ -512,3 +512,18 @@ def test_an_unknown_subcommand_is_named_with_those_there_are(capsys: pytest.Capt
         cli.main(["nonsense"])
     (line,) = capsys.readouterr().err.splitlines()
     assert line.startswith("gaitwright: invalid choice: 'nonsense' (choose from ")
+
+
+def test_a_session_folder_alone_opens_the_window(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    opened: list[list[str]] = []
+
+    def note(arguments: list[str]) -> int:
+        opened.append(arguments)
+        return 0
+
+    monkeypatch.setattr(cli, "_open_window", note)
+    assert cli.main([str(tmp_path)]) == 0
+    assert opened == [[str(tmp_path)]]
+    (tmp_path / "demo").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert not cli._is_folder("demo")
