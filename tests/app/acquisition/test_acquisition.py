@@ -92,15 +92,16 @@ def test_sensors_are_heard_shown_and_told(start: Start) -> None:
     for name, one in status.items():
         assert one.sensor == name
         assert one.told.serial == name
-        assert one.silent_s < 0.4
+        assert one.silent_s < PATIENCE_S
         assert one.counts.received > 20
         assert one.lost_share == 0.0
-    block = acquisition.latest("a-left_shank", 0.3)
-    assert len(block) > 30
-    assert acquisition.now_s - 0.3 - 0.2 < block.time_s[0] < block.time_s[-1] < acquisition.now_s
+    asked_s = acquisition.now_s
+    block = acquisition.latest("a-left_shank", 0.4)
+    assert len(block) > 10
+    assert asked_s - 0.4 <= block.time_s[0] < block.time_s[-1] <= acquisition.now_s
     assert np.allclose(np.diff(block.time_s), 1 / RATE_HZ)
     assert len(acquisition.latest("nobody", 1.0)) == 0
-    assert not acquisition.identify("a-left_thigh")
+    assert acquisition.identify("a-left_thigh")
     assert not acquisition.identify("nobody")
 
 
