@@ -121,7 +121,11 @@ class MainWindow(QWidget):
         """Wait for the threads of what was running when the window was closed."""
         self._preparing.finish()
         self.session.finish()
+        if self._wizard is not None:
+            self._wizard.finish()
         self.desk.finish()
+        if self._wizard is not None:
+            self._wizard.finish()
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if event.mimeData().hasUrls() and self._takes_folders:
@@ -244,6 +248,7 @@ class MainWindow(QWidget):
             self._home.demonstration_wished.connect(self.open_demonstration)
             self._home.own_library_wished.connect(self._log_out)
             self._home.help_wished.connect(self._show_help)
+            self._home.settings_left.connect(self._on_settings_left)
         self.idle.unlock()
         self._home.show_library(state)
         self._show(self._home)
@@ -261,7 +266,7 @@ class MainWindow(QWidget):
         if self._wizard is None:
             from app.wizard.wizard import Wizard
 
-            self._wizard = Wizard(self._look, self.desk)
+            self._wizard = Wizard(self._look, self.desk, self._settings)
             self.screens.addWidget(self._wizard)
             self._wizard.left.connect(self._on_wizard_left)
             self._wizard.settings_wanted.connect(self._on_settings_wanted)
@@ -275,11 +280,14 @@ class MainWindow(QWidget):
             self._show(self._home)
 
     def _on_settings_wanted(self) -> None:
-        """Show the settings, if the visit may be left."""
-        if self._wizard is not None:
-            self._wizard.leave()
-        if self._home is not None and self.screens.currentWidget() is self._home:
+        """Show the settings; Back leads to the visit again."""
+        if self._home is not None:
             self._home.show_settings()
+            self._show(self._home)
+
+    def _on_settings_left(self) -> None:
+        if self._wizard is not None and self._wizard.visit is not None:
+            self._show(self._wizard)
 
     def _log_out(self) -> None:
         self._covered = self._before_help = None

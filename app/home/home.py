@@ -55,6 +55,7 @@ class Home(QWidget):
     demonstration_wished = Signal()
     own_library_wished = Signal()  # from the demonstration back
     help_wished = Signal(str)
+    settings_left = Signal()
 
     def __init__(self, look: Look, desk: LibraryDesk, settings: Settings) -> None:
         super().__init__()
@@ -318,7 +319,10 @@ class Home(QWidget):
 
     def _on_back(self) -> None:
         self._to_import = None
+        was_settings = self.current is self.settings.page
         self._go_to(self.page)
+        if was_settings:
+            self.settings_left.emit()
 
     def _on_find(self) -> None:
         if self.current is self.page:

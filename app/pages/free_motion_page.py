@@ -52,8 +52,7 @@ class FreeMotionPage(QWidget):
         self.gauges = {joint: Gauge(look, joint) for joint in Joint}
         self.figure = BodyFigure(look, legs_only=True)
         self._grid = QGridLayout()
-        for number, joint in enumerate(FACING):
-            self._grid.addWidget(self.gauges[joint], number // 2, 2 * (number % 2))
+        self._place(is_from_behind=False)
         self._grid.addWidget(self.figure, 0, 1, 2, 1)
         for column in (0, 2):
             self._grid.setColumnStretch(column, 1)
@@ -75,6 +74,12 @@ class FreeMotionPage(QWidget):
         """Give the focus to the choice there is; without one the bar has it."""
         if not self.question.isHidden():
             self.question.buttons[0].setFocus()
+
+    def set_from_behind(self, is_from_behind: bool) -> None:
+        """Turn figure and gauges: from behind, the patient's left stands at the left."""
+        self.figure.set_from_behind(is_from_behind)
+        self._place(is_from_behind)
+        self.update()
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
@@ -114,6 +119,10 @@ class FreeMotionPage(QWidget):
             inwards = self._look.theme.px(1) if is_left_of_figure else -self._look.theme.px(1)
             bends = [start + QPointF(14 * inwards, 0), end - QPointF(24 * inwards, 0)]
             painter.drawPolyline(QPolygonF([start, *bends, end]))
+
+    def _place(self, is_from_behind: bool) -> None:
+        for number, joint in enumerate(FACING):
+            self._grid.addWidget(self.gauges[joint], number // 2, 2 * ((number + is_from_behind) % 2))
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

@@ -1,13 +1,14 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from uuid import UUID
 
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app import sounds
+from app.settings import Settings
 from app.theme import Look
 from app.widgets.action_bar import BarState
 from app.widgets.sensor_strip import SensorTile
@@ -38,6 +39,13 @@ SLOW_TICKS = 8  # tiles and stopwatch: four times a second
 MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
 
 
+@runtime_checkable
+class TurningPage(Protocol):
+    """A page with a figure of the patient."""
+
+    def set_from_behind(self, is_from_behind: bool) -> None: ...
+
+
 class Wizard(QWidget):
     """One visit at a time; beginning another closes the one before."""
 
@@ -45,9 +53,9 @@ class Wizard(QWidget):
     help_wanted = Signal(str)
     settings_wanted = Signal()
 
-    def __init__(self, look: Look, desk: LibraryDesk) -> None:
+    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings) -> None:
         super().__init__()
-        self._look, self._desk = look, desk
+        self._look, self._desk, self._settings = look, desk, settings
         self._visit: Visit | None = None
         self._closing: list[Visit] = []  # a few objects each; their threads end by themselves
         self._steps: list[Step] = []
@@ -97,6 +105,7 @@ class Wizard(QWidget):
         if self._visit is not None:
             if self._steps:
                 self._steps[self._current].leave()
+            self._listen_no_more(self._visit)
             self._visit.close()
             self._closing.append(self._visit)
         for step in self._steps:
@@ -123,6 +132,8 @@ class Wizard(QWidget):
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self._on_intent)
         self._timer.timeout.connect(self._on_tick)
+        self._settings.changed.connect(self._on_settings_changed)
+        self._on_settings_changed()
 
     def _begin_visit(self) -> Visit:
         self.close_visit()
@@ -144,15 +155,23 @@ class Wizard(QWidget):
             step.jumped.connect(self.go_to)
             step.told.connect(self._tell)
             step.offered.connect(self._on_offered)
-        visit.changed.connect(self._on_visit_changed)
-        visit.sensors.changed.connect(self._on_visit_changed)
-        visit.patient.changed.connect(self._on_visit_changed)
-        visit.evaluation.done.connect(self._on_visit_changed)
+        for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
+            signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
-        visit.refused.connect(self._tell)
+        visit.refused.connect(self._on_refused)
+        visit.takes.troubled.connect(self._tell)
         self._current = PATIENT
         self._timer.start()
         return visit
+
+    def _listen_no_more(self, visit: Visit) -> None:
+        """What comes of a visit that was left is not the next one's; what is refused is told where one is then."""
+        for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
+            signal.disconnect(self._on_visit_changed)
+        visit.resumed.disconnect(self._on_resumed)
+        visit.refused.disconnect(self._on_refused)
+        visit.refused.connect(self._desk.refused)
+        visit.takes.troubled.disconnect(self._tell)
 
     def _take_up(self, session_id: UUID, step: int) -> None:
         visit = self._begin_visit()
@@ -173,6 +192,7 @@ class Wizard(QWidget):
         step = self._steps[number]
         self._current = number
         self.shell.banner.hide()
+        self._turn(step.page)
         self.shell.show_page(number, step.page)
         self.shell.set_strip_mode(_STRIP[number])
         step.enter()
@@ -261,8 +281,19 @@ class Wizard(QWidget):
         self._steps[self._current].on_quiet(number)
 
     def _on_sound_pressed(self) -> None:
-        sounds.set_on(not sounds.is_on())
+        self._settings.has_sound = not sounds.is_on()
         self.shell.bar.show_state(self._bar())
+
+    def _on_settings_changed(self) -> None:
+        sounds.set_on(self._settings.has_sound)
+        self.shell.strip.set_from_behind(self._settings.is_from_behind)
+        if (page := self.shell.page) is not None:
+            self._turn(page)
+
+    def _turn(self, page: QWidget) -> None:
+        """Show figures as the settings say."""
+        if isinstance(page, TurningPage):
+            page.set_from_behind(self._settings.is_from_behind)
 
     def _on_back(self) -> None:
         if self._current > PATIENT:
@@ -290,9 +321,16 @@ class Wizard(QWidget):
         if key == "patients":
             self.leave()
         elif key == "settings":
-            self.settings_wanted.emit()
+            self._want_settings()
         elif key == "help" and self.current is not None:
             self.help_wanted.emit(self.current.topic)
+
+    def _want_settings(self) -> None:
+        """The visit stays as it is meanwhile; what is being recorded is watched to its end first."""
+        if reason := self.current.cannot_leave if self.current is not None else "":
+            self._tell(reason, "")
+        else:
+            self.settings_wanted.emit()
 
     def _on_step_changed(self) -> None:
         self._show()
@@ -303,6 +341,13 @@ class Wizard(QWidget):
 
     def _on_visit_changed(self) -> None:
         self._show()
+
+    def _on_refused(self, what: str, then: str) -> None:
+        if self._visit is not None and self._visit.session is None and self.shell.page is None:
+            self.leave()  # the session that was to be shown is not there
+            self._desk.refused.emit(what, then)
+        else:
+            self._tell(what, then)
 
     def _on_resumed(self) -> None:
         can = not self._steps[self._lands_on].cannot_enter
