@@ -32,7 +32,7 @@ from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
-    from app.widgets.result_page import ResultPage
+    from app.pages.result_page import ResultPage
     from app.workers.opening import Opened
     from core.samples import Patient
 
@@ -204,7 +204,7 @@ class SessionScreen(QWidget):
 
     def _on_done(self, opened: "Opened") -> None:
         if self._results is None:
-            from app.widgets.result_page import ResultPage
+            from app.pages.result_page import ResultPage
 
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)

@@ -18,7 +18,7 @@ from app.wording import place, tr
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from app.widgets.result_page import ResultPage
+    from app.pages.result_page import ResultPage
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.samples import Recording
@@ -142,7 +142,7 @@ class _ResultsFrame(QStackedWidget):
 
     def results(self) -> "ResultPage":
         if self._results is None:
-            from app.widgets.result_page import ResultPage  # its imports take a second
+            from app.pages.result_page import ResultPage  # its imports take a second
 
             self._results = ResultPage(self._look)
             self._results.set_room(*self._room)

@@ -15,12 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
-from app.plots.angle_chart import AngleChart
-from app.theme import DARK, LIGHT, Look, load_fonts
-from app.widgets.facts_table import FactsTable
-from app.widgets.figures_table import FiguresTable
-from app.widgets.findings_list import FindingRow
-from app.widgets.result_page import (
+from app.pages.result_page import (
     BOTH,
     FACTS,
     FIGURES,
@@ -31,6 +26,11 @@ from app.widgets.result_page import (
     WHOLE,
     ResultPage,
 )
+from app.plots.angle_chart import AngleChart
+from app.theme import DARK, LIGHT, Look, load_fonts
+from app.widgets.facts_table import FactsTable
+from app.widgets.figures_table import FiguresTable
+from app.widgets.findings_list import FindingRow
 from app.workers.background import Report, Stopped, Work
 from app.workers.opening import Opened
 from core.analysis import analyse

@@ -7,13 +7,13 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.pages.cycle_page import CyclePage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
-from app.widgets.cycle_page import CyclePage
 from app.widgets.facts_table import FactsTable
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import Icon

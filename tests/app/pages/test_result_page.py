@@ -10,10 +10,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from app.pages.cycle_page import FASTER, NO_SPEED, SLOWER
+from app.pages.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
 from app.reports.gait_csv import parameter
 from app.theme import Look, load_fonts
-from app.widgets.cycle_page import FASTER, NO_SPEED, SLOWER
-from app.widgets.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.gait.strides import Reason
