@@ -1,4 +1,4 @@
-"""How does the window look? The frozen tokens of colour, type and space; no other file names a colour."""
+"""How does the window look? Colours, type and space of one scheme at one size."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -7,6 +7,9 @@ from PySide6.QtCore import QByteArray, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette, QPen
 from PySide6.QtWidgets import QApplication
 
+from app.colours import DARK as DARK
+from app.colours import LIGHT as LIGHT
+from app.colours import Colours as Colours
 from core.body import Side
 
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
@@ -17,104 +20,6 @@ SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 CHIP_RADIUS = 4
 CONTROL_RADIUS = 8
 CARD_RADIUS = 10
-
-
-@dataclass(frozen=True, slots=True)
-class Colours:
-    """The tokens of one scheme. `left_*` and `right_*` belong to the legs, `caution_*` to what needs a look,
-    `band_*` to the reference group."""
-
-    ground: str
-    surface: str
-    sunken: str
-    track: str
-    line: str
-    control: str
-    ink: str
-    ink2: str
-    ink3: str
-    inv: str
-    inv_ink: str
-    inv_ink2: str
-    caution: str
-    caution_ink: str
-    caution_edge: str
-    caution_mark: str
-    caution_mark_ink: str
-    left: str
-    left_text: str
-    left_pale: str
-    left_soft: str
-    right: str
-    right_text: str
-    right_pale: str
-    right_soft: str
-    band_1sd: str
-    band_2sd: str
-    disabled: str
-
-
-LIGHT = Colours(
-    ground="#F4F6F8",
-    surface="#FFFFFF",
-    sunken="#E7EBEF",
-    track="#E7EBEF",
-    line="#D5DCE2",
-    control="#74828F",
-    ink="#14202B",
-    ink2="#43525F",
-    ink3="#586775",
-    inv="#14202B",
-    inv_ink="#FFFFFF",
-    inv_ink2="#BCC7D0",
-    caution="#FFF1B8",
-    caution_ink="#14202B",
-    caution_edge="#B58A00",
-    caution_mark="#F5C400",
-    caution_mark_ink="#14202B",
-    left="#D55E00",
-    left_text="#A94A00",
-    left_pale="#FCEBDF",
-    left_soft="#F3BF9B",
-    right="#0072B2",
-    right_text="#00629A",
-    right_pale="#E0EEF7",
-    right_soft="#A3CCE5",
-    band_1sd="#C3CBD3",
-    band_2sd="#E3E8EC",
-    disabled="#9AA6B1",
-)
-
-DARK = Colours(
-    ground="#10161B",
-    surface="#192128",
-    sunken="#0B1014",
-    track="#2C3741",
-    line="#303B45",
-    control="#7A8996",
-    ink="#EDF1F4",
-    ink2="#B7C2CC",
-    ink3="#93A1AD",
-    inv="#EDF1F4",
-    inv_ink="#10161B",
-    inv_ink2="#43525F",
-    caution="#3B3206",
-    caution_ink="#FBF6DF",
-    caution_edge="#E2C340",
-    caution_mark="#F5D442",
-    caution_mark_ink="#14202B",
-    left="#F07A2B",
-    left_text="#FF9A57",
-    left_pale="#3A2415",
-    left_soft="#7A431C",
-    right="#3B9EDE",
-    right_text="#67B6EC",
-    right_pale="#11293A",
-    right_soft="#1D5275",
-    band_1sd="#414D58",
-    band_2sd="#29333C",
-    disabled="#5F6D79",
-)
 
 
 @dataclass(frozen=True, slots=True)
