@@ -184,6 +184,21 @@ def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_w
     assert window.screens.currentWidget() is window.home
 
 
+def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
+    wizard = window._wizard
+    assert wizard is not None
+    visit = wizard.visit
+    wizard.settings_wanted.emit()
+    assert window.screens.currentWidget() is window.home
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert window.screens.currentWidget() is wizard
+    assert wizard.visit is visit is not None
+
+
 def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:

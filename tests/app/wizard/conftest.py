@@ -1,20 +1,27 @@
 """A visit on the demonstration patient, whose time runs faster than ours."""
 
+import shutil
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS
+from app.storage.stored import Operator, Role
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
-from core.samples import Session
+from core.samples import Patient, Session
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
+PASSPHRASE = "four short words here"
 SPEED = 20.0
 
 
@@ -24,11 +31,22 @@ def simulated_session() -> Session:
     return simulate(replace(DEMONSTRATION, recordings=played)).session
 
 
+@pytest.fixture(scope="session")
+def untouched_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A closed library of one operator, with one patient."""
+    folder = tmp_path_factory.mktemp("wizard")
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
+        library.patients.create(Patient(code="DEMO-1"))
+    return folder
+
+
 @pytest.fixture
-def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
+def desk(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterator[LibraryDesk]:
     desk = LibraryDesk()
+    folder = shutil.copytree(untouched_library, tmp_path / "library")
     with qtbot.waitSignal(desk.opened, timeout=20_000):
-        desk.open_demonstration()
+        desk.open(folder, PASSPHRASE)
     yield desk
     desk.finish()
 
