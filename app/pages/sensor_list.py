@@ -307,7 +307,10 @@ class _Heading(QWidget):
 
 
 class SensorRowView(QAbstractButton):
-    """One sensor. It can be dragged onto the figure; Enter asks where it is worn, Up and Down go on."""
+    """One sensor. It can be dragged onto the figure; Space asks where it is worn, Up and Down go on.
+
+    Enter goes past it, to the primary button.
+    """
 
     def __init__(self, look: Look, name: str, sensors: SensorList) -> None:
         super().__init__()
@@ -324,7 +327,7 @@ class SensorRowView(QAbstractButton):
         self.clicked.connect(self._on_clicked)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        self.setAccessibleDescription(tr("1 to 6 say where it is worn, Enter opens a list of the places"))
+        self.setAccessibleDescription(tr("1 to 6 say where it is worn, Space opens a list of the places"))
 
     def takes_other_room(self, sensor: SensorRow) -> bool:
         """Whether a column may have to be wider for `sensor` as it is now."""
@@ -396,8 +399,13 @@ class SensorRowView(QAbstractButton):
         self._list.select(self.name)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
+        has_alt = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
         match event.key():
             case Qt.Key.Key_Return | Qt.Key.Key_Enter:
+                event.ignore()
+            case Qt.Key.Key_Space:
+                self.ask()
+            case Qt.Key.Key_Down if has_alt:
                 self.ask()
             case Qt.Key.Key_Up:
                 self._list.step(self, -1)

@@ -166,6 +166,8 @@ class SensorsPage(QWidget):
             self.sources.setCurrentIndex(self.sources.findData(chosen))
         self.sources.updateGeometry()
         self.nothing.show_options(options[:OFFERED_AT_ONCE])
+        for before, after in pairwise([self.sources, *self.nothing.buttons, self.searching.stop]):
+            QWidget.setTabOrder(before, after)
 
     def show_no_source(self) -> None:
         """Say that nothing is connected, and offer the sources."""
@@ -511,6 +513,7 @@ class _NoSource(QWidget):
             button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
             button.clicked.connect(self._on_clicked)
             self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
+            button.show()  # at once: what is not in sight yet takes no focus
             self.buttons.append(button)
         self._on_look_changed()
 

@@ -307,6 +307,15 @@ class _Pages(QStackedWidget):
         page = self.currentWidget()
         return page.sizeHint() if page is not None else QSize()
 
+    def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt asks it
+        """Give what the page in sight needs at least; Qt's own is what the highest of all pages would like."""
+        page = self.currentWidget()
+        if page is None:
+            return 0
+        layout = page.layout()
+        wrapped = layout.minimumHeightForWidth(width) if layout is not None and layout.hasHeightForWidth() else 0
+        return max(wrapped, page.minimumSizeHint().height())
+
 
 class _Fade(QWidget):
     """The page that was there, as a picture over the one that is, going away."""

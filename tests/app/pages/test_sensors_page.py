@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt
-from PySide6.QtGui import QDragMoveEvent, QDropEvent
+from PySide6.QtCore import QEvent, QMimeData, QPoint, QPointF, Qt
+from PySide6.QtGui import QDragMoveEvent, QDropEvent, QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
@@ -114,18 +114,30 @@ def test_a_row_and_a_number_say_the_place(page: SensorsPage, assigned: list[tupl
 
 
 @pytest.mark.qt_log_ignore("This plugin does not support", extend=True)  # offscreen has no popups of its own
-def test_the_list_of_places_opens_by_enter_and_is_chosen_by_arrows(
-    page: SensorsPage, assigned: list[tuple[str, Site | None]]
+@pytest.mark.parametrize(
+    ("key", "held"),
+    [(Qt.Key.Key_Space, Qt.KeyboardModifier.NoModifier), (Qt.Key.Key_Down, Qt.KeyboardModifier.AltModifier)],
+)
+def test_the_list_of_places_opens_by_keys_and_is_chosen_by_arrows(
+    page: SensorsPage, assigned: list[tuple[str, Site | None]], key: Qt.Key, held: Qt.KeyboardModifier
 ) -> None:
     page.show_sensors(rows(Site.LEFT_THIGH))
     page.focus()
-    QTest.keyClick(page.list.rows["0A09"], Qt.Key.Key_Return)
+    QTest.keyClick(page.list.rows["0A09"], key, held)
     menu = page.findChild(QMenu)
     assert isinstance(menu, QMenu)
     assert menu.isVisible()
     QTest.keyClick(menu, Qt.Key.Key_Down)
     QTest.keyClick(menu, Qt.Key.Key_Return)
     assert assigned == [("0A09", Site.LEFT_SHANK)]
+
+
+def test_enter_on_a_row_is_left_to_the_primary_button(page: SensorsPage) -> None:
+    page.focus()
+    event = QKeyEvent(QEvent.Type.KeyPress, Qt.Key.Key_Return, Qt.KeyboardModifier.NoModifier)
+    page.list.rows["0A09"].keyPressEvent(event)
+    assert not event.isAccepted()
+    assert page.findChild(QMenu) is None
 
 
 def test_a_tile_takes_the_selected_sensor(page: SensorsPage, assigned: list[tuple[str, Site | None]]) -> None:
@@ -199,6 +211,16 @@ def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: Senso
     page.tell("COM7 is used by another program.", "Close that program, then search again.")
     assert page.nothing.isVisible()
     assert "COM7 is used by another program. Close that program, then search again." in _texts_of(page.nothing)
+
+
+def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) -> None:
+    page = SensorsPage(Look())
+    qtbot.addWidget(page)
+    page.show()
+    page.show_sources(OPTIONS)
+    page.focus()
+    assert page.focusWidget() is page.nothing.buttons[0]
+    assert page.nothing.buttons[0].nextInFocusChain() is page.nothing.buttons[1]
 
 
 def test_without_a_source_three_are_offered_and_pressed_by_keys(page: SensorsPage, qtbot: QtBot) -> None:

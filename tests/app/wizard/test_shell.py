@@ -8,6 +8,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.pages.free_motion_page import FreeMotionPage
 from app.theme import Look, load_fonts
 from app.widgets.action_bar import BarState, RecordingNote, Verb
 from app.widgets.icons import Icon
@@ -16,7 +17,7 @@ from app.widgets.step_rail import RailForm, RailRow, StepState, wizard_below
 from app.wizard import shell as shell_module
 from app.wizard.shell import StripMode, WizardShell
 from app.wording import tr, use_language
-from core.body import Site
+from core.body import Joint, Site
 from tests.app.room import settle, words_cut
 
 RECORDING = ("Recording Alignment C", "Saved as it comes in. The space bar stops it, with a sound.")
@@ -148,6 +149,17 @@ def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: L
     told.clear()
     shell.show_page(1, Page())
     assert told
+
+
+def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: Look) -> None:
+    page = FreeMotionPage(look)
+    shell.show_page(7, page)
+    page.ask("Both legs moved at once. Which one wears 0A31 on its shank?", "", ("Left", "Right"))
+    settle()
+    assert page.question.isVisible()
+    lowest = page.gauges[Joint.LEFT_ANKLE]
+    assert lowest.mapTo(shell, lowest.rect().bottomLeft()).y() < shell.bar.y()
+    assert all(page.rect().contains(gauge.geometry()) for gauge in page.gauges.values())
 
 
 def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: WizardShell) -> None:
