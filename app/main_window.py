@@ -1,9 +1,9 @@
 """The window: who logs in, home, a session with a patient, or a folder's; and the cover when nobody is there."""
 
+import gc
 import signal
 import sys
 import time
-from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -32,8 +32,9 @@ from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
 from app.theme import Look, load_fonts
 from app.widgets.focus_ring import FocusRing
-from app.workers.background import Background, Report
+from app.workers.background import Background
 from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.preload import preload
 
 if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them
     from app.home.home import Home
@@ -46,6 +47,7 @@ FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
 DROP_EDGE = 2.5
 POLL_MS = 1000
+PREPARE_AFTER_MS = 200  # the first frame goes before
 COMPACT_BELOW = (1180, 720)
 ACTIVITY = frozenset(
     (
@@ -68,7 +70,7 @@ class MainWindow(QWidget):
         self.desk = LibraryDesk(self)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
-        self._preparing = Background(self)
+        self.preparing = Background(self)
         self._help: HelpPage | None = None
         self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
@@ -97,6 +99,10 @@ class MainWindow(QWidget):
     def is_covered(self) -> bool:
         return self._covered is not None
 
+    def prepare(self) -> None:
+        """Import beside the screen what it would wait for later."""
+        self.preparing.start(preload)
+
     def open_folder(self, folder: Path) -> None:
         """Read and analyse a session folder in the background, and show what comes of it."""
         self._show(self.session)
@@ -119,10 +125,8 @@ class MainWindow(QWidget):
 
     def finish(self) -> None:
         """Wait for the threads of what was running when the window was closed."""
-        self._preparing.finish()
+        self.preparing.finish()
         self.session.finish()
-        if self._wizard is not None:
-            self._wizard.finish()
         self.desk.finish()
         if self._wizard is not None:
             self._wizard.finish()
@@ -253,7 +257,7 @@ class MainWindow(QWidget):
         self._home.show_library(state)
         self._show(self._home)
         if self._wizard is None:
-            self._preparing.start(_import_wizard)
+            self.prepare()
 
     def _on_session_wished(self, patient: "StoredPatient | None") -> None:
         self._entered_wizard().begin(patient)
@@ -385,11 +389,6 @@ class MainWindow(QWidget):
             self.session.leave()
 
 
-def _import_wizard(_report: Report) -> None:
-    """Import beside the screen what the first session would wait for; importing is not to be stopped half-way."""
-    import_module("app.wizard.wizard")
-
-
 class _DropFrame(QWidget):
     """The edge round the window while a folder is held over it."""
 
@@ -429,12 +428,19 @@ def open_window(argv: list[str]) -> int:
     load_fonts()
     window = MainWindow(Look(app), Settings(own_settings()), default_folder())
     window.show()
+    window.preparing.done.connect(_keep_imported)
+    QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
         window.open_folder(Path(folders[0]))
     code = app.exec()
     window.finish()
     return code
+
+
+def _keep_imported() -> None:
+    """Leave what was imported out of garbage collections: to look through it takes a tenth of a second each time."""
+    gc.freeze()
 
 
 def own_settings() -> QSettings:

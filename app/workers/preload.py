@@ -1,0 +1,35 @@
+"""What the first session would wait for is imported beside the screen, once the window is there: two seconds' worth."""
+
+from importlib import import_module
+
+from app.workers.background import Report
+
+# in the order in which they are needed
+MODULES = (
+    "app.home.home",
+    "app.storage.opened",
+    "app.wizard.wizard",
+    "app.pages.patient_page",
+    "app.pages.sensors_page",
+    "app.acquisition.acquisition",
+    "app.acquisition.placing_work",
+    "devices.replay",
+    "app.acquisition.recorder",
+    "app.pages.stand_still_page",
+    "app.acquisition.standing_work",
+    "app.pages.free_motion_page",
+    "app.acquisition.free_motion_work",
+    "core.analysis",
+    "app.pages.walking_page",
+    "app.wizard.live_walk",
+    "app.acquisition.walking_work",
+    "app.pages.result_page",
+    "app.pages.help_page",
+)
+
+
+def preload(report: Report) -> None:
+    """Work for a `Background`. A module is imported whole or not at all; between two it may be stopped."""
+    for number, name in enumerate(MODULES):
+        report(number / len(MODULES), name)
+        import_module(name)
