@@ -1,7 +1,8 @@
 """How can a session be looked at again, sample by sample? One Rerun log of what was measured and what was computed.
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
-another recording in the same views. Nothing is left out between samples, and nobody's words are inside.
+another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Beside them
+two legs walk, which are drawn and say so.
 
 The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
 numbered here, and `rrd_file` does the rest.
@@ -20,7 +21,9 @@ import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 
+from app.colours import DARK
 from app.reports.gait_csv import events_of
+from app.review.drawn_legs import FRAMES_HZ, HIPS, SHANK, THIGH, DrawnLeg, draw_legs, height_of
 from app.review.rrd_file import remove_chance
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES
@@ -32,7 +35,13 @@ RECORDING = "session"
 BLUEPRINT = b"rec_" + b"0" * 32  # as long as the name that Rerun draws by chance, so it can take its place
 ROWS_PER_CHUNK = 100_000  # 4 MB of three axes with their times
 BAND_SD = 2.0
-CURVE_HEIGHT, LANE_HEIGHT = 2, 1  # shares of a column of the layout
+LEGS_HEIGHT, CURVES_HEIGHT = 2, 3  # shares of the layout
+CURVE_HEIGHT, LANE_HEIGHT = 2, 1  # shares of a column of curves
+COLOURS = DARK  # the viewer is dark unless its user turns that
+SIDE_COLOUR = {Side.LEFT: COLOURS.left, Side.RIGHT: COLOURS.right}
+PALE_COLOUR = {Side.LEFT: COLOURS.left_soft, Side.RIGHT: COLOURS.right_soft}
+LEG_RADIUS_M = 0.025
+DRAWN = "Legs: drawn, not measured"
 
 
 def write_log(session: Session, analysis: Analysis, path: Path) -> None:
@@ -70,6 +79,8 @@ def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> 
     for analysed in analysis.recordings:
         for joint, angle in analysed.joints.items():
             yield from _angle_chunks(timelines[analysed.name], joint, analysed.time_s, angle)
+        for side, leg in draw_legs(session, analysis, analysed).items():
+            yield from _leg_chunks(timelines[analysed.name], side, leg)
         for side, gait in analysed.gait.items():
             yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
             yield from _event_chunk(timelines[analysed.name], side, analysed)
@@ -80,17 +91,80 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
         yield _label(f"/raw/{site}/angular_rate", [f"{axis} rad/s" for axis in "xyz"])
         yield _label(f"/raw/{site}/specific_force", [f"{axis} m/s²" for axis in "xyz"])
     for joint in _joints(analysis):
-        for curve in ("result", "published", "orientation"):
-            yield _label(f"/angles/{joint}/{curve}", [f"{curve} °"])
-        yield _label(f"/angles/{joint}/certainty", ["2 sd below °", "2 sd above °"])
+        looks = {"result": (SIDE_COLOUR[joint.side], 2.5), "published": (COLOURS.ink2, 1.0)}
+        for curve, (colour, width) in (looks | {"orientation": (COLOURS.control, 1.0)}).items():
+            yield _label(f"/angles/{joint}/{curve}", [f"{curve} °"], colour, width)
+        yield _label(f"/angles/{joint}/certainty", ["2 sd below °", "2 sd above °"], PALE_COLOUR[joint.side])
     words = [str(phase) for phase in PHASES if phase]
     columns = rr.StateConfiguration.columns(values=words, labels=[word.replace("_", " ") for word in words])
     for side in _sides_with_gait(analysis):
         yield Chunk.from_columns(f"/phases/{side}", indexes=[], columns=columns.partition([len(words)]))
+    if analysis.is_simulated:
+        yield _document("/simulated", "SIMULATED: nobody was measured.")
+    sides = _sides_with_knee(analysis)
+    if sides:
+        yield from _leg_labels(session, sides)
 
 
-def _label(entity: str, names: list[str]) -> Chunk:
-    return Chunk.from_columns(entity, indexes=[], columns=rr.SeriesLines.columns(names=names).partition([len(names)]))
+def _label(entity: str, names: list[str], colour: str | None = None, width: float = 1.0) -> Chunk:
+    n = len(names)
+    columns = rr.SeriesLines.columns(
+        names=names,
+        colors=None if colour is None else [_rgba(colour)] * n,
+        widths=None if colour is None else [width] * n,
+    )
+    return Chunk.from_columns(entity, indexes=[], columns=columns.partition([n]))
+
+
+def _rgba(colour: str) -> int:
+    return int(f"{colour.removeprefix('#')}FF", 16)
+
+
+def _document(entity: str, text: str) -> Chunk:
+    return Chunk.from_columns(entity, indexes=[], columns=rr.TextDocument.columns(text=[text]))
+
+
+def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
+    """Yield the line between the hips, how each leg looks, and how all of it is drawn."""
+    height_m = height_of(session)
+    aside_m, up_m = HIPS * height_m / 2, (THIGH + SHANK) * height_m
+    hips = rr.LineStrips3D.columns(
+        strips=np.array([[[0.0, aside_m, up_m], [0.0, -aside_m, up_m]]], dtype=np.float32),
+        colors=[_rgba(COLOURS.control)],
+        radii=[LEG_RADIUS_M],
+    )
+    yield Chunk.from_columns("/legs/hips", indexes=[], columns=hips)
+    for side in sides:
+        colours, radii = [_rgba(SIDE_COLOUR[side])], [LEG_RADIUS_M]
+        for part in ("leg", "foot"):
+            looks = rr.LineStrips3D.columns(colors=colours, radii=radii)
+            yield Chunk.from_columns(f"/legs/{side}/{part}", indexes=[], columns=looks)
+        hip_m = (0.0, aside_m if side is Side.LEFT else -aside_m, up_m)
+        letter = rr.Points3D.columns(
+            positions=[hip_m], colors=colours, radii=radii, labels=[side[0].upper()], show_labels=[True]
+        )
+        yield Chunk.from_columns(f"/legs/{side}/hip", indexes=[], columns=letter)
+    is_typed = session.patient.height_m is not None
+    yield _document(
+        "/about_legs",
+        f"The legs are drawn, not measured. Knee and ankle bend as the angles say and each thigh is inclined as its "
+        f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
+        f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
+        f"knee and ankle are not both known. The hips stay side by side in one place, and every knee's axis points "
+        f"sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a second at most.",
+    )
+
+
+def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg) -> Iterator[Chunk]:
+    """Yield what of a leg is known at each frame; nothing is drawn where it is not."""
+    index = rr.TimeColumn(timeline, duration=leg.time_s)
+    for part, points_m in (("leg", leg.leg_m), ("foot", leg.foot_m)):
+        is_known = np.isfinite(points_m).all(axis=(1, 2))
+        if is_known.any():
+            columns = rr.LineStrips3D.columns(strips=points_m[is_known].astype(np.float32))
+            yield Chunk.from_columns(
+                f"/legs/{side}/{part}", indexes=[index], columns=columns.partition(is_known.astype(np.int64))
+            )
 
 
 def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
@@ -151,18 +225,45 @@ def _sides_with_gait(analysis: Analysis) -> list[Side]:
     return [side for side in Side if any(side in recording.gait for recording in analysis.recordings)]
 
 
+def _sides_with_knee(analysis: Analysis) -> list[Side]:
+    return [side for side in Side if any(knee_of(side) in r.joints for r in analysis.recordings)]
+
+
 def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rrb.Blueprint:
-    sides = [column for side in Side if (column := _side_views(analysis, side)) is not None]
-    tabs: list[rrb.Container | rrb.View] = [rrb.Horizontal(*sides, name="Angles and phases")] if sides else []
+    columns = [column for side in Side if (column := _side_views(analysis, side)) is not None]
+    tabs: list[rrb.Container | rrb.View] = []
+    if columns:
+        name, curves = "Angles and phases", rrb.Horizontal(*columns)
+        legs = _leg_view(session, analysis) if _sides_with_knee(analysis) else None
+        shares = [LEGS_HEIGHT, CURVES_HEIGHT]
+        tabs += [rrb.Vertical(legs, curves, row_shares=shares, name=name) if legs else rrb.Vertical(curves, name=name)]
     if _sides_with_gait(analysis):
         tabs += [rrb.TextLogView(origin="/events", name="Events")]
     for signal in ("angular_rate", "specific_force"):
         views = [rrb.TimeSeriesView(origin=f"/raw/{s}/{signal}", name=s.replace("_", " ")) for s in _sites(session)]
         tabs += [rrb.Grid(*views, name=signal.replace("_", " ").capitalize(), grid_columns=2)]
+    if _sides_with_knee(analysis):
+        tabs += [rrb.TextDocumentView(origin="/about_legs", name="How the legs are drawn")]
     layout = rrb.Tabs(*tabs)
     for number, part in enumerate(_parts(layout)):
         part.id = uuid.UUID(int=number + 1)
     return rrb.Blueprint(layout, rrb.TimePanel(timeline=timeline, state="collapsed"), collapse_panels=True)
+
+
+def _leg_view(session: Session, analysis: Analysis) -> rrb.Spatial3DView:
+    """Look at the legs from the patient's right, a little from the front."""
+    height_m = height_of(session)
+    middle_m = (THIGH + SHANK) * height_m / 2
+    return rrb.Spatial3DView(
+        origin="/legs",
+        name=f"SIMULATED. {DRAWN}" if analysis.is_simulated else DRAWN,
+        background=[int(COLOURS.ground[k : k + 2], 16) for k in (1, 3, 5)],
+        eye_controls=rrb.EyeControls3D(
+            position=(0.35 * height_m, -0.6 * height_m, 0.35 * height_m),
+            look_target=(0.0, 0.0, middle_m),
+            eye_up=(0.0, 0.0, 1.0),
+        ),
+    )
 
 
 def _side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:

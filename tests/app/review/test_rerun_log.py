@@ -13,8 +13,10 @@ import pytest
 import rerun.blueprint as rrb
 from rerun.chunk import Chunk, RrdReader
 
+from app.colours import DARK
 from app.reports.gait_csv import write_gait
 from app.review import rerun_log
+from app.review.drawn_legs import draw_legs
 from app.review.rerun_log import write_log
 from core.analysis import analyse
 from core.body import Joint, Side, Site
@@ -179,6 +181,29 @@ def test_the_lanes_lie_under_the_curves_of_their_side(walk: tuple[Path, Analysis
         assert column is not None
         origins = [view.origin for view in column.contents if isinstance(view, rrb.View)]
         assert origins == [f"/angles/{side}_knee", f"/angles/{side}_ankle", f"/phases/{side}"]
+
+
+def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[Path, Analysis]) -> None:
+    folder, analysis = walk
+    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+    legs = draw_legs(session, analysis, analysis.recordings[0])
+    reader = RrdReader(folder / "session.rrd")
+    for side in Side:
+        chunks = [c for c in reader.stream() if c.entity_path == f"/legs/{side}/leg"]
+        (moving,) = [c.to_record_batch() for c in chunks if not c.is_static]
+        strips = [row for row in moving.column("LineStrips3D:strips").to_pylist() if row]
+        np.testing.assert_allclose(np.array(strips)[:, 0], legs[side].leg_m, atol=1e-6)
+        (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static]
+        assert look["LineStrips3D:colors"] == [[int(getattr(DARK, side)[1:] + "FF", 16)]]
+    first = next(iter(rerun_log._blueprint(session, analysis, None).root_container.contents))
+    assert isinstance(first, rrb.Vertical)
+    view, curves = list(first.contents)
+    assert isinstance(view, rrb.Spatial3DView)
+    assert view.name == "SIMULATED. Legs: drawn, not measured"
+    assert isinstance(curves, rrb.Horizontal)
+    text = "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream() if c.entity_path == "/about_legs")
+    assert "drawn, not measured" in text
+    assert "1.70 m, which nobody typed" in text
 
 
 def test_rerun_itself_finds_the_file_whole(walk: tuple[Path, Analysis], tmp_path: Path) -> None:

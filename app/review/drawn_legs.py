@@ -1,0 +1,155 @@
+"""How do the legs stand at each moment of a walk? Drawn from the angles and the thighs' inclination, not measured.
+
+The hips stay where they are, side by side, and each leg's heading is such that its knee axis points to the left: how
+far the patient came and which way they faced is not known without a magnetometer, nor is it shown. Forward is x, left
+is y, up is z, metres.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.body import Joint, Side, Site, ankle_of, knee_of
+from core.orientation import oriented
+from core.results import Analysis, JointCalibration, RecordingAnalysis
+from core.rotations import matrix_from_quaternion, turn_about_vertical
+from core.samples import FloatArray, IntArray, RateKind, Recording, RecordingKind, Session
+from core.tracks import blocks_of, even_tracks, nominal_step_s
+
+# shares of the height (Drillis & Contini 1966, Body segment parameters)
+THIGH, SHANK, FOOT, HIPS = 0.245, 0.246, 0.152, 0.191
+UNKNOWN_HEIGHT_M = 1.70
+MAX_LENGTH_RATIO = 1.3  # a shank further from what its height lets expect comes of centres that were not found
+FRAMES_HZ = 50.0  # smooth to the eye
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnLeg:
+    """One leg at `time_s` (n,): hip, knee and ankle (n, 3, 3), ankle and toes (n, 2, 3), NaN where not known."""
+
+    time_s: FloatArray
+    leg_m: FloatArray
+    foot_m: FloatArray
+    shank_m: float
+    is_shank_measured: bool
+
+
+def height_of(session: Session) -> float:
+    """The patient's height in metres, or a common one."""
+    return session.patient.height_m or UNKNOWN_HEIGHT_M
+
+
+def draw_legs(session: Session, analysis: Analysis, recording: RecordingAnalysis) -> dict[Side, DrawnLeg]:
+    """Each leg of a walk whose knee was found and whose thigh was heard."""
+    if recording.kind is not RecordingKind.WALKING:
+        return {}
+    raw = next((r for r in session.recordings if r.name == recording.name), None)
+    spans = [span.joints for span in analysis.calibrations if recording.name in span.walks]
+    calibrated = {joint: found for joints in spans for joint, found in joints.items()}
+    sides = [side for side in Side if knee_of(side) in recording.joints and knee_of(side) in calibrated]
+    if raw is None or not len(recording.time_s):
+        return {}
+    frames = _frames(recording.time_s)
+    return {
+        side: _drawn(session, recording, raw, calibrated, side, frames) for side in sides if raw.holds(_thigh(side))
+    }
+
+
+def _frames(time_s: FloatArray) -> IntArray:
+    """The samples to draw, evenly among all."""
+    step_s = nominal_step_s(time_s) if len(time_s) > 1 else 1.0
+    return np.arange(0, len(time_s), max(1, round(1 / (FRAMES_HZ * step_s))))
+
+
+def _drawn(
+    session: Session,
+    recording: RecordingAnalysis,
+    raw: Recording,
+    calibrated: Mapping[Joint, JointCalibration],
+    side: Side,
+    frames: IntArray,
+) -> DrawnLeg:
+    knee, ankle, height_m = calibrated[knee_of(side)], calibrated.get(ankle_of(side)), height_of(session)
+    time_s = recording.time_s[frames]
+    forward, up = _thigh_directions(session, raw, knee, time_s)
+    shank_m, is_measured = _shank_length(knee, ankle, height_m)
+    bent = recording.joints[knee_of(side)].angle_rad[frames, None]
+    shank_forward = np.cos(bent) * forward - np.sin(bent) * up
+    shank_up = np.cos(bent) * up + np.sin(bent) * forward
+    lifted = np.full_like(bent, np.nan)
+    if ankle_of(side) in recording.joints:
+        lifted = recording.joints[ankle_of(side)].angle_rad[frames, None]
+    foot_forward = np.cos(lifted) * shank_forward + np.sin(lifted) * shank_up
+    aside_m = HIPS * height_m / 2 * (1 if side is Side.LEFT else -1)
+    hip_m = np.broadcast_to([0.0, aside_m, (THIGH + SHANK) * height_m], up.shape)
+    knee_m = hip_m - THIGH * height_m * up
+    ankle_m = knee_m - shank_m * shank_up
+    toes_m = ankle_m + FOOT * height_m * foot_forward
+    return DrawnLeg(
+        time_s, np.stack([hip_m, knee_m, ankle_m], axis=1), np.stack([ankle_m, toes_m], axis=1), shank_m, is_measured
+    )
+
+
+def _shank_length(knee: JointCalibration, ankle: JointCalibration | None, height_m: float) -> tuple[float, bool]:
+    """From the two joint centres, both at -o in the shank sensor's axes, where they can be believed; else by height."""
+    expected_m = SHANK * height_m
+    if ankle is not None and knee.centre_distal_m is not None and ankle.centre_proximal_m is not None:
+        length_m = float(np.linalg.norm(knee.centre_distal_m - ankle.centre_proximal_m))
+        if expected_m / MAX_LENGTH_RATIO < length_m < expected_m * MAX_LENGTH_RATIO:
+            return length_m, True
+    return expected_m, False
+
+
+def _thigh_directions(
+    session: Session, raw: Recording, knee: JointCalibration, time_s: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Where the thigh's front and its upper end point at each frame (n, 3), its knee axis turned to the left."""
+    left_axis = knee.clinical_sign * knee.axis_proximal
+    forward, up = np.full((2, len(time_s), 3), np.nan)
+    upright = _upright(session, raw, knee)
+    long_axis = upright - (upright @ left_axis) * left_axis
+    length = float(np.linalg.norm(long_axis))
+    if not length > 0:  # NaN too
+        return forward, up
+    long_axis /= length
+    front = np.cross(left_axis, long_axis)
+    for rows, q_earth_from_sensor in _orientations(session, raw, knee, time_s):
+        earth_from_sensor = matrix_from_quaternion(q_earth_from_sensor)
+        axis = earth_from_sensor @ left_axis
+        to_left = np.pi / 2 - np.arctan2(axis[:, 1], axis[:, 0])
+        forward[rows] = turn_about_vertical(to_left, earth_from_sensor @ front)
+        up[rows] = turn_about_vertical(to_left, earth_from_sensor @ long_axis)
+    return forward, up
+
+
+def _upright(session: Session, raw: Recording, knee: JointCalibration) -> FloatArray:
+    """Up in the thigh sensor's axes (3,) while standing, else on average over the walk; NaN if never heard."""
+    site = knee.joint.proximal
+    standing = next((r for r in session.recordings if r.name == knee.standing_from and r.holds(site)), raw)
+    acc_m_s2 = standing.imu[site].acc_m_s2
+    known = acc_m_s2[np.isfinite(acc_m_s2).all(axis=1)]
+    mean = known.mean(axis=0) if len(known) else np.full(3, np.nan)
+    return np.asarray(mean / np.linalg.norm(mean))
+
+
+def _orientations(
+    session: Session, raw: Recording, knee: JointCalibration, time_s: FloatArray
+) -> Iterator[tuple[IntArray, FloatArray]]:
+    """Frames at which the thigh was heard, and its orientation there, block by block."""
+    site = knee.joint.proximal
+    block, info = raw.imu[site], session.sensors.get(site)
+    kind = (info.rate_kind if info else None) or RateKind.INSTANTANEOUS
+    bias = np.zeros(3) if knee.gyro_bias_proximal_rad_s is None else knee.gyro_bias_proximal_rad_s
+    for piece in blocks_of(float(time_s[0]), float(time_s[-1])):
+        is_here = (time_s >= piece.core_from_s) & (time_s < piece.core_to_s)
+        for track in even_tracks(block, piece.from_s, piece.to_s):
+            at = np.rint((time_s - track.start_s) / track.step_s).astype(np.int64)
+            is_inside = is_here & (at >= 0) & (at < len(track))
+            rows = np.flatnonzero(is_inside)
+            rows = rows[track.is_measured[at[rows]]]
+            yield rows, oriented(track, kind, bias).q_earth_from_sensor[at[rows]]
+
+
+def _thigh(side: Side) -> Site:
+    return knee_of(side).proximal
