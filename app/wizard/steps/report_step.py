@@ -13,6 +13,7 @@ from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
 from app.wording import tr
 from app.workers.background import Report
@@ -76,6 +77,12 @@ class ReportStep(Step):
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._dialog.fileSelected.connect(self._on_folder_selected)
         self._dialog.open()
+
+    def on_intent(self, intent: Intent) -> bool:
+        if intent.action is Action.SAVE:
+            self.on_primary()
+            return True
+        return False
 
     def _has_results(self) -> bool:
         evaluation = self._visit.evaluation
