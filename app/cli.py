@@ -13,6 +13,7 @@ import sys
 import threading
 import warnings
 from collections.abc import Callable, Sequence
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
@@ -32,6 +33,7 @@ DONE, REFUSED, INTERRUPTED = 0, 2, 3
 DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
 KINDS = ("standing", "free_motion", "walking")
+PAPERS = ("a4", "letter")  # as app.reports.patient_report.request has them
 FORMATS = ("xsens-mtmanager",)
 SUBCOMMANDS = ("analyse", "demo", "import", "recover", "audit")
 OF_LIBRARY = "the folder of the library (your own)"
@@ -113,6 +115,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="subcommands", metavar="", required=True)
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
+    _add_report(commands.add_parser("report", help="make the report of a session as a PDF"))
     _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
@@ -141,7 +144,7 @@ def _add_analyse(parser: argparse.ArgumentParser) -> None:
         metavar="S",
         help="time constant of the published fusion in seconds (2)",
     )
-    parser.add_argument("--no-report", action="store_true", help="write no report.pdf; this version writes none anyway")
+    parser.add_argument("--no-report", action="store_true", help="write no report.pdf")
     parser.add_argument("--no-rrd", action="store_true", help="write no session.rrd for Rerun")
     parser.set_defaults(run=_analyse)
 
@@ -156,6 +159,30 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
         help="the folder to write: OUT/session and its results in OUT (./gaitwright-demo)",
     )
     parser.set_defaults(run=_demo)
+
+
+def _add_report(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Analyse a session and make its report: one walk, or up to three conditions beside each other."
+    parser.add_argument(
+        "session",
+        metavar="SESSION|OUT",
+        type=_session,
+        help="the session folder, results with their session inside, or library:ID",
+    )
+    parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
+    add_key_arguments(parser)
+    parser.add_argument("--out", metavar="FILE.pdf", type=Path, required=True, help="the report to write")
+    parser.add_argument(
+        "--walk",
+        metavar="NAME",
+        action="append",
+        default=[],
+        help="a walk to show; up to three are compared, the last is shown (the last walk of each condition)",
+    )
+    parser.add_argument("--earlier", metavar="SESSION", type=Path, help="the session folder of a visit to compare with")
+    parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")
+    parser.add_argument("--paper", type=_one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
+    parser.set_defaults(run=_report)
 
 
 def _add_import(parser: argparse.ArgumentParser) -> None:
@@ -210,7 +237,9 @@ def _analyse(wanted: argparse.Namespace) -> None:
     with _Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
         progress(0.0, str(wanted.session))
         session = _read(wanted, progress)
-        analysis = _write_analysis(session, folder, wanted.method, wanted.tau, not wanted.no_rrd, progress)
+        analysis = _write_analysis(
+            session, folder, wanted.method, wanted.tau, progress, not wanted.no_rrd, not wanted.no_report
+        )
     _tell(analysis, wanted.out)
 
 
@@ -256,8 +285,53 @@ def _demo(wanted: argparse.Namespace) -> None:
         write_session(simulated.session, folder / OWN_SESSION)
         write_table(*truth_table(simulated.truth), folder / OWN_SESSION / "truth.csv")
         session = read_session(folder / OWN_SESSION)  # so that `analyse` gives the same bytes
-        analysis = _write_analysis(session, folder, METHODS[0], DEFAULT_TAU_S, True, progress)
+        analysis = _write_analysis(session, folder, METHODS[0], DEFAULT_TAU_S, progress)
     _tell(analysis, wanted.out)
+
+
+def _report(wanted: argparse.Namespace) -> None:
+    from app.reports.patient_report.document import make_report
+    from app.reports.patient_report.report_file import check_report_place, chosen_walks, replace_report, session_of
+    from app.reports.patient_report.request import MAX_CONDITIONS, ReportRequest, Visit
+    from core.analysis import analyse
+    from devices.files.refusal import FileRefusedError
+    from devices.files.session_folder import read_session
+
+    check_report_place(wanted.out)
+    if len(wanted.walk) > MAX_CONDITIONS:
+        what = f"{len(wanted.walk)} walks are too many for one report"
+        raise FileRefusedError("--walk", what, f"Choose up to {MAX_CONDITIONS}")
+    if not isinstance(wanted.session, LibrarySession):
+        wanted.session = session_of(wanted.session)
+    with _Progress(sys.stderr) as progress:
+        progress(0.0, str(wanted.session))
+        comment = _comment(wanted.comment)
+        session = _read(wanted, progress)
+        visit = Visit(session, analyse(session, progress=progress))
+        walks = chosen_walks(visit, wanted.walk, str(wanted.session))
+        earlier = None
+        if wanted.earlier is not None:
+            before = read_session(session_of(wanted.earlier))
+            past = Visit(before, analyse(before, progress=progress))
+            earlier = past, chosen_walks(past, [], str(wanted.earlier))[-1]
+            walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
+        now, version = datetime.now().astimezone(), version_of("gaitwright")
+        progress(1.0, "report")
+        request = ReportRequest(visit, walks, now, version, comment, paper=wanted.paper, earlier=earlier)
+        replace_report(make_report(request), wanted.out)
+    print(f"{wanted.out}: the report of {', '.join(walks)}.")
+
+
+def _comment(file: Path | None) -> str:
+    from devices.files.refusal import FileRefusedError
+
+    if file is None:
+        return ""
+    try:
+        return file.read_text(encoding="utf-8-sig")
+    except (OSError, UnicodeDecodeError) as problem:
+        why = problem.strerror if isinstance(problem, OSError) else "it is no text in UTF-8"
+        raise FileRefusedError(str(file), f"this cannot be read ({why})", "Give --comment a text file") from problem
 
 
 def _import(wanted: argparse.Namespace) -> None:
@@ -293,7 +367,13 @@ def _importers() -> dict[str, Callable[..., "Imported"]]:
 
 
 def _write_analysis(
-    session: "Session", folder: Path, method: str, tau_s: float, has_log: bool, progress: "_Progress"
+    session: "Session",
+    folder: Path,
+    method: str,
+    tau_s: float,
+    progress: "_Progress",
+    has_log: bool = True,
+    has_report: bool = True,
 ) -> "Analysis":
     from app.reports.result_folder import write_results
     from core.analysis import analyse
@@ -302,6 +382,11 @@ def _write_analysis(
     analysis = analyse(session, Method(method), tau_s, progress)
     progress(1.0, "writing")
     write_results(session, analysis, folder, has_log=has_log)
+    if has_report:
+        from app.reports.patient_report.report_file import write_report
+
+        progress(1.0, "report")
+        write_report(session, analysis, folder, datetime.now().astimezone(), version_of("gaitwright"))
     progress(1.0, "writing")  # the last chance to be interrupted: what follows replaces the old results
     return analysis
 

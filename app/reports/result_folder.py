@@ -22,6 +22,7 @@ from devices.files.session_toml import FILE_NAME as SESSION_FILE
 SUMMARY = "summary.json"
 ANGLES = "angles.csv"
 LOG = "session.rrd"
+REPORT = "report.pdf"
 OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
 
 
@@ -36,7 +37,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
         The disk is full or cannot be written to.
     """
     for recording in analysis.recordings:
-        if PurePosixPath(recording.folder).parts[:1] in ((SUMMARY,), (LOG,), (OWN_SESSION,)):
+        if PurePosixPath(recording.folder).parts[:1] in ((SUMMARY,), (LOG,), (REPORT,), (OWN_SESSION,)):
             what = f"its folder {recording.folder} has the name of one of the results"
             raise FileRefusedError(recording.name, what, "Give this recording's folder another name")
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)

@@ -136,7 +136,7 @@ def peak_figures(
             unknown = {side: why for side, why in doubts.items() if column not in HOLD_FOR[why]}
             sides = {side: _mean(recording.gait[side], f"{kind}_{column}") for side in joints if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
-            band = _band_of_peak(reference, kind, column, window)
+            band = band_of_peak(reference, kind, column, window)
             figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown))
         found[kind] = tuple(figures)
     return found
@@ -186,7 +186,7 @@ def _mean(gait: SideGait, name: str) -> MeanAndSd:
     return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
 
 
-def _band_of_peak(
+def band_of_peak(
     reference: ReferenceCurves, kind: str, column: str, window_name: str | None
 ) -> tuple[float, float] | None:
     """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot tell."""

@@ -1,0 +1,83 @@
+"""What is a page made of? Headings, texts, tables and figures, as the template takes them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from app.reports.patient_report.drawing import Picture
+
+Block = dict[str, object]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """One cell's words; over `span` columns."""
+
+    said: str
+    is_bold: bool = False
+    is_grey: bool = False
+    span: int = 1
+    is_centred: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """A column's heading; `width` as the template knows it ("auto", "1fr"); numbers stand to the right."""
+
+    title: str
+    width: str = "auto"
+    is_number: bool = True
+
+
+Row = Sequence[Cell | str] | str
+"""Cells, or the words over a group of rows."""
+
+
+def heading(said: str, level: int = 1) -> Block:
+    return {"kind": "heading", "said": said, "level": level}
+
+
+def note(said: str) -> Block:
+    return {"kind": "note", "said": said}
+
+
+def paragraph(said: str) -> Block:
+    return {"kind": "paragraph", "said": said}
+
+
+def bullets(said: Sequence[str]) -> Block:
+    return {"kind": "bullets", "said": list(said)}
+
+
+def figures(pictures: Sequence[Picture], columns: int = 1) -> Block:
+    return {"kind": "figures", "pictures": [one.as_data() for one in pictures], "columns": columns}
+
+
+def legend(items: Sequence[tuple[Picture, str]], columns: int = 3) -> Block:
+    entries = [{"picture": swatch.as_data(), "said": said} for swatch, said in items]
+    return {"kind": "legend", "items": entries, "columns": columns}
+
+
+def figure_with_words(one: Picture, items: Sequence[tuple[Picture, str]], title: str, said: Sequence[str]) -> Block:
+    """A large figure with its legend and read-out beside it."""
+    entries = [{"picture": swatch.as_data(), "said": words} for swatch, words in items]
+    return {"kind": "beside", "picture": one.as_data(), "items": entries, "title": title, "said": list(said)}
+
+
+def table(columns: Sequence[Column], rows: Sequence[Row], *, is_dense: bool = False) -> Block:
+    return {
+        "kind": "table",
+        "columns": [{"title": c.title, "width": c.width, "is_number": c.is_number} for c in columns],
+        "rows": [{"group": row} if isinstance(row, str) else {"cells": [_cell(cell) for cell in row]} for row in rows],
+        "is_dense": is_dense,
+    }
+
+
+def _cell(cell: Cell | str) -> dict[str, object]:
+    one = Cell(cell) if isinstance(cell, str) else cell
+    return {
+        "said": one.said,
+        "bold": one.is_bold,
+        "grey": one.is_grey,
+        "span": one.span,
+        "centred": one.is_centred,
+    }

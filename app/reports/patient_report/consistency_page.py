@@ -1,0 +1,113 @@
+"""How alike are the strides? Every one that was used, drawn; the swing peak of each in the order walked."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from app.reports.gait_csv import parameter
+from app.reports.patient_report import panels
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
+from app.reports.patient_report.cycle_chart import Chart, draw
+from app.reports.patient_report.drawing import MM, Picture
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.small_charts import StrideValues, stride_strip
+from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.wording import side_name, tr
+from core.body import Side
+
+PLOT_WIDTH = 70 * MM
+
+
+def consistency_page(facts: Facts) -> list[Block]:
+    sides = [side for side in Side if side in facts.gait]
+    kinds = [kind for kind in KINDS if facts.has_joint(kind)]
+    pictures = [
+        _panel(facts, side, kind) for kind in kinds for side in sides if facts.is_measured(joint_of(kind, side))
+    ]
+    has_band = any(panels.band_of(facts, kind) is not None for kind in kinds)
+    items = [
+        *panels.leg_swatches(facts),
+        (panels.stride_swatch(), tr("Single strides (thin)")),
+        *(panels.band_swatches() if has_band else []),
+        (panels.cross_swatch(), tr("Stride left out, with its side")),
+    ]
+    strip = [figures([_strip(facts)])] if facts.has_joint("knee") else []
+    return [
+        heading(tr("Consistency from stride to stride")),
+        note(tr("Every stride that was used. Means are printed from 3 strides on, spreads from 10.")),
+        legend(items),
+        figures(pictures, columns=2),
+        *strip,
+        _table(facts, kinds),
+    ]
+
+
+def _panel(facts: Facts, side: Side, kind: str) -> Picture:
+    own = panels.line_of(facts, side, kind, width=1.9, has_peaks=False, dash="" if side is Side.LEFT else "6 1.6")
+    chart = Chart(
+        title=panels.title_with_side(facts, kind, side),
+        axis=panels.axis_of(facts, kind),
+        lines=(replace(own, strides_deg=facts.strides_deg(side, kind)),),
+        band=panels.band_of(facts, kind),
+        plot_width=PLOT_WIDTH,
+        is_simulated=facts.is_simulated,
+        alt=tr("Single strides and their mean.") + " " + panels.curve_alt(facts, kind, [side]),
+    )
+    return draw(chart)
+
+
+def _strip(facts: Facts) -> Picture:
+    has_zero = not facts.has_no_zero("knee")
+    column = "knee_swing_peak_deg" if has_zero else "knee_range_deg"
+    title = (
+        tr("Peak knee flexion in swing, degrees, every stride") if has_zero else tr("Knee range, degrees, every stride")
+    )
+    if facts.is_band_two(column):
+        title += " " + tr("(band [2])")
+    sides, numbers = {}, []
+    for side, gait in facts.gait.items():
+        found = facts.value(side, column)
+        mean = found.mean if is_mean_enough(found.n) else math.nan
+        values = parameter(gait, column)
+        sides[side] = StrideValues(values.tolist(), gait.strides.is_used.tolist(), mean)
+        used = values[gait.strides.is_used]
+        if np.isfinite(used).any():
+            said = tr("{side}: {count} strides, {low}° to {high}°.")
+            low, high = float(np.nanmin(used)), float(np.nanmax(used))
+            count = facts.strides(side)
+            numbers.append(
+                said.format(side=side_name(side).capitalize(), count=count, low=fixed(low, 0), high=fixed(high, 0))
+            )
+    alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *numbers])
+    return stride_strip(title, sides, 20, 80, facts.band(column), facts.is_simulated, alt)
+
+
+def _table(facts: Facts, kinds: list[str]) -> Block:
+    columns = [
+        Column(tr("Measure"), "1fr", is_number=False),
+        Column(tr("Left, n = {count}").format(count=facts.strides(Side.LEFT)), "30mm"),
+        Column(tr("Right, n = {count}").format(count=facts.strides(Side.RIGHT)), "30mm"),
+    ]
+    names = {
+        "knee": tr("Knee: SD between strides, mean over the stride, °"),
+        "ankle": tr("Ankle: SD between strides, mean over the stride, °"),
+    }
+    rows: list[Row] = []
+    for kind in kinds:
+        spreads = {side: facts.mean_stride_sd_deg(side, kind) for side in Side}
+        rows.append([names[kind], *(_cell(facts, side, spreads[side].mean, spreads[side].n) for side in Side)])
+    for label, column in (
+        (tr("Time of peak knee flexion: SD, % of stride"), "knee_swing_peak_percent"),
+        (tr("Toe\u2011off: SD, % of stride"), "stance_percent"),
+    ):
+        found = {side: facts.value(side, column) for side in Side}
+        rows.append([label, *(_cell(facts, side, found[side].sd, found[side].n) for side in Side)])
+    return table(columns, rows, is_dense=True)
+
+
+def _cell(facts: Facts, side: Side, sd: float, n: int) -> Cell | str:
+    if side not in facts.gait:
+        return tr("not measured")
+    return fixed(sd if is_spread_enough(n) else None, 1)

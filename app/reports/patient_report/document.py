@@ -1,0 +1,145 @@
+"""How do the pages become a document? One JSON for the template, one PDF/A-2a and PDF/UA-1 out of memory."""
+
+import json
+from datetime import datetime, timedelta, timezone
+from importlib.resources import files
+from typing import Any
+
+import typst
+
+from app.reports.patient_report.blocks import Block
+from app.reports.patient_report.comparison_page import Compared, Comparison, comparison_page
+from app.reports.patient_report.consistency_page import consistency_page
+from app.reports.patient_report.curves_page import curves_page
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.first_page import (
+    day,
+    fields,
+    key_numbers,
+    quality_box,
+    time_distance_table,
+    typed,
+    what_stands_out,
+)
+from app.reports.patient_report.method_page import words_page
+from app.reports.patient_report.peaks_page import peaks_page
+from app.reports.patient_report.plain_text import isolated, plain
+from app.reports.patient_report.request import ReportRequest
+from app.wording import tr
+
+TEMPLATE = files("resources") / "report" / "report.typ"
+CODE_LENGTH = 16  # of the running head
+
+
+def make_report(request: ReportRequest) -> bytes:
+    """Make the report's PDF. The same request gives the same bytes.
+
+    Raises
+    ------
+    KeyError
+        A walk is not among those analysed.
+    """
+    pdf, _ = typst.compile_with_warnings(
+        TEMPLATE.read_bytes(),
+        format="pdf",
+        font_paths=_fonts(),
+        ignore_system_fonts=True,
+        sys_inputs={"data": json.dumps(report_data(request), ensure_ascii=False)},
+        pdf_standards=["a-2a", "ua-1"],
+        timestamp=_whole_seconds(request.made_at),
+    )
+    return pdf
+
+
+def _whole_seconds(moment: datetime) -> datetime:
+    """As a document's properties hold it, with a fixed offset."""
+    return moment.replace(microsecond=0).astimezone(timezone(moment.utcoffset() or timedelta(0)))
+
+
+def report_data(request: ReportRequest) -> dict[str, Any]:
+    """Give all that the template sets: words and figures, in the order they are read."""
+    facts = Facts(request.visit, request.visit.walk(request.shown))
+    comparison = _comparison(request, facts)
+    session = request.visit.session
+    code = plain(session.patient.code)
+    recorded = day(request.visit.recording(request.shown).started or session.started)
+    condition = typed(request.visit.recording(request.shown).condition or request.shown)
+    pages: list[list[Block]] = [
+        curves_page(facts, condition),
+        peaks_page(facts),
+        *([comparison_page(comparison)] if comparison is not None else []),
+        consistency_page(facts),
+        words_page(request, facts),
+    ]
+    title = ", ".join(
+        filter(
+            None,
+            [
+                tr("Gait report {code}").format(code=isolated(code)).strip(),
+                recorded if session.started else "",
+                tr("SIMULATED") if facts.is_simulated else "",
+            ],
+        )
+    )
+    return {
+        "paper": "us-letter" if request.paper == "letter" else "a4",
+        "language": tr("en"),  # the language of the words: their catalogue names it
+        "title": title,
+        "subject": _subject(facts),
+        "head": {
+            "brand": "Gaitwright",
+            "kind": tr("Gait report"),
+            "simulated": tr("SIMULATED DATA, not a person") if facts.is_simulated else "",
+            "code": isolated(code if len(code) <= CODE_LENGTH else code[: CODE_LENGTH - 1] + "…"),
+            "date": recorded if session.started else "",
+        },
+        "foot": {
+            "use": tr("Research use. Not a medical device."),
+            "software": f"Gaitwright {request.software_version}",
+            "page": tr("Page {page} of {pages}"),
+        },
+        "fields": [list(field) for field in fields(request, facts)],
+        "quality": quality_box(facts),
+        "key_heading": tr("Key numbers"),
+        "key_numbers": key_numbers(facts),
+        "first_page": [*time_distance_table(facts), *what_stands_out(facts, comparison)],
+        "pages": pages,
+    }
+
+
+def _comparison(request: ReportRequest, shown: Facts) -> Comparison | None:
+    if len(request.walks) > 1:
+        parts = []
+        for letter, name in zip("ABC", request.walks, strict=False):
+            facts = shown if name == request.shown else Facts(request.visit, request.visit.walk(name))
+            parts.append(Compared(letter, typed(request.visit.recording(name).condition or name), facts))
+        return Comparison(parts, is_visits=False)
+    if request.earlier is not None:
+        earlier, name = request.earlier
+        before = Facts(earlier, earlier.walk(name))
+        names = [tr("Earlier visit, {day}"), tr("This visit, {day}")]
+        days = [_day_of(earlier.session.started), _day_of(request.visit.session.started)]
+        parts = [Compared(str(k + 1), names[k].format(day=days[k]), facts) for k, facts in enumerate((before, shown))]
+        return Comparison(parts, is_visits=True)
+    return None
+
+
+def _day_of(started: str) -> str:
+    return day(started) if started else tr("date not stated")
+
+
+def _subject(facts: Facts) -> str:
+    said = tr("Knee and ankle angles in walking, from inertial sensors. Research use. Not a medical device.")
+    return " ".join([tr("SIMULATED DATA, not a person.")] * facts.is_simulated + [said])
+
+
+_font_book: typst.Fonts | None = None
+
+
+def _fonts() -> typst.Fonts:
+    """The bundled fonts alone, so that a page looks the same on every machine; read once."""
+    global _font_book
+    if _font_book is None:
+        folder = files("resources") / "fonts"
+        _font_book = typst.Fonts(include_system_fonts=False, include_embedded_fonts=False, font_paths=[str(folder)])
+    return _font_book

@@ -1,0 +1,407 @@
+"""The page that stands alone: who, how good the recording is, three key numbers, time and distance, what stands out."""
+
+import math
+from collections.abc import Mapping
+from datetime import datetime
+
+from app.reports.patient_report import quality
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, bullets, heading, note, table
+from app.reports.patient_report.comparison_page import Comparison
+from app.reports.patient_report.facts import Facts, joint_of
+from app.reports.patient_report.numbers_in_words import (
+    NOTHING,
+    Band,
+    against_band,
+    band_in_figures,
+    fixed,
+    in_a_sentence,
+    signed,
+    spread,
+)
+from app.reports.patient_report.plain_text import breakable, isolated, plain
+from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.small_charts import gauge
+from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.wording import capitalised, name_of, sentence, side_name, tr, tr_n
+from core.body import Side
+from core.gait.spatiotemporal import MeanAndSd
+from core.norms import Verdict
+
+MAX_SENTENCES = 4
+NOT_STATED = ("", "none")
+
+
+def typed(text: str) -> str:
+    """Give what the clinic typed, ready to stand within a line of ours."""
+    return isolated(breakable(plain(text))) or tr("not stated")
+
+
+def day(started: str) -> str:
+    """Give the day of an ISO 8601 stamp as people write it; as it is where it is none."""
+    try:
+        when = datetime.fromisoformat(started)
+    except ValueError:
+        return typed(started)
+    months = (
+        tr("Jan"), tr("Feb"), tr("Mar"), tr("Apr"), tr("May"), tr("Jun"),
+        tr("Jul"), tr("Aug"), tr("Sep"), tr("Oct"), tr("Nov"), tr("Dec"),
+    )  # fmt: skip
+    return tr("{day} {month} {year}").format(day=when.day, month=months[when.month - 1], year=when.year)
+
+
+def moment(started: str) -> str:
+    try:
+        return f"{day(started)}, {datetime.fromisoformat(started):%H:%M}"
+    except ValueError:
+        return typed(started)
+
+
+def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
+    """Twelve things that the clinic typed or the program knows, as label and value."""
+    session, patient = request.visit.session, request.visit.session.patient
+    is_prosthetic = patient.prosthetic_side not in NOT_STATED
+    side = patient.prosthetic_side if is_prosthetic else patient.affected_side
+    height = f"{fixed(patient.height_m, 2)} m" if patient.height_m is not None else ""
+    mass = f"{fixed(patient.mass_kg, 0)} kg" if patient.mass_kg is not None else ""
+    born = str(patient.birth_year) if patient.birth_year is not None else ""
+    condition = request.visit.recording(facts.walk.name).condition or facts.walk.name
+    return [
+        (tr("Patient code"), typed(patient.code)),
+        (tr("Birth year, sex"), typed(", ".join(filter(None, [born, _sex(patient.sex)])))),
+        (tr("Height, mass"), typed(", ".join(filter(None, [height, mass])))),
+        (tr("Prosthetic side") if is_prosthetic else tr("Affected side"), _side_in_words(side)),
+        (tr("Device, aids"), typed(", ".join(filter(None, [patient.device, patient.aids])))),
+        (tr("Surface"), typed(session.surface)),
+        (tr("Condition shown"), typed(condition)),
+        (tr("Recorded"), moment(request.visit.recording(facts.walk.name).started or session.started)),
+        (tr("Operator"), typed(request.operator or session.operator)),
+        (tr("Clinic"), typed(request.clinic)),
+        (tr("Software"), typed(f"Gaitwright {request.software_version}")),
+        (tr("Sensors"), _sensors(request, facts)),
+    ]
+
+
+def quality_box(facts: Facts) -> Block:
+    verdict, sentences = quality.verdict_of(facts)
+    more = len(sentences) - quality.MAX_SENTENCES
+    shown = sentences[: quality.MAX_SENTENCES]
+    if more > 0:
+        said = tr_n("{count} more remark is in the file of results.", "{count} more are in the file of results.", more)
+        shown[-1] += " " + said.format(count=more)
+    return {
+        "heading": quality.verdict_in_words(verdict),
+        "sentences": shown,
+        "rows": [list(row) for row in quality.rows(facts)],
+    }
+
+
+def key_numbers(facts: Facts) -> list[dict[str, object]]:
+    """Three figures with their gauges."""
+    knee = "knee_range_deg" if facts.has_no_zero("knee") else "knee_swing_peak_deg"
+    push_off = "ankle_push_off_plantarflexion_deg"
+    has_push_off = any(math.isfinite(facts.value(side, push_off).mean) for side in Side) and not any(
+        facts.is_no_peak(side, push_off) for side in Side
+    )
+    ankle = push_off if has_push_off and not facts.has_no_zero("ankle") else "ankle_range_deg"
+    titles = {
+        "knee_swing_peak_deg": tr("Peak knee flexion in swing"),
+        "knee_range_deg": tr("Knee range over the stride"),
+        "ankle_push_off_plantarflexion_deg": tr("Ankle push\u2011off (most plantarflexed)"),
+        "ankle_range_deg": tr("Ankle range over the stride"),
+    }
+    scales = {
+        "knee_swing_peak_deg": (20, 80, 20),
+        "knee_range_deg": (20, 80, 20),
+        "ankle_push_off_plantarflexion_deg": (-30, 10, 10),
+        "ankle_range_deg": (0, 40, 10),
+    }
+    found = []
+    for column in (knee, ankle):
+        kind = column.split("_")[0]
+        mean = facts.group_range_deg(kind) if column.endswith("_range_deg") else None
+        number = "[2]" if facts.is_band_two(column) else "[1]"
+        values = {side: facts.value(side, column) for side in Side}
+        found.append(_key_number(titles[column], "°", values, facts.band(column), mean, number, 1, scales[column]))
+    stance = facts.time_distance[tr("Stance")]
+    band = stance.band if facts.values_group is not None else None
+    values = {side: facts.value(side, "stance_percent") for side in Side}
+    found.append(_key_number(tr("Stance, share of the stride"), "\u00a0%", values, band, None, "[2]", 1, (50, 75, 5)))
+    return found
+
+
+def _key_number(
+    title: str,
+    unit: str,
+    values: Mapping[Side, MeanAndSd],
+    band: Band | None,
+    group_mean: float | None,
+    number: str,
+    decimals: int,
+    scale: tuple[float, float, float],
+) -> dict[str, object]:
+    known = {s: v.mean for s, v in values.items() if is_mean_enough(v.n) and math.isfinite(v.mean)}
+    parts = [(side[0].upper(), fixed(value, 0) + unit) for side, value in known.items()]
+    if band is not None:
+        words = [(side[0].upper(), against_band(value, band)) for side, value in known.items()]
+        source = f"{tr('Band')} {number}: {band_in_figures(band, decimals)}{unit}"
+    elif group_mean is not None:
+        words, source = [], f"{tr('Band')} {number}: {fixed(group_mean, decimals)}{unit}; {tr('band has no SD')}"
+    else:
+        words, source = [], tr("no band")
+    if not known:
+        words, source = [], tr("not measured, or from too few strides")
+    shown = ", ".join(f"{letter} {value}" for letter, value in parts)
+    alt = f"{title}: {shown or NOTHING}. {source}."
+    return {
+        "title": title,
+        "values": parts,
+        "gauge": gauge(known, *scale, band, group_mean, alt).as_data(),
+        "words": words,
+        "source": source,
+    }
+
+
+def time_distance_table(facts: Facts) -> list[Block]:
+    one, other = facts.first_and_second
+    counts = {side: facts.strides(side) for side in Side}
+    columns = [
+        Column(tr("Measure"), "1fr", is_number=False),
+        Column(tr("Left, n = {count}").format(count=counts[Side.LEFT])),
+        Column(tr("Right, n = {count}").format(count=counts[Side.RIGHT])),
+        Column(tr("Band [2]")),
+        Column(tr("Against the band"), "37mm", is_number=False),
+        Column(tr("Symmetry") + f"\n{one[0].upper()} − {other[0].upper()}"),
+    ]
+    rows: list[Row] = [
+        _both_row(facts, tr("Walking speed"), tr("Walking speed, m/s")),
+        _both_row(facts, tr("Cadence"), tr("Cadence, steps/min")),
+        _side_row(facts, "stride_time_s", tr("Stride time, s"), 2),
+        _side_row(facts, "stride_length_m", tr("Stride length, m"), 2, facts.time_distance[tr("Stride length")].band),
+        _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1, facts.time_distance[tr("Stance")].band),
+        _side_row(facts, "swing_percent", tr("Swing, % of stride"), 1, _swing_band(facts)),
+        _single_support_row(facts),
+        _both_row(facts, tr("Double support"), tr("Double support, % of stride")),
+        _variation_row(facts),
+    ]
+    symmetry = tr("Symmetry = ({one} − {other}) / mean of both × 100 %; 0 is symmetric.").format(
+        one=one[0].upper(), other=other[0].upper()
+    )
+    group = facts.values_group
+    band = (
+        tr("Mean ± SD over strides; band: mean ± SD between people, class “{speed_class}” of speed.").format(
+            speed_class=_speed_class(group.speed_class)
+        )
+        if group is not None
+        else tr("Mean ± SD over strides. No band: nobody of this age or speed is in the group.")
+    )
+    swing = [tr("Swing band = 100 − stance band.")] if group is not None else []
+    return [heading(tr("Time and distance")), table(columns, rows), note(" ".join([band, symmetry, *swing]))]
+
+
+def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
+    """At most four sentences, all of them numbers; the last is the caveat that weighs most."""
+    said: list[str] = []
+    sides = [side for side in facts.first_and_second if side in facts.gait]
+    if comparison is not None:
+        said += comparison.sentences()[:2]
+    shown = sides[:1] if facts.affected is not None else sides
+    for side in shown:
+        if len(said) < 2:
+            said += _knee_sentence(facts, side)
+    said += _difference_sentence(facts)
+    for side in sides:
+        for column, name in (
+            ("ankle_push_off_plantarflexion_deg", tr("plantarflexion peak at push\u2011off")),
+            ("knee_loading_peak_deg", tr("flexion peak while loading")),
+        ):
+            if facts.is_no_peak(side, column):
+                sentence = tr("{joint}: no {peak} was found. This is printed as “no peak”, not as a number.")
+                joint = capitalised(name_of(joint_of(column.split("_")[0], side)))
+                said.append(sentence.format(joint=joint, peak=name))
+    stance = _stance_sentence(facts)
+    caveat = _caveat(facts)
+    kept = said[: MAX_SENTENCES - len(stance) - len(caveat)]
+    # what weighs on every number is said last
+    return [heading(tr("What stands out")), bullets([*kept, *stance, *caveat] or [tr("Nothing can be told.")])]
+
+
+def role(facts: Facts, side: Side) -> str:
+    """Name a side with what is known of it: "Right (prosthetic)"."""
+    patient = facts.visit.session.patient
+    if patient.prosthetic_side in (side, "both"):
+        return tr("{side} (prosthetic)").format(side=capitalised(side_name(side)))
+    if patient.affected_side in (side, "both"):
+        return tr("{side} (affected)").format(side=capitalised(side_name(side)))
+    return capitalised(side_name(side))
+
+
+def _knee_sentence(facts: Facts, side: Side) -> list[str]:
+    for column, name in (
+        ("knee_swing_peak_deg", tr("{side} knee in swing: {value}°")),
+        ("knee_range_deg", tr("{side} knee range over the stride: {value}°")),
+    ):
+        value = facts.value(side, column)
+        if not is_mean_enough(value.n):
+            continue
+        said = name.format(side=role(facts, side), value=fixed(value.mean, 0))
+        band = facts.band(column)
+        if band is None:
+            return [said + "."]
+        number = "[2]" if facts.is_band_two(column) else "[1]"
+        return [f"{said}, {against_band(value.mean, band)} ({tr('band')} {number})."]
+    return []
+
+
+def _difference_sentence(facts: Facts) -> list[str]:
+    """The largest difference between the knees that exceeds the measurement error."""
+    differences = facts.summary["both"].get("side_difference") or {}
+    names = {
+        "knee_loading_peak_deg": tr("Knee flexion while loading"),
+        "knee_stance_minimum_deg": tr("Least knee flexion in stance"),
+        "knee_swing_peak_deg": tr("Knee flexion in swing"),
+        "knee_range_deg": tr("Knee range"),
+    }
+    real = {
+        column: found
+        for column in names
+        if (found := differences.get(column)) is not None and found["verdict"] == Verdict.EXCEEDS_ERROR
+    }
+    if not real:
+        return []
+    column = max(real, key=lambda name: abs(real[name]["difference_deg"]))
+    values = {side: facts.value(side, column).mean for side in Side}
+    said = tr("{measure}: left {left}°, right {right}°; the difference of {difference}° is {verdict}.")
+    return [
+        said.format(
+            measure=names[column],
+            left=fixed(values[Side.LEFT], 0),
+            right=fixed(values[Side.RIGHT], 0),
+            difference=fixed(abs(real[column]["difference_deg"]), 1),
+            verdict=in_a_sentence(Verdict.EXCEEDS_ERROR),
+        )
+    ]
+
+
+def _stance_sentence(facts: Facts) -> list[str]:
+    left, right = (facts.value(side, "stance_percent") for side in Side)
+    if not (is_mean_enough(left.n) and is_mean_enough(right.n)):
+        return []
+    symmetry = _symmetry(facts, "stance_percent")
+    said = tr("Stance: left {left} %, right {right} % of the stride (symmetry {symmetry}).")
+    sentence = said.format(left=fixed(left.mean, 1), right=fixed(right.mean, 1), symmetry=symmetry)
+    double = facts.time_distance[tr("Double support")]
+    if double.both is not None and math.isfinite(double.both) and double.band and facts.values_group is not None:
+        more = tr("Double support: {value} %, {against}.")
+        sentence += " " + more.format(value=fixed(double.both, 1), against=against_band(double.both, double.band))
+    return [sentence]
+
+
+def _caveat(facts: Facts) -> list[str]:
+    _, reasons = quality.verdict_of(facts)
+    if reasons:
+        return reasons[:1]
+    late = [finding for finding in facts.visit.analysis.findings if finding.key == "prosthetic_toe_off"]
+    if late:
+        return [plain(sentence(late[0]))]
+    group = facts.curves_group
+    if group is not None and math.isfinite(facts.feet.speed_m_s) and not group.fits(facts.feet.speed_m_s):
+        said = tr("This walk: {speed} m/s, band [1]: {group} m/s. Part of a distance from the band comes from speed.")
+        return [said.format(speed=fixed(facts.feet.speed_m_s, 2), group=fixed(group.speed_m_s, 2))]
+    return []
+
+
+def _both_row(facts: Facts, name: str, label: str) -> list[Cell | str]:
+    figure = facts.time_distance[name]
+    value = math.nan if figure.both is None else figure.both
+    band = figure.band if facts.values_group is not None else None
+    is_known = math.isfinite(value) and any(is_mean_enough(facts.strides(side)) for side in facts.gait)
+    is_grey = not any(is_spread_enough(facts.strides(side)) for side in facts.gait)
+    shown = fixed(value, figure.decimals) if is_known else tr("not measured")
+    words = against_band(value, band) if band is not None and is_known else NOTHING
+    in_band = band_in_figures(band, figure.decimals) if band is not None else NOTHING
+    return [label, Cell(shown, is_grey=is_grey, span=2, is_centred=True), in_band, words, NOTHING]
+
+
+def _side_row(
+    facts: Facts, column: str, label: str, decimals: int, group: Band | None = None, symmetry: str | None = None
+) -> list[Cell | str]:
+    band = group if facts.values_group is not None else None
+    values = {side: facts.value(side, column) for side in Side}
+    cells = [_mean_cell(facts, side, value, decimals) for side, value in values.items()]
+    in_band = band_in_figures(band, decimals) if band is not None else NOTHING
+    words = sides_against_band({s: v for s, v in values.items() if is_mean_enough(v.n)}, band)
+    return [label, *cells, in_band, words, _symmetry(facts, column) if symmetry is None else symmetry]
+
+
+def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
+    """Say where both legs lie; in one line where they agree."""
+    if band is None or not values:
+        return NOTHING
+    said = {side: against_band(value.mean, band) for side, value in values.items() if math.isfinite(value.mean)}
+    if len(said) == len(Side) and len(set(said.values())) == 1:
+        return f"L, R {said[Side.LEFT]}"
+    return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
+
+
+def _mean_cell(facts: Facts, side: Side, value: MeanAndSd, decimals: int) -> Cell | str:
+    if side not in facts.gait:
+        return tr("not measured")
+    return Cell(spread(value, decimals), is_grey=not is_spread_enough(value.n))
+
+
+def _symmetry(facts: Facts, column: str) -> str:
+    index = (facts.summary["both"].get("symmetry_index_percent") or {}).get(column)
+    if index is None or not all(is_mean_enough(facts.strides(side)) for side in Side):
+        return NOTHING
+    return f"{signed(index, 1)} %"
+
+
+def _swing_band(facts: Facts) -> Band | None:
+    band = facts.time_distance[tr("Stance")].band
+    return None if band is None else (100 - band[1], 100 - band[0])
+
+
+def _single_support_row(facts: Facts) -> list[Cell | str]:
+    """A leg stands alone while the other swings; each in % of the swinging leg's stride."""
+    cells: list[Cell | str] = []
+    for other in (Side.RIGHT, Side.LEFT):
+        value = facts.value(other, "swing_percent")
+        shown = fixed(value.mean, 1) if is_mean_enough(value.n) and len(facts.gait) == 2 else NOTHING
+        cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
+    return [tr("Single support, % of stride"), *cells, NOTHING, NOTHING, NOTHING]
+
+
+def _variation_row(facts: Facts) -> list[Cell | str]:
+    cells: list[Cell | str] = []
+    for side in Side:
+        value = facts.value(side, "stride_time_s")
+        share = 100 * value.sd / value.mean if is_spread_enough(value.n) else math.nan
+        cells.append(fixed(share, 1))
+    return [tr("Variation of stride time (CV), %"), *cells, NOTHING, NOTHING, NOTHING]
+
+
+def _sensors(request: ReportRequest, facts: Facts) -> str:
+    worn = request.visit.recording(facts.walk.name).imu
+    rates = {info.rate_hz for site, info in request.visit.session.sensors.items() if site in worn and info.rate_hz}
+    models = {info.model for site, info in request.visit.session.sensors.items() if site in worn and info.model}
+    count = tr_n("{count} sensor", "{count} sensors", len(worn)).format(count=len(worn))
+    rate = [f"{rates.pop():g}\u00a0Hz"] if len(rates) == 1 else []
+    return ", ".join([count, *rate, *sorted(isolated(breakable(plain(model))) for model in models)])
+
+
+def _side_in_words(side: str) -> str:
+    known = {
+        Side.LEFT.value: capitalised(side_name(Side.LEFT)),
+        Side.RIGHT.value: capitalised(side_name(Side.RIGHT)),
+        "both": tr("Both"),
+        "none": tr("None"),
+    }
+    return known.get(side, tr("not stated"))
+
+
+def _sex(sex: str) -> str:
+    return {"male": tr("male"), "female": tr("female")}.get(sex, sex)
+
+
+def _speed_class(name: str) -> str:
+    return {"slow": tr("slow"), "comfortable": tr("comfortable"), "fast": tr("fast")}[name]

@@ -1,0 +1,71 @@
+"""How does a number stand on paper? Fixed decimals, a true minus, and words for where it lies against a band."""
+
+import math
+
+from app.wording import tr
+from core.gait.spatiotemporal import MeanAndSd
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, Verdict
+
+MINUS = "\u2212"
+NOTHING = "–"
+Band = tuple[float, float]
+"""Mean less and plus 1 SD of the group."""
+
+
+def fixed(value: float | None, decimals: int) -> str:
+    """Write a number with its decimals; what is not known is a dash, and nothing is minus zero."""
+    if value is None or not math.isfinite(value):
+        return NOTHING
+    text = f"{value:.{decimals}f}"
+    if text.startswith("-"):
+        text = text[1:] if not text.strip("-0.") else MINUS + text[1:]
+    return text
+
+
+def signed(value: float | None, decimals: int) -> str:
+    """Write a difference, always with its sign but for a zero."""
+    text = fixed(value, decimals)
+    return text if text == NOTHING or text.startswith(MINUS) or not text.strip("0.") else f"+{text}"
+
+
+def spread(found: MeanAndSd, decimals: int) -> str:
+    """Write mean ± SD; from fewer strides than a spread or a mean needs, without it."""
+    if found.n < MIN_STRIDES_FOR_MEAN:
+        return NOTHING
+    mean = fixed(found.mean, decimals)
+    return mean if found.n < MIN_STRIDES_FOR_SD or mean == NOTHING else f"{mean} ± {fixed(found.sd, decimals)}"
+
+
+def band_in_figures(band: Band, decimals: int) -> str:
+    return f"{fixed((band[0] + band[1]) / 2, decimals)} ± {fixed((band[1] - band[0]) / 2, decimals)}"
+
+
+def against_band(value: float, band: Band) -> str:
+    """Say how far a value lies from the group's mean, in its SD; never whether that is good."""
+    mean, sd = (band[0] + band[1]) / 2, (band[1] - band[0]) / 2
+    away = (value - mean) / sd
+    if abs(away) <= 1:
+        return tr("inside\u00a01\u00a0SD")
+    if abs(away) <= 2:
+        return tr("1–2\u00a0SD\u00a0below") if away < 0 else tr("1–2\u00a0SD\u00a0above")
+    return tr("more than 2\u00a0SD\u00a0below") if away < 0 else tr("more than 2\u00a0SD\u00a0above")
+
+
+def in_words(verdict: Verdict) -> str:
+    """Say in a table whether a difference is larger than the measurement error."""
+    return {
+        Verdict.EXCEEDS_ERROR: tr("exceeds error"),
+        Verdict.INSIDE_ERROR: tr("inside error"),
+        Verdict.TOO_FEW_STRIDES: tr("too few strides"),
+        Verdict.NO_PUBLISHED_FIGURE: tr("not judged"),
+    }[verdict]
+
+
+def in_a_sentence(verdict: Verdict) -> str:
+    """Say the same within a sentence."""
+    return {
+        Verdict.EXCEEDS_ERROR: tr("larger than measurement error"),
+        Verdict.INSIDE_ERROR: tr("inside measurement error"),
+        Verdict.TOO_FEW_STRIDES: tr("from too few strides to judge"),
+        Verdict.NO_PUBLISHED_FIGURE: tr("not judged"),
+    }[verdict]

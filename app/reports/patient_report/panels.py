@@ -1,0 +1,238 @@
+"""What have all curves of the report in common? Axes, the colours of legs and conditions, swatches, words for them."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from app.reports.patient_report.cycle_chart import Axis, Line, Mark
+from app.reports.patient_report.drawing import (
+    BAND_MEAN,
+    COLOURS,
+    DASHES,
+    INK,
+    INNER,
+    INNER_EDGE,
+    OUTER,
+    OUTER_EDGE,
+    Picture,
+    box,
+    line,
+    marker,
+    mixed,
+    picture,
+    text,
+)
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.wording import side_name, tr
+from core.body import Side
+from core.samples import FloatArray
+
+SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
+PEAK_COLUMNS = {
+    "knee": ("knee_loading_peak_deg", "knee_swing_peak_deg"),
+    "ankle": ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
+}
+
+
+def axis_of(facts: Facts, kind: str) -> Axis:
+    """The same in every report; without a zero, about the mean of the stride."""
+    if kind == "knee":
+        low, high = (-40, 50) if facts.has_no_zero(kind) else (-10, 80)
+        return Axis(low, high, 20, 10, tr("bent"), tr("straight"))
+    return Axis(-30, 30, 10, 10, tr("toes up"), tr("toes down"))
+
+
+def title_of(facts: Facts, kind: str) -> str:
+    if facts.has_no_zero(kind):
+        return (
+            tr("Knee angle, degrees from the mean of the stride (flexion +)")
+            if kind == "knee"
+            else tr("Ankle angle, degrees from the mean of the stride (dorsiflexion +)")
+        )
+    return (
+        tr("Knee angle, degrees (flexion +, extension −)")
+        if kind == "knee"
+        else tr("Ankle angle, degrees (dorsiflexion +, plantarflexion −)")
+    )
+
+
+def title_with_side(facts: Facts, kind: str, side: Side) -> str:
+    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    short = {
+        "knee": tr("knee, degrees from the mean (flexion +)"),
+        "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
+    }
+    title = title_of(facts, kind)
+    return said.format(title=short[kind] if facts.has_no_zero(kind) else title[:1].lower() + title[1:])
+
+
+def band_of(facts: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:
+    """Mean and SD of band [1]; None where there is none, or no height to compare."""
+    group = facts.curves_group
+    if group is None or facts.has_no_zero(kind):
+        return None
+    return (group.knee_mean_deg, group.knee_sd_deg) if kind == "knee" else (group.ankle_mean_deg, group.ankle_sd_deg)
+
+
+def line_of(facts: Facts, side: Side, kind: str, *, width: float, has_peaks: bool, dash: str | None = None) -> Line:
+    """One leg of one walk in its own colour."""
+    letter = side[0].upper()
+    off = facts.value(side, "stance_percent")
+    is_known = is_mean_enough(off.n)
+    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 0))
+    return Line(
+        letter=letter,
+        side=side,
+        colour=COLOURS[side],
+        width=width,
+        dash=DASHES[side] if dash is None else dash,
+        casing=1.7,
+        angle_deg=facts.mean_curve_deg(side, kind),
+        toe_off_percent=off.mean if is_known else math.nan,
+        toe_off_sd=off.sd if is_spread_enough(off.n) else math.nan,
+        toe_off_label=label,
+        peaks=_marks(facts, side, kind) if has_peaks and not facts.has_no_zero(kind) else (),
+        strides_deg=np.empty((0, 101)) if is_known else facts.strides_deg(side, kind),
+    )
+
+
+def condition_look(k: int, count: int, side: Side) -> tuple[str, float]:
+    """Colour and width of condition or visit `k` of `count`: earlier is pale and thin, later plain, dark and thick."""
+    pale, plain, dark = (
+        mixed(COLOURS[side], "#FFFFFF", 0.42),
+        COLOURS[side],
+        mixed(COLOURS[side], "#000000", 0.45),
+    )
+    if count == 2:
+        return ((pale, 1.0), (plain, 1.9))[k]
+    return ((pale, 0.95), (plain, 1.4), (dark, 2.1))[k]
+
+
+def swatch(side: Side, colour: str | None = None, width: float = 1.9) -> Picture:
+    y = SWATCH_HEIGHT / 2
+    return picture(
+        [line(0, y, SWATCH_WIDTH, y, colour or COLOURS[side], width, DASHES[side])], SWATCH_WIDTH, SWATCH_HEIGHT
+    )
+
+
+def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Picture:
+    """A letter, and the lines of both legs that it stands for."""
+    y, parts = SWATCH_HEIGHT / 2, [text(0, 7, letter, 7.6, weight=600)]
+    for k, (side, colour, width) in enumerate(looks):
+        x = 10 + 22 * k
+        parts.append(line(x, y, x + 19, y, colour, width, DASHES[side]))
+    return picture(parts, 53, SWATCH_HEIGHT)
+
+
+def stride_swatch() -> Picture:
+    """Thin lines, as single strides are drawn."""
+    parts = [line(0, y, SWATCH_WIDTH, y, COLOURS[Side.LEFT], 0.32) for y in (2.5, 4.5, 6.5)]
+    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
+
+
+def band_swatches() -> list[tuple[Picture, str]]:
+    inner = [
+        box(0.2, 1, SWATCH_WIDTH - 0.4, 7, INNER, INNER_EDGE, 0.35),
+        line(0, 4.5, SWATCH_WIDTH, 4.5, BAND_MEAN, 0.6),
+    ]
+    outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, OUTER, OUTER_EDGE, 0.35)]
+    return [
+        (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Band mean, ±1 SD [1]")),
+        (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
+    ]
+
+
+def leg_swatches(facts: Facts) -> list[tuple[Picture, str]]:
+    said = {Side.LEFT: tr("Left: solid line, circle"), Side.RIGHT: tr("Right: dashed line, square")}
+    return [(swatch(side), said[side]) for side in Side if side in facts.gait]
+
+
+def event_swatches() -> list[tuple[Picture, str]]:
+    x = SWATCH_WIDTH / 2
+    left = COLOURS[Side.LEFT]
+    toe_off = [line(x, 0, x, SWATCH_HEIGHT, left, 0.9), line(x - 5, 0.8, x + 5, 0.8, INK, 1.4)]
+    other = [line(x, 1, x, 8, left, 1.1)]
+    peak = [line(x, 0.5, x, 8.5, INK, 0.8), marker(x, 4.5, Side.LEFT)]
+    return [
+        (picture(toe_off, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Toe\u2011off, bar on top ±1 SD")),
+        (picture(other, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Other foot: toe\u2011off, contact")),
+        (picture(peak, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Mean of single peaks, ±1 SD")),
+    ]
+
+
+def cross_swatch() -> Picture:
+    x = SWATCH_WIDTH / 2
+    parts = [line(x - 1.8, 4.5 - 1.8 * way, x + 1.8, 4.5 + 1.8 * way, INK, 0.9) for way in (1, -1)]
+    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
+
+
+def other_foot(facts: Facts) -> tuple[tuple[float, Side], ...]:
+    """When in a leg's stride the other foot leaves and meets the ground, percent; each half a stride away in time.
+
+    Told by the step time, so that an uneven walk is drawn as it is.
+    """
+    ticks = []
+    for side in facts.gait:
+        other = Side.RIGHT if side is Side.LEFT else Side.LEFT
+        step, stride = facts.value(side, "step_time_s"), facts.value(side, "stride_time_s")
+        swing = facts.value(other, "swing_percent")
+        if not all(is_mean_enough(value.n) for value in (step, stride, swing)):
+            continue
+        contact = 100 - 100 * step.mean / stride.mean  # the other foot's contact begins this foot's step
+        ticks += [(contact, other), (contact - swing.mean, other)]
+    return tuple((percent, side) for percent, side in ticks if 0 < percent < 100)
+
+
+def not_drawn(facts: Facts, kind: str) -> list[str]:
+    """Say of each leg whose curve is missing why it is."""
+    said = []
+    for side in Side:
+        joint = f"{side_name(side)} " + (tr("knee") if kind == "knee" else tr("ankle"))
+        if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
+            said.append(tr("Not drawn: {joint}.").format(joint=joint))
+    return said
+
+
+def curve_alt(facts: Facts, kind: str, sides: Sequence[Side]) -> str:
+    """The figure in words and numbers, for who does not see it."""
+    said = [title_of(facts, kind) + "."]
+    for side in sides:
+        numbers = [tr("{count} strides").format(count=facts.strides(side))]
+        for column in PEAK_COLUMNS[kind]:
+            value, at = facts.value(side, column), facts.peak_percent(side, column)
+            if is_mean_enough(value.n):
+                peak = tr("{name} {value}° at {percent} %")
+                name = peak_name(column)
+                numbers.append(peak.format(name=name, value=fixed(value.mean, 0), percent=fixed(at.mean, 0)))
+        found = facts.value(side, f"{kind}_range_deg")
+        if is_mean_enough(found.n):
+            numbers.append(tr("range {value}°").format(value=fixed(found.mean, 0)))
+        off = facts.value(side, "stance_percent")
+        if is_mean_enough(off.n):
+            numbers.append(tr("toe\u2011off at {percent} %").format(percent=fixed(off.mean, 0)))
+        said.append(f"{side_name(side).capitalize()}: {', '.join(numbers)}.")
+    return " ".join([tr("SIMULATED.")] * facts.is_simulated + said)
+
+
+def peak_name(column: str) -> str:
+    return {
+        "knee_loading_peak_deg": tr("most flexed, loading"),
+        "knee_stance_minimum_deg": tr("least flexed, stance"),
+        "knee_swing_peak_deg": tr("most flexed, swing"),
+        "ankle_loading_plantarflexion_deg": tr("most plantarflexed, loading"),
+        "ankle_stance_dorsiflexion_deg": tr("most dorsiflexed, stance"),
+        "ankle_push_off_plantarflexion_deg": tr("most plantarflexed, push\u2011off"),
+        "ankle_swing_dorsiflexion_deg": tr("most dorsiflexed, swing"),
+    }[column]
+
+
+def _marks(facts: Facts, side: Side, kind: str) -> tuple[Mark, ...]:
+    marks = []
+    for column in PEAK_COLUMNS[kind]:
+        value, at = facts.value(side, column), facts.peak_percent(side, column)
+        if is_mean_enough(value.n) and math.isfinite(at.mean):
+            marks.append(Mark(at.mean, value.mean, value.sd if is_spread_enough(value.n) else math.nan))
+    return tuple(marks)

@@ -1,0 +1,143 @@
+"""What are the peaks and ranges, how do the legs differ, and where do both lie against the band?"""
+
+import math
+
+from app.reports.patient_report import quality
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
+from app.reports.patient_report.facts import KINDS, WINDOWS, Facts, joint_of
+from app.reports.patient_report.first_page import sides_against_band
+from app.reports.patient_report.numbers_in_words import NOTHING, band_in_figures, fixed, in_words, signed, spread
+from app.reports.patient_report.panels import peak_name
+from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.wording import capitalised, tr
+from core.body import Side
+from core.gait.spatiotemporal import MeanAndSd
+from core.norms import KNEE_NEW_ATTACHMENT_DEG, Verdict
+
+COLUMNS = {
+    "knee": (
+        "knee_at_initial_contact_deg",
+        "knee_loading_peak_deg",
+        "knee_stance_minimum_deg",
+        "knee_swing_peak_deg",
+        "knee_range_deg",
+    ),
+    "ankle": (
+        "ankle_at_initial_contact_deg",
+        "ankle_loading_plantarflexion_deg",
+        "ankle_stance_dorsiflexion_deg",
+        "ankle_push_off_plantarflexion_deg",
+        "ankle_swing_dorsiflexion_deg",
+        "ankle_range_deg",
+    ),
+}
+WEAK = "\u2020"
+
+
+def peaks_page(facts: Facts) -> list[Block]:
+    one, other = facts.first_and_second
+    columns = [
+        Column(tr("Measure, °"), "1fr", is_number=False),
+        *_side_columns(facts, Side.LEFT),
+        *_side_columns(facts, Side.RIGHT),
+        Column(f"{one[0].upper()} − {other[0].upper()}"),
+        Column(tr("In words"), is_number=False),
+        Column(tr("Band [1]")),
+        Column(tr("Against the band"), "29mm", is_number=False),
+    ]
+    rows: list[Row] = []
+    for kind in KINDS:
+        if not facts.has_joint(kind):
+            continue
+        rows.append(tr("Knee (flexion +)") if kind == "knee" else tr("Ankle (dorsiflexion +)"))
+        rows += [_row(facts, column) for column in COLUMNS[kind]]
+        if facts.curves_group is not None and not facts.has_no_zero(kind):
+            rows.append(_score_row(facts, kind))
+    said = [
+        tr(
+            "Differences are formed before rounding; in words: against the measurement error between legs, {error}°."
+        ).format(error=fixed(KNEE_NEW_ATTACHMENT_DEG, 1)),
+        tr("For the ankle no such figure is known, so it is not judged."),
+        tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero."),
+    ]
+    if facts.values_group is not None:
+        said.append(tr("[2] marks what stands against band [2]."))
+    if any(quality.is_weak_axis(facts, joint) for joint in facts.calibrated):
+        said.append(tr("{mark}: the joint's axis is uncertain; read timing, not height.").format(mark=WEAK))
+    if any(facts.has_no_zero(kind) for kind in KINDS):
+        said.append(tr("Without a zero only ranges and times are given."))
+    opening = tr(
+        "Degrees, mean ± SD over strides. “at %” is the mean time of the peak in the stride. "
+        "Windows in brackets are % of the stride."
+    )
+    return [heading(tr("Peaks and range")), note(opening), table(columns, rows), note(" ".join(said))]
+
+
+def _side_columns(facts: Facts, side: Side) -> list[Column]:
+    said = tr("Left") if side is Side.LEFT else tr("Right")
+    return [Column(f"{said}\nn = {facts.strides(side)}"), Column(tr("at %"))]
+
+
+def measure(facts: Facts, column: str) -> str:
+    """Name a row, with the window its peak is looked for in."""
+    if column.endswith("_at_initial_contact_deg"):
+        return tr("At initial contact")
+    if column.endswith("_range_deg"):
+        return tr("Range over the stride")
+    window = WINDOWS[column]
+    number = " [2]" if facts.is_band_two(column) else ""
+    name = capitalised(peak_name(column)).replace(", ", ",\n")  # else a line ends within the window
+    return f"{name} ({window.first}–{window.last}\u00a0%){number}"
+
+
+def _row(facts: Facts, column: str) -> list[Cell | str]:
+    cells: list[Cell | str] = [measure(facts, column)]
+    for side in Side:
+        cells += [value_cell(facts, side, column), fixed(_percent(facts, side, column), 0)]
+    band = facts.band(column)
+    kind = column.split("_")[0]
+    group_range = facts.group_range_deg(kind) if column.endswith("_range_deg") else None
+    if facts.has_no_zero(kind) and group_range is None:
+        in_band = against = NOTHING
+    elif band is not None:
+        in_band = band_in_figures(band, 1)
+        known = {side: facts.value(side, column) for side in Side}
+        against = sides_against_band({side: v for side, v in known.items() if is_mean_enough(v.n)}, band)
+    else:
+        in_band = fixed(group_range, 1) if group_range is not None else tr("no band")
+        against = tr("band has no SD") if group_range is not None else NOTHING
+    return [*cells, *_difference_cells(facts, column), in_band, against]
+
+
+def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
+    """Give mean ± SD, or why there is none."""
+    joint = joint_of(column.split("_")[0], side)
+    if not facts.is_measured(joint):
+        return tr("not measured")
+    if facts.is_no_peak(side, column):
+        return tr("no peak")
+    value = facts.value(side, column)
+    mark = WEAK if quality.is_weak_axis(facts, joint) and is_mean_enough(value.n) else ""
+    return Cell(spread(value, 1) + mark, is_grey=not is_spread_enough(value.n))
+
+
+def _percent(facts: Facts, side: Side, column: str) -> float:
+    at: MeanAndSd = facts.peak_percent(side, column)
+    return at.mean if is_mean_enough(at.n) else math.nan
+
+
+def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
+    found = (facts.summary["both"].get("side_difference") or {}).get(column)
+    if found is None or found["difference_deg"] is None:
+        return [NOTHING, NOTHING]
+    verdict = Verdict(found["verdict"])
+    return [signed(found["difference_deg"], 1), Cell(in_words(verdict), is_bold=verdict is Verdict.EXCEEDS_ERROR)]
+
+
+def _score_row(facts: Facts, kind: str) -> list[Cell | str]:
+    cells: list[Cell | str] = [tr("Distance from band mean (GVS)")]
+    for side in Side:
+        scores = facts.summary[str(side)].get("gait_variable_score_deg") or {}
+        is_shown = facts.curves_group is not None and is_mean_enough(facts.strides(side))
+        cells += [fixed(scores.get(kind) if is_shown else None, 1), NOTHING]
+    return [*cells, NOTHING, NOTHING, NOTHING, NOTHING]

@@ -1,0 +1,90 @@
+"""What is a report made of? A visit, the walks that were chosen from it, and what the clinic said to it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import datetime
+
+from core.results import Analysis, RecordingAnalysis
+from core.samples import Recording, RecordingKind, Session
+
+MAX_CONDITIONS = 3  # more lines in one panel cannot be told apart
+PAPERS = ("a4", "letter")
+
+
+@dataclass(frozen=True, slots=True)
+class Visit:
+    """One session and its analysis."""
+
+    session: Session
+    analysis: Analysis
+
+    def walk(self, name: str) -> RecordingAnalysis:
+        """Give the analysis of one walk.
+
+        Raises
+        ------
+        KeyError
+            There is no such walk among those analysed.
+        """
+        for recording in self.analysis.recordings:
+            if recording.name == name and recording.kind is RecordingKind.WALKING:
+                return recording
+        raise KeyError(name)
+
+    def recording(self, name: str) -> Recording:
+        """Give the recording as it was told."""
+        return next(recording for recording in self.session.recordings if recording.name == name)
+
+    def walk_names(self) -> tuple[str, ...]:
+        return tuple(r.name for r in self.analysis.recordings if r.kind is RecordingKind.WALKING)
+
+
+@dataclass(frozen=True, slots=True)
+class ReportRequest:
+    """What the report of a visit shows.
+
+    Attributes
+    ----------
+    walks
+        Names of the walks: one, or up to three conditions in the order of their letters. The last one is shown on
+        every page.
+    made_at
+        When the report is made; must know its time zone.
+    earlier
+        A visit before this one and the name of its walk to compare with; used where one walk is chosen.
+    """
+
+    visit: Visit
+    walks: tuple[str, ...]
+    made_at: datetime
+    software_version: str
+    comment: str = ""
+    operator: str = ""
+    clinic: str = ""
+    paper: str = "a4"
+    earlier: tuple[Visit, str] | None = None
+
+    def __post_init__(self) -> None:
+        if self.made_at.tzinfo is None:
+            raise ValueError("made_at has no time zone")
+        if self.paper not in PAPERS:
+            raise ValueError(f"paper is {self.paper}, expected one of {PAPERS}")
+        if not 1 <= len(self.walks) <= MAX_CONDITIONS:
+            raise ValueError(f"{len(self.walks)} walks, expected 1 to {MAX_CONDITIONS}")
+
+    @property
+    def shown(self) -> str:
+        return self.walks[-1]
+
+
+def default_walks(visit: Visit) -> tuple[str, ...]:
+    """Choose the last walk of each of the last conditions; the last walk alone where there is one condition.
+
+    Walks without a stride that is used come last, but a report of them still says why. Empty: no walk was analysed.
+    """
+    names = visit.walk_names()
+    walked = [name for name in names if any(g.strides.is_used.any() for g in visit.walk(name).gait.values())]
+    chosen: Sequence[str] = walked or names[-1:]
+    last = {visit.recording(name).condition: name for name in chosen}
+    by_time = [name for name in chosen if name in last.values()]
+    return tuple(by_time[-MAX_CONDITIONS:])
