@@ -1,0 +1,268 @@
+"""When was a sample taken, by the host's clock, if the sensor says when by its own?
+
+What arrives was sent before it arrived: latency only ever delays. So the line from the device's clock to the host's
+touches the arrivals from below (Zhang, Liu & Xia 2002, Clock synchronization algorithms for network measurements, IEEE
+INFOCOM, doi:10.1109/INFCOM.2002.1019257). The least latency cannot be seen from here and remains: a millisecond by
+cable.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.samples import BoolArray, FloatArray, IntArray
+from devices.source import SensorCounts
+
+MOST_SKEW = 500e-6  # the worst quartz; what looks like more is latency that changed
+BIN_S = 0.5  # of which the earliest arrival counts; within it the clocks part by less than a quarter millisecond
+SPREAD_S = 10.0  # pieces whose earliest arrivals tell how straight the clocks run
+BACK_S = 1.0  # so far back a sample may have been overtaken on its way
+AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
+AGREEING = 5  # samples that make a new clock of what looked damaged
+
+
+@dataclass(frozen=True, slots=True)
+class ClockFit:
+    """`host_s = device_s + offset_s + skew (device_s - origin_s)`.
+
+    Attributes
+    ----------
+    residual_s
+        How far from the line the earliest arrivals of ten seconds each lie: root mean square.
+    """
+
+    origin_s: float
+    offset_s: float
+    skew: float
+    residual_s: float = 0.0
+
+    def host_s(self, device_s: FloatArray) -> FloatArray:
+        return device_s + (self.offset_s + self.skew * (device_s - self.origin_s))
+
+
+def fit_clock(device_s: FloatArray, host_s: FloatArray) -> ClockFit:
+    """Find the line below all arrivals (n,) that comes nearest to them, n > 0, in any order."""
+    order = np.argsort(device_s, kind="stable")
+    x_s, late_s = device_s[order], (host_s - device_s)[order]
+    origin_s, least_s = float(x_s[0]), float(late_s.min())
+    at_s, earliest_s = _earliest(x_s, late_s, BIN_S)
+    skew = _slope_below(at_s - origin_s, earliest_s - least_s)
+    offset_s = float((late_s - skew * (x_s - origin_s)).min())
+    at_s, earliest_s = _earliest(x_s, late_s - skew * (x_s - origin_s) - offset_s, SPREAD_S)
+    return ClockFit(origin_s, offset_s, skew, float(np.sqrt(np.mean(earliest_s**2))))
+
+
+def _earliest(x_s: FloatArray, late_s: FloatArray, bin_s: float) -> tuple[FloatArray, FloatArray]:
+    """The least late (m,) of each bin, and where it is; `x_s` (n,) ascends."""
+    starts = np.flatnonzero(np.diff(np.floor(x_s / bin_s), prepend=-np.inf) > 0)
+    least_s = np.minimum.reduceat(late_s, starts)
+    is_least = late_s == np.repeat(least_s, np.diff(starts, append=len(x_s)))
+    rows = np.flatnonzero(is_least)
+    first = rows[np.searchsorted(rows, starts)]
+    return x_s[first], least_s
+
+
+def _slope_below(x: FloatArray, y: FloatArray) -> float:
+    """Slope of the lower hull's edge at the mean of x: of all lines below, its distances have the least sum."""
+    hull: list[tuple[float, float]] = []
+    for point in zip(x.tolist(), y.tolist(), strict=True):
+        while len(hull) > 1 and _turn(hull[-2], hull[-1], point) <= 0:
+            hull.pop()
+        hull.append(point)
+    if len(hull) < 2:
+        return 0.0
+    middle = float(x.mean())
+    k = next((k for k, (at, _) in enumerate(hull) if at >= middle), len(hull) - 1)
+    (left_x, left_y), (right_x, right_y) = hull[max(k - 1, 0)], hull[max(k, 1)]
+    return float(np.clip((right_y - left_y) / (right_x - left_x), -MOST_SKEW, MOST_SKEW))
+
+
+def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+    """Positive where a, b, c turn left."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+class ClockRuns:
+    """Tells which samples share one run of the sensor's clock, and which carry a time that cannot be.
+
+    A sensor that was switched off begins anew. A single wild stamp, of a message without a checksum, is damage; five
+    that agree are a new run, whose first four are given up.
+    """
+
+    def __init__(self) -> None:
+        self.run = -1
+        self._last: tuple[float, float] | None = None
+        self._doubtful: list[tuple[float, float]] = []
+
+    def take(self, device_s: FloatArray, host_s: FloatArray) -> IntArray:
+        """Number the run of each arrival (n,), in the order in which they arrived; -1 for what cannot be."""
+        if self._last is not None and len(device_s) and not self._doubtful:
+            last_device_s, last_host_s = self._last
+            step_s = np.diff(device_s, prepend=last_device_s)
+            is_meant = (step_s > -BACK_S) & (step_s < np.diff(host_s, prepend=last_host_s) + AHEAD_S)
+            if is_meant.all():
+                self._last = float(device_s[-1]), float(host_s[-1])
+                return np.full(len(device_s), self.run, dtype=np.int64)
+        pairs = zip(device_s.tolist(), host_s.tolist(), strict=True)
+        return np.fromiter((self._one(pair) for pair in pairs), np.int64, len(device_s))
+
+    def _one(self, pair: tuple[float, float]) -> int:
+        if self._last is None:
+            self.run += 1
+        elif not _follows(self._last, pair):
+            if self._doubtful and not _follows(self._doubtful[-1], pair):
+                self._doubtful.clear()
+            self._doubtful.append(pair)
+            if len(self._doubtful) < AGREEING:
+                return -1
+            self.run += 1
+        self._doubtful.clear()
+        self._last = pair
+        return self.run
+
+
+def _follows(before: tuple[float, float], pair: tuple[float, float]) -> bool:
+    step_s = pair[0] - before[0]
+    return -BACK_S < step_s < pair[1] - before[1] + AHEAD_S
+
+
+class Unwrapping:
+    """A counter of so many bits, made to go on where it begins anew, however long it was not heard."""
+
+    def __init__(self, bits: int, tick_hz: float) -> None:
+        self._span, self._tick_hz = 1 << bits, tick_hz
+        self._last: tuple[int, float] | None = None
+
+    def ticks(self, counter: int, host_s: float) -> int:
+        """Ticks since the counter was 0 before it was first heard; less than the one before where overtaken."""
+        if self._last is None:
+            self._last = counter, host_s
+            return counter
+        ticks, heard_s = self._last
+        expected = ticks + round((host_s - heard_s) * self._tick_hz)
+        half = self._span // 2
+        near = expected + (counter - expected + half) % self._span - half
+        self._last = near, host_s
+        return near
+
+
+class LiveClock:
+    """Stamps while they come, from the sensor's clock: what is known improves, and the stamps follow it gently.
+
+    A correction changes an interval by a twentieth at most, so that none looks like a lost sample.
+    """
+
+    KEPT_S = 600.0
+    FOLLOWS = 0.05
+    JUMPS_S = 0.5  # what is this wrong was no clock
+
+    def __init__(self) -> None:
+        self._runs = ClockRuns()
+        self._bins: dict[int, tuple[float, float]] = {}
+        self._fit: ClockFit | None = None
+        self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
+        self._run = -1
+
+    @property
+    def residual_s(self) -> float:
+        return self._fit.residual_s if self._fit is not None else 0.0
+
+    def stamp(self, device_s: FloatArray, host_s: float) -> FloatArray:
+        """Stamps (n,) of samples that arrived together, in seconds of the host; NaN for what cannot be."""
+        run = self._runs.take(device_s, np.full(len(device_s), host_s))
+        stamps_s = np.full(len(device_s), np.nan)
+        if self._runs.run != self._run:
+            self._run, self._fit, self._bins = self._runs.run, None, {}
+        rows = run == self._run
+        if not rows.any():
+            return stamps_s
+        known_s = device_s[rows]
+        self._learn(known_s, host_s)
+        stamps_s[rows] = self._followed(known_s)
+        return stamps_s
+
+    def _learn(self, device_s: FloatArray, host_s: float) -> None:
+        # of samples that arrive together the last tells most: it waited least
+        newest_s = float(device_s.max())
+        number, late_s = int(newest_s // BIN_S), host_s - newest_s
+        if number not in self._bins or late_s < self._bins[number][1]:
+            self._bins[number] = newest_s, late_s
+        fit = self._fit
+        is_early = fit is None or host_s < fit.host_s(np.array([newest_s]))[0]
+        if is_early or newest_s - self._fitted_at_s > 1.0:
+            while len(self._bins) > self.KEPT_S / BIN_S:
+                del self._bins[min(self._bins)]
+            at_s, behind_s = np.array(list(self._bins.values())).T
+            self._fit, self._fitted_at_s = fit_clock(at_s, at_s + behind_s), newest_s
+            if fit is None:
+                self._shift_s, self._stamped_s = 0.0, newest_s
+            else:  # go on from what was said last
+                moved_s = (fit.host_s(at_s[-1:]) - self._fit.host_s(at_s[-1:]))[0]
+                self._shift_s += float(moved_s)
+                if abs(self._shift_s) > self.JUMPS_S:
+                    self._shift_s = 0.0
+
+    def _followed(self, device_s: FloatArray) -> FloatArray:
+        assert self._fit is not None
+        passed_s = np.maximum(device_s - self._stamped_s, 0.0)
+        shift_s = np.sign(self._shift_s) * np.maximum(abs(self._shift_s) - self.FOLLOWS * passed_s, 0.0)
+        self._shift_s, self._stamped_s = float(shift_s[-1]), max(self._stamped_s, float(device_s.max()))
+        return self._fit.host_s(device_s) + shift_s
+
+
+@dataclass(frozen=True, slots=True)
+class Ordered:
+    """Rows of a stream by when they were taken: `rows` indexes what arrived, `time_s` on the host's clock."""
+
+    rows: IntArray
+    time_s: FloatArray
+    device_s: FloatArray
+    counts: SensorCounts
+    residual_s: float
+
+
+def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None) -> Ordered:
+    """Order arrivals (n,) by the sensor's clock, each once, and stamp them by the host's.
+
+    Parameters
+    ----------
+    step_s
+        Between two samples, where it is known; else the usual one.
+    """
+    run = ClockRuns().take(device_s, host_s)
+    rows: list[IntArray] = []
+    times: list[FloatArray] = []
+    residuals: list[float] = []
+    doubled = late = lost = 0
+    for number in range(int(run.max(initial=-1)) + 1):
+        arrived = np.flatnonzero(run == number)
+        order = arrived[np.argsort(device_s[arrived], kind="stable")]
+        is_new = np.diff(device_s[order], prepend=-np.inf) > 0
+        fit = fit_clock(device_s[arrived], host_s[arrived])
+        kept = order[is_new]
+        first = device_s[np.sort(kept)]
+        late += int(np.count_nonzero(first[1:] < np.maximum.accumulate(first)[:-1]))
+        doubled += int(np.count_nonzero(~is_new))
+        usual_s = step_s or _usual_step_s(device_s[kept])
+        lost += _missing(device_s[kept], usual_s)
+        stamps_s = fit.host_s(device_s[kept])
+        if times and len(stamps_s):  # the sensor began anew
+            is_later: BoolArray = stamps_s > times[-1][-1]
+            kept, stamps_s = kept[is_later], stamps_s[is_later]
+            lost += _missing(np.concatenate([times[-1][-1:], stamps_s[:1]]), usual_s)
+        rows.append(kept)
+        times.append(stamps_s)
+        residuals.append(fit.residual_s)
+    chosen = np.concatenate([*rows, np.empty(0, np.int64)]).astype(np.int64)
+    time_s = np.concatenate([*times, np.empty(0)])
+    damaged = int(np.count_nonzero(run < 0))
+    counts = SensorCounts(received=len(chosen), lost=lost, damaged=damaged, doubled=doubled, late=late)
+    return Ordered(chosen, time_s, device_s[chosen], counts, max(residuals, default=0.0))
+
+
+def _usual_step_s(device_s: FloatArray) -> float:
+    return float(np.median(np.diff(device_s))) if len(device_s) > 2 else np.inf
+
+
+def _missing(time_s: FloatArray, step_s: float) -> int:
+    return int(np.maximum(np.round(np.diff(time_s) / step_s) - 1, 0).sum())

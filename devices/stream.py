@@ -1,0 +1,253 @@
+"""How does one sensor's stream of bytes become samples, live and once more from a journal?
+
+A driver is a `Dialect`: how to greet the sensor, and the `Framer` that finds messages in its bytes. All else is the
+same for all of them and stands here. A framer uses nothing but the bytes and what `SourceInfo` holds, and what it finds
+does not depend on how the bytes were cut.
+"""
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from typing import Protocol
+
+import numpy as np
+
+from core.samples import FloatArray, ImuBlock, RecordingKind
+from devices.channels import Channel
+from devices.clock import LiveClock, Ordered, put_in_order
+from devices.host_clock import host_time_ns
+from devices.live import Keep, SensorTold
+from devices.source import DecodedSensor, SourceInfo
+
+Row = tuple[float, ...]
+"""Seconds of the sensor's clock, then angular rate in rad/s (3) and specific force in m/s2 (3)."""
+
+COLUMNS = 7
+WAITS_S = 0.02
+
+
+@dataclass(slots=True)
+class Heard:
+    """What a framer found, taken from it piece by piece.
+
+    Attributes
+    ----------
+    rows
+        One per sample.
+    orientations
+        Seconds of the sensor's clock, then the sensor's own orientation, scalar first.
+    damaged
+        Messages that were cut, failed their check, or say what cannot be.
+    skipped
+        Whole messages that mean nothing here.
+    battery
+        0 to 1, as it was told last.
+    replies
+        What the sensor answered.
+    """
+
+    rows: list[Row] = field(default_factory=list)
+    orientations: list[Row] = field(default_factory=list)
+    damaged: int = 0
+    skipped: int = 0
+    battery: float | None = None
+    replies: list[bytes] = field(default_factory=list)
+
+
+class Framer(Protocol):
+    """Finds messages in bytes. Holds a bounded number of them back, and raises nothing, whatever they are."""
+
+    heard: Heard
+
+    def feed(self, data: bytes, host_s: float) -> None:
+        """Take the next bytes, in pieces of any size."""
+
+    def flush(self) -> None:
+        """Nothing follows: take what was held back for what might follow."""
+
+
+class Dialect(Protocol):
+    """What is particular about one maker's sensors."""
+
+    @property
+    def driver(self) -> str: ...
+
+    @property
+    def version(self) -> str: ...
+
+    def framer(self, info: SourceInfo) -> Framer:
+        """A new framer for what is sent under `info`."""
+
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+        """Find out who is there, and set it up as wanted.
+
+        Raises
+        ------
+        SourceRefusedError
+            It is something else, or says nothing.
+        """
+
+    def identifying(self) -> bytes:
+        """What lights the sensor's LED; empty where nothing does."""
+
+
+class Decoder:
+    """The `StreamDecoder` of every dialect: all samples in order, each once, stamped by the host's clock."""
+
+    def __init__(self, dialect: Dialect) -> None:
+        self._dialect = dialect
+        self._framer: Framer | None = None
+        self._info = SourceInfo(dialect.driver, dialect.version)
+        self._heard = Heard()
+        self._host_s: list[float] = []
+
+    def begin(self, source: SourceInfo) -> None:
+        self._end()
+        self._info, self._framer = source, self._dialect.framer(source)
+
+    def feed(self, data: bytes, host_time_s: float) -> None:
+        if self._framer is not None:
+            self._framer.feed(data, host_time_s)
+            self._take(host_time_s)
+
+    def finish(self) -> Mapping[str, DecodedSensor]:
+        self._end()
+        if not self._info.sensors:
+            return {}
+        rows = np.array(self._heard.rows, dtype=float).reshape(-1, COLUMNS)
+        ordered = put_in_order(rows[:, 0], np.array(self._host_s, dtype=float), _step_s(self._info))
+        block = ImuBlock(
+            sensor=self._info.sensors[0],
+            time_s=ordered.time_s,
+            gyr_rad_s=rows[ordered.rows, 1:4],
+            acc_m_s2=rows[ordered.rows, 4:7],
+            q_earth_from_sensor=_orientation(self._heard.orientations, ordered),
+        )
+        counts = replace(ordered.counts, damaged=ordered.counts.damaged + self._heard.damaged)
+        return {block.sensor: DecodedSensor(block, counts)}
+
+    def _take(self, host_time_s: float) -> None:
+        assert self._framer is not None
+        found = self._framer.heard
+        self._host_s += [host_time_s] * len(found.rows)
+        self._heard.rows += found.rows
+        self._heard.orientations += found.orientations
+        self._heard.damaged += found.damaged
+        self._framer.heard = Heard(battery=found.battery)
+
+    def _end(self) -> None:
+        if self._framer is not None:
+            self._framer.flush()
+            self._take(self._host_s[-1] if self._host_s else 0.0)
+            self._framer = None
+
+
+class ByteSource:
+    """The `LiveSource` of every dialect: journal first, then messages, then stamps. One sensor."""
+
+    has_bytes = True
+
+    def __init__(self, dialect: Dialect, channel: Channel, now_ns: Callable[[], int] = host_time_ns) -> None:
+        self._dialect, self._channel, self._now_ns = dialect, channel, now_ns
+        self._info = SourceInfo(dialect.driver, dialect.version)
+        self._told = SensorTold()
+        self._framer: Framer | None = None
+        self._clock = LiveClock()
+        self._damaged = 0
+        self._is_open = False
+
+    @property
+    def info(self) -> SourceInfo:
+        return self._info
+
+    @property
+    def clock_residual_s(self) -> float:
+        """How well the sensor's clock and the host's go together; see `ClockFit`."""
+        return self._clock.residual_s
+
+    @property
+    def damaged(self) -> int:
+        """Messages that could not be understood since the source was made."""
+        return self._damaged
+
+    def open(self) -> None:
+        self._channel.open()
+        try:
+            info, told = self._dialect.greet(self._channel)
+        except BaseException:
+            self._channel.close()
+            raise
+        if self._info.sensors:  # it keeps its name, whatever it says of itself after it was lost
+            info = replace(info, sensors=self._info.sensors)
+        self._info, self._told = info, told
+        self._framer, self._is_open = self._dialect.framer(info), True
+
+    def read(self, keep: Keep) -> Sequence[ImuBlock]:
+        data = self._channel.read()
+        if not data or self._framer is None:
+            return ()
+        keep(data)
+        now_s = self._now_ns() / 1e9
+        framer = self._framer
+        framer.feed(data, now_s)
+        heard, framer.heard = framer.heard, Heard(battery=framer.heard.battery)
+        self._damaged += heard.damaged
+        if heard.battery is not None and heard.battery != self._told.battery:
+            self._told = replace(self._told, battery=heard.battery)
+        if not heard.rows:
+            return ()
+        rows = np.array(heard.rows, dtype=float)
+        stamps_s = self._clock.stamp(rows[:, 0], now_s)
+        return (ImuBlock(self._info.sensors[0], stamps_s, rows[:, 1:4], rows[:, 4:7]),)
+
+    def close(self) -> None:
+        self._is_open = False
+        self._channel.close()
+
+    def told(self) -> Mapping[str, SensorTold]:
+        return dict.fromkeys(self._info.sensors, self._told)
+
+    def identify(self, sensor: str) -> bool:
+        command = self._dialect.identifying()
+        if not command or not self._is_open or sensor not in self._info.sensors:
+            return False
+        with suppress(Exception):  # what is lost is noticed by whoever reads
+            self._channel.write(command)
+            return True
+        return False
+
+    def ask(self, kind: RecordingKind | None) -> None:
+        """Only simulated patients listen."""
+
+
+def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[bytes], bool], within_s: float) -> bytes:
+    """Send a command and wait for its answer; empty where none comes. What is heard meanwhile stays with the framer."""
+    channel.write(command)
+    return listen(channel, framer, lambda heard: next(filter(is_answer, heard.replies), b""), within_s)
+
+
+def listen(channel: Channel, framer: Framer, found: Callable[[Heard], bytes], within_s: float) -> bytes:
+    """Read until `found` finds something in what was heard, for so long at most."""
+    until_s = time.monotonic() + within_s
+    while time.monotonic() < until_s:
+        framer.feed(channel.read(), time.monotonic())
+        if answer := found(framer.heard):
+            return answer
+    return b""
+
+
+def _step_s(info: SourceInfo) -> float | None:
+    rate_hz = info.settings.get("rate_hz")
+    return 1.0 / rate_hz if isinstance(rate_hz, int | float) and rate_hz > 0 else None
+
+
+def _orientation(rows: Sequence[Row], ordered: Ordered) -> FloatArray | None:
+    """The orientation (n, 4) that was told of the same instant as each sample; NaN where none was."""
+    if not rows:
+        return None
+    told = np.array(rows, dtype=float)
+    told = told[np.argsort(told[:, 0], kind="stable")]
+    place = np.minimum(told[:, 0].searchsorted(ordered.device_s), len(told) - 1)
+    is_told = told[place, 0] == ordered.device_s
+    return np.where(is_told[:, None], told[place, 1:], np.nan)
