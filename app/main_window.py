@@ -420,6 +420,7 @@ def open_window(argv: list[str]) -> int:
         What stood behind the program's name.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
+    gc.disable()  # until all is imported
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     log_qt_messages()
     app = QApplication([sys.argv[0], *argv])
@@ -428,7 +429,8 @@ def open_window(argv: list[str]) -> int:
     load_fonts()
     window = MainWindow(Look(app), Settings(own_settings()), default_folder())
     window.show()
-    window.preparing.done.connect(_keep_imported)
+    window.preparing.done.connect(_collect_garbage_again)
+    window.preparing.failed.connect(_collect_garbage_again)
     QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
@@ -438,9 +440,10 @@ def open_window(argv: list[str]) -> int:
     return code
 
 
-def _keep_imported() -> None:
-    """Leave what was imported out of garbage collections: to look through it takes a tenth of a second each time."""
+def _collect_garbage_again() -> None:
+    """Look no more through what was imported: each time that would hold all threads up for a tenth of a second."""
     gc.freeze()
+    gc.enable()
 
 
 def own_settings() -> QSettings:
