@@ -1,0 +1,179 @@
+"""How is a session's log shown in Rerun? In a window of its own, a program that ends with ours.
+
+The log is plain text to whoever reads the disk, and may come out of an encrypted library. So it lies in one folder per
+run of the program, which only this user may enter, and which is emptied when the program ends or, where it could not,
+at its next start. The viewer keeps its own settings there too: analytics are off, nothing of a session stays with it.
+It listens on this computer only.
+"""
+
+import importlib.util
+import logging
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from contextlib import ExitStack, suppress
+from pathlib import Path
+
+import platformdirs
+
+from app.storage.files import held
+from app.wording import tr
+from core.results import Analysis
+from core.samples import Session
+
+MEMORY_LIMIT = "2GB"  # forty sessions of ten minutes
+END_S = 5.0  # then it is ended by force
+ADDRESS = "127.0.0.1"
+SETTINGS = "settings"
+LOCK = ".lock"
+
+_log = logging.getLogger(__name__)
+
+
+class ViewerRefusedError(Exception):
+    """Nothing can be shown; the message is for the clinician."""
+
+
+def default_root() -> Path:
+    """Where the folders of all runs are."""
+    return platformdirs.user_cache_path("gaitwright", appauthor=False) / "review"
+
+
+def viewer_program() -> Path | None:
+    """The viewer itself, which comes with the library; not the script that starts it and would outlive its end."""
+    found = importlib.util.find_spec("rerun_cli")
+    if found is None or found.origin is None:
+        return None
+    folder = Path(found.origin).parent
+    names = {"win32": ("rerun.exe",), "darwin": ("Rerun.app/Contents/MacOS/Rerun", "rerun")}.get(
+        sys.platform, ("rerun",)
+    )
+    return next((folder / name for name in names if (folder / name).is_file()), None)
+
+
+def why_not(program: Path | None) -> str:
+    """Say why nothing can be shown here; empty where it can."""
+    if program is None:
+        return tr("Rerun is not installed here. Open the file session.rrd of the results where it is.")
+    has_screen = any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
+    if sys.platform.startswith("linux") and not has_screen:
+        return tr("There is no screen for Rerun here. Open the file session.rrd of the results where there is one.")
+    return ""
+
+
+class Viewer:
+    """Shows sessions, each in a window of its own, until `close`. Used from one thread at a time, not the screen's.
+
+    `root` holds the folders of all runs; what runs that ended left there is removed at the first `open`.
+    """
+
+    def __init__(self, root: Path, program: Path | None) -> None:
+        self._root = root
+        self._program = program
+        self._held = ExitStack()
+        self._folder: Path | None = None
+        self._shown: dict[Path, subprocess.Popen[bytes]] = {}
+
+    def open(self, session: Session, analysis: Analysis) -> None:
+        """Write the log and show it.
+
+        Raises
+        ------
+        ViewerRefusedError
+            No viewer, no screen, no room, or the viewer does not start.
+        """
+        program, why = self._program, why_not(self._program)
+        if program is None or why:
+            raise ViewerRefusedError(why)
+        from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than the window
+
+        try:
+            folder = self._folder or self._begin(program)
+            self._forget_closed()
+            number, log = tempfile.mkstemp(prefix="session-", suffix=".rrd", dir=folder)
+            os.close(number)
+            write_log(session, analysis, Path(log))
+            self._shown[Path(log)] = _start(
+                [
+                    *(str(program), "--bind", ADDRESS, "--port", "auto"),
+                    *("--memory-limit", MEMORY_LIMIT, "--hide-welcome-screen", log),
+                ],
+                folder / SETTINGS,
+            )
+        except (OSError, subprocess.TimeoutExpired) as problem:
+            _log.warning("Rerun was not started", exc_info=True)
+            raise ViewerRefusedError(
+                tr("Rerun could not be started. See whether the disk has room, then try again.")
+            ) from problem
+
+    def failures(self) -> int:
+        """How many viewers ended with an error since this was asked last, as without usable graphics."""
+        ended = self._forget_closed()
+        return sum(code != 0 for code in ended)
+
+    def close(self) -> None:
+        """End every viewer and remove what it showed."""
+        for process in self._shown.values():
+            process.terminate()
+        for process in self._shown.values():
+            try:
+                process.wait(END_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+        self._shown.clear()
+        if self._folder is not None:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            self._held.close()
+            with suppress(OSError):
+                _lock_of(self._folder).unlink()
+            self._folder = None
+
+    def _begin(self, program: Path) -> Path:
+        """Remove what ended runs left, and make this run's folder with analytics off."""
+        self._root.mkdir(mode=0o700, parents=True, exist_ok=True)
+        for left in self._root.iterdir():
+            if left.is_dir():
+                _remove_unless_held(left)
+        folder = Path(tempfile.mkdtemp(prefix="run-", dir=self._root))  # only its owner may enter
+        self._held.enter_context(held(_lock_of(folder)))
+        self._folder = folder
+        (folder / SETTINGS).mkdir()
+        if _start([str(program), "analytics", "disable"], folder / SETTINGS).wait(END_S) != 0:
+            raise OSError("analytics could not be switched off")
+        return folder
+
+    def _forget_closed(self) -> list[int]:
+        """Remove the logs whose windows were closed; gives how each ended."""
+        codes = {log: code for log, process in self._shown.items() if (code := process.poll()) is not None}
+        for log in codes:
+            del self._shown[log]
+            log.unlink(missing_ok=True)
+        return list(codes.values())
+
+
+def _start(command: list[str], settings: Path) -> "subprocess.Popen[bytes]":
+    """Start the viewer with its settings, and all else that it keeps, in a folder of ours."""
+    # in turn where Linux, Windows and macOS look
+    own = dict.fromkeys(
+        ("XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME", "APPDATA", "LOCALAPPDATA"), str(settings)
+    )
+    if sys.platform == "darwin":
+        own["HOME"] = str(settings)
+    nowhere = subprocess.DEVNULL
+    return subprocess.Popen(command, env=os.environ | own, stdin=nowhere, stdout=nowhere, stderr=nowhere)
+
+
+def _lock_of(folder: Path) -> Path:
+    """Beside the folder, because Windows removes no folder with an open file."""
+    return folder.with_name(folder.name + LOCK)
+
+
+def _remove_unless_held(folder: Path) -> None:
+    with suppress(BlockingIOError):  # another window of ours is showing it
+        with held(_lock_of(folder)):
+            shutil.rmtree(folder, ignore_errors=True)
+        with suppress(OSError):
+            _lock_of(folder).unlink()
