@@ -9,7 +9,7 @@ from app.widgets.banner import Banner
 from app.widgets.header import Mark
 from app.widgets.text import SEMIBOLD, Text
 
-COLUMN = 480
+COLUMN = 540  # a whole recovery key fits into a field
 ABOVE = 48
 
 

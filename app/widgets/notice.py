@@ -1,6 +1,6 @@
 """What is so and what follows, beside what it is about, after an icon. Yellow where it needs a look."""
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
 
@@ -64,7 +64,10 @@ class Notice(QWidget):
             painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
         if self._icon is not None:
             first = self._what if self._what.text() else self._then
-            middle = first.y() + first.fontMetrics().height() / 2
+            wraps = Qt.TextFlag.TextWordWrap
+            words = first.fontMetrics().boundingRect(first.contentsRect(), wraps, first.text())
+            above = max(first.height() - words.height(), 0) / 2  # words lie in the middle of what room they are given
+            middle = first.y() + above + first.fontMetrics().height() / 2
             mark = QRectF(px(PADDING), middle - px(ICON) / 2, px(ICON), px(ICON))
             paint_icon(painter, self._icon, mark, c.caution_ink if self._is_caution else c.ink)
 
