@@ -1,0 +1,108 @@
+"""An Xsens MTi that is not there: Xbus requests and MTData2 messages."""
+
+import struct
+from collections.abc import Callable, Sequence
+
+from devices.host_clock import host_time_ns
+from devices.xbus import REQUESTS, Framer, Item, Message, Mid, item, message
+from devices.xsens_mti import ALWAYS, EMULATED, FINE_HZ, SETTING
+
+Motion = Callable[[int], Sequence[float]]
+"""Rate in rad/s (3), force in m/s2 (3) and orientation (4) of the sample of this number."""
+
+FASTEST_HZ = 400
+FIRST_TICKS = 0xFFFF_FC00  # its fine time begins anew a tenth of a second after it was switched on
+FIRMWARE = bytes([1, 8, 2])
+CANNOT = b"\x03"  # the answer to what it does not do
+
+
+def still(number: int) -> Sequence[float]:
+    """It lies on a table, and hardly turns."""
+    return (1e-3 * (number % 7), 0.0, 0.0, 0.0, 0.0, 9.81, 1.0, 0.0, 0.0, 0.0)
+
+
+class MtiVoice:
+    """The `Voice` of one sensor. It measures from the start, as a sensor does that was plugged in.
+
+    Parameters
+    ----------
+    has_orientation
+        Some models have none, and refuse to be asked for it.
+    """
+
+    def __init__(
+        self,
+        serial: str = "0280A1B2",
+        motion: Motion = still,
+        *,
+        has_orientation: bool = True,
+        now_ns: Callable[[], int] = host_time_ns,
+    ) -> None:
+        self._motion, self._now_ns, self._has_orientation = motion, now_ns, has_orientation
+        self._serial = serial
+        self._framer = Framer(REQUESTS)
+        self._begin_ns, self._sent = now_ns(), 0
+        self.is_measuring = True
+        self.settings: dict[int, int] = {
+            Item.COUNTER: ALWAYS,
+            Item.FINE_TIME: ALWAYS,
+            Item.ACCELERATION: 100,
+            Item.RATE: 100,
+        }
+        if has_orientation:
+            self.settings[Item.QUATERNION] = 100
+
+    @property
+    def rate_hz(self) -> int:
+        return self.settings.get(Item.RATE, 0)
+
+    def say(self) -> bytes:
+        due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
+        said = b"".join(sample(self, number) for number in range(self._sent, due)) if self.is_measuring else b""
+        self._sent = max(self._sent, due)
+        return said
+
+    def hear(self, data: bytes) -> bytes:
+        return b"".join(self._answer(one) for one in self._framer.feed(data))
+
+    def motion(self, number: int) -> Sequence[float]:
+        return self._motion(number)
+
+    def ticks(self, number: int) -> int:
+        return (FIRST_TICKS + round(number * FINE_HZ / self.rate_hz)) & 0xFFFF_FFFF
+
+    def _answer(self, one: Message) -> bytes:
+        answer = b""
+        match one.mid:
+            case Mid.GO_TO_CONFIG:
+                self.is_measuring = False
+            case Mid.GO_TO_MEASUREMENT:
+                self.is_measuring = True
+            case Mid.DEVICE_ID:
+                answer = bytes.fromhex(self._serial)
+            case Mid.PRODUCT:
+                answer = EMULATED.ljust(20).encode()
+            case Mid.FIRMWARE:
+                answer = FIRMWARE + bytes(8)
+            case Mid.OUTPUT if not self.is_measuring:
+                wanted = dict(SETTING.iter_unpack(one.data))
+                if Item.QUATERNION in wanted and not self._has_orientation:
+                    return message(Mid.ERROR, CANNOT)
+                self.settings = {k: hz if hz == ALWAYS else min(hz, FASTEST_HZ) for k, hz in wanted.items()}
+                self._begin_ns, self._sent = self._now_ns(), 0
+                answer = b"".join(SETTING.pack(*setting) for setting in self.settings.items())
+            case _:
+                return message(Mid.ERROR, CANNOT)
+        return message(one.mid + 1, answer)
+
+
+def sample(voice: MtiVoice, number: int) -> bytes:
+    """The message of one sample."""
+    moved = voice.motion(number)
+    data = item(Item.COUNTER, struct.pack(">H", number & 0xFFFF))
+    data += item(Item.FINE_TIME, struct.pack(">I", voice.ticks(number)))
+    if Item.QUATERNION in voice.settings:
+        data += item(Item.QUATERNION, struct.pack(">4f", *moved[6:10]))
+    data += item(Item.ACCELERATION, struct.pack(">3f", *moved[3:6]))
+    data += item(Item.RATE, struct.pack(">3f", *moved[:3]))
+    return message(Mid.MT_DATA2, data)
