@@ -50,14 +50,22 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
     OSError
         A file cannot be written.
     """
-    events = ((_cell(time_s), str(side), event) for time_s, side, event in events_of(recording))
-    write_table(("time_s", "side", "event"), events, folder / "events.csv")
-    write_table(("side", *TIMES, *PARAMETERS, "used", "reason"), _strides(recording), folder / "strides.csv")
+    for name, (header, rows) in gait_tables(recording).items():
+        write_table(header, rows, folder / f"{name}.csv")
+
+
+def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
+    """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
     joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
-    header = ["percent"]
+    of_cycles = ["percent"]
     for joint in joints:
-        header += [f"{joint}_mean_deg", f"{joint}_stride_sd_deg", f"{joint}_n"]
-    write_table(header, _cycles(recording, joints), folder / "cycles.csv")
+        of_cycles += [f"{joint}_mean_deg", f"{joint}_stride_sd_deg", f"{joint}_n"]
+    events = ([_cell(time_s), str(side), event] for time_s, side, event in events_of(recording))
+    return {
+        "events": (["time_s", "side", "event"], events),
+        "strides": (["side", *TIMES, *PARAMETERS, "used", "reason"], _strides(recording)),
+        "cycles": (of_cycles, _cycles(recording, joints)),
+    }
 
 
 def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
