@@ -1,10 +1,7 @@
-"""What carries a sensor's bytes? A port, a socket, a file: opened, read and closed alike."""
+"""What carries a sensor's bytes? A port or a socket: opened, read and closed alike."""
 
 import socket
-import time
-from collections.abc import Callable
 from contextlib import suppress
-from pathlib import Path
 from typing import Protocol
 
 from devices.live import SourceLostError, SourceRefusedError
@@ -143,42 +140,6 @@ class UdpChannel:
     def close(self) -> None:
         _close(self._socket)
         self._socket = None
-
-
-class FileChannel:
-    """A file of bytes as they once came, played at `bytes_per_s`; lost where it ends."""
-
-    serial = ""
-
-    def __init__(
-        self, path: Path, bytes_per_s: float, sleep: Callable[[float], None] = time.sleep, read_s: float = READ_S
-    ) -> None:
-        self._path, self._sleep, self._read_s = path, sleep, read_s
-        self._piece = max(round(bytes_per_s * read_s), 1)
-        self._left = b""
-
-    @property
-    def place(self) -> str:
-        return self._path.name
-
-    def open(self) -> None:
-        try:
-            self._left = self._path.read_bytes()
-        except OSError as problem:
-            raise SourceRefusedError(f"{self.place} cannot be read", "Choose another file") from problem
-
-    def read(self) -> bytes:
-        self._sleep(self._read_s)
-        piece, self._left = self._left[: self._piece], self._left[self._piece :]
-        if not piece:
-            raise SourceLostError(f"{self.place} has ended")
-        return piece
-
-    def write(self, data: bytes) -> None:
-        """Nobody listens in a file."""
-
-    def close(self) -> None:
-        self._left = b""
 
 
 def _opened(one: socket.socket | None) -> socket.socket:

@@ -92,6 +92,20 @@ class Dialect(Protocol):
         """What lights the sensor's LED; empty where nothing does."""
 
 
+def decoded(sensor: str, heard: Heard, host_s: Sequence[float], step_s: float | None = None) -> DecodedSensor:
+    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,)."""
+    rows = np.array(heard.rows, dtype=float).reshape(-1, COLUMNS)
+    ordered = put_in_order(rows[:, 0], np.array(host_s, dtype=float), step_s)
+    block = ImuBlock(
+        sensor=sensor,
+        time_s=ordered.time_s,
+        gyr_rad_s=rows[ordered.rows, 1:4],
+        acc_m_s2=rows[ordered.rows, 4:7],
+        q_earth_from_sensor=_orientation(heard.orientations, ordered),
+    )
+    return DecodedSensor(block, replace(ordered.counts, damaged=ordered.counts.damaged + heard.damaged))
+
+
 class Decoder:
     """The `StreamDecoder` of every dialect: all samples in order, each once, stamped by the host's clock."""
 
@@ -115,17 +129,8 @@ class Decoder:
         self._end()
         if not self._info.sensors:
             return {}
-        rows = np.array(self._heard.rows, dtype=float).reshape(-1, COLUMNS)
-        ordered = put_in_order(rows[:, 0], np.array(self._host_s, dtype=float), _step_s(self._info))
-        block = ImuBlock(
-            sensor=self._info.sensors[0],
-            time_s=ordered.time_s,
-            gyr_rad_s=rows[ordered.rows, 1:4],
-            acc_m_s2=rows[ordered.rows, 4:7],
-            q_earth_from_sensor=_orientation(self._heard.orientations, ordered),
-        )
-        counts = replace(ordered.counts, damaged=ordered.counts.damaged + self._heard.damaged)
-        return {block.sensor: DecodedSensor(block, counts)}
+        one = decoded(self._info.sensors[0], self._heard, self._host_s, _step_s(self._info))
+        return {one.block.sensor: one}
 
     def _take(self, host_time_s: float) -> None:
         assert self._framer is not None

@@ -6,12 +6,13 @@ sensor of this kind can measure counts as damaged.
 
 import json
 import math
+from pathlib import Path
 from struct import Struct
 
 from devices.channels import Channel
 from devices.live import SensorTold, SourceRefusedError
-from devices.source import SourceInfo
-from devices.stream import Framer, Heard, ask
+from devices.source import DecodedSensor, SourceInfo
+from devices.stream import Framer, Heard, ask, decoded
 
 DRIVER, VERSION, MODEL = "ximu3", "1", "x-IMU3"
 EMULATED = "emulated x-IMU3"  # what our own emulator calls itself
@@ -21,6 +22,7 @@ RAD = math.pi / 180.0
 MOST_DEG_S, MOST_G = 2400.0, 20.0  # ranges of 2000 deg/s and 16 g, and what calibration adds
 MOST_MESSAGE = 4096  # bytes; the maker's own decoder holds as many
 MOST_REPLIES = 64
+PIECE = 1 << 20
 END, ESC, ESC_END, ESC_ESC = b"\n", b"\xdb", b"\xdb\xdc", b"\xdb\xdd"
 INERTIAL, QUATERNION, BATTERY = Struct("<BQ6f"), Struct("<BQ4f"), Struct("<BQ3f")
 PING_S, PINGS = 0.5, 3
@@ -148,6 +150,21 @@ class Ximu3Framer:
             self.heard.replies.append(message.strip())
 
 
+def read_file(path: Path) -> DecodedSensor:
+    """Read what the maker's programs log of one sensor (`.ximu3`); times are those of the sensor's clock.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read.
+    """
+    framer = Ximu3Framer()
+    with path.open("rb") as file:
+        while data := file.read(PIECE):
+            framer.feed(data, 0.0)
+    return decoded(path.stem, framer.heard, [row[0] for row in framer.heard.rows])
+
+
 class Ximu3:
     """The `Dialect` of an x-IMU3. It is left as its owner set it up, unless a rate is wanted.
 
@@ -197,7 +214,7 @@ class Ximu3:
             raise SourceRefusedError(
                 f"No x-IMU3 answers at {channel.place}", "Check that it is switched on, then search again"
             )
-        return {}  # it cannot hear us, as where a file is played
+        return {}  # it cannot hear us: a line that goes one way only
 
     def _set_up(self, channel: Channel, framer: Ximu3Framer, rate_hz: float) -> None:
         divisor = round(BASE_HZ / rate_hz)

@@ -1,0 +1,37 @@
+"""A channel that says what a test has written down, and notes what it is told."""
+
+from collections import deque
+from collections.abc import Callable, Sequence
+
+from devices.live import SourceLostError
+
+
+class ScriptedChannel:
+    """Says `said` piece by piece, then what `answers` gives to what was written; lost where a piece is None."""
+
+    serial = ""
+    place = "script"
+
+    def __init__(
+        self, said: Sequence[bytes | None] = (), answers: Callable[[bytes], bytes] = lambda _data: b""
+    ) -> None:
+        self.said, self._answers = deque(said), answers
+        self.written: list[bytes] = []
+        self.is_open = False
+
+    def open(self) -> None:
+        self.is_open = True
+
+    def read(self) -> bytes:
+        piece = self.said.popleft() if self.said else b""
+        if piece is None:
+            raise SourceLostError("the script says so")
+        return piece
+
+    def write(self, data: bytes) -> None:
+        self.written.append(data)
+        if answer := self._answers(data):
+            self.said.append(answer)
+
+    def close(self) -> None:
+        self.is_open = False
