@@ -146,7 +146,7 @@ class WalkingPage(QWidget):
         facts
             Of the walk that is asked about, in words: its length, its cadence.
         """
-        was_recording = self.is_recording
+        was_recording, had_focus = self.is_recording, self._has_focus()
         self._rows = rows
         asked = [row for row in rows if row.state in (WalkState.ASKING, WalkState.RECOVERED)]
         self._asked = next((row for row in reversed(asked) if row.state is WalkState.ASKING), next(iter(asked), None))
@@ -157,7 +157,6 @@ class WalkingPage(QWidget):
             self.charts.clear()
         if self.is_recording != was_recording:
             self.tabs.choose("curves" if self.is_recording else "walks")
-        had_focus = self._has_focus()
         self._arrange()
         if had_focus and not self._has_focus():
             self.focus()

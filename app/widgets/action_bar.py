@@ -10,6 +10,7 @@ from PySide6.QtGui import (
     QAccessibleAnnouncementEvent,
     QColor,
     QFontMetrics,
+    QMouseEvent,
     QPainter,
     QPaintEvent,
     QPalette,
@@ -310,6 +311,10 @@ class VerbButton(Button):
         self.setEnabled(verb.is_enabled)
         self.updateGeometry()
         self.update()
+
+    def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
+        """Take a double click for the one press that it is meant as: the second would stop what the first began."""
+        event.accept()
 
     def set_room(self, width: int) -> None:
         """Leave away the key cap, then the icon, where the words alone fill `width` pixels."""

@@ -1,5 +1,6 @@
 """The patient of a visit, kept as it is typed."""
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -23,9 +24,12 @@ class PatientRecord(QObject):
     code_taken = Signal(str)
     refused = Signal(str, str)
 
-    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+    def __init__(self, desk: LibraryDesk, parent: QObject, refuses: Callable[[str], tuple[str, str]]) -> None:
+        """`refuses` says why a code cannot take the place of the patient's, and what to do; empty where it can."""
         super().__init__(parent)
-        self._desk = desk
+        self._desk, self._refuses = desk, refuses
+        self.has_this_session_only = False
+        """So another code is a correction of this patient's."""
         self.told = Patient()
         self.stored: StoredPatient | None = None
         self._is_saving = False
@@ -57,17 +61,26 @@ class PatientRecord(QObject):
         self._pause.stop()
         if self._is_saving or self.is_saved or not self.told.code:
             return
+        if self.stored is not None and self.told.code != self.stored.told.code:
+            what, remedy = self._refuses(self.told.code)
+            if what:
+                self.told = self.stored.told  # what was typed is another's
+                self.refused.emit(what, remedy)
+                return
         self._is_saving = True
         stored, told = self.stored, self.told
+        is_renamed = self.has_this_session_only
 
         def save(opened: OpenedLibrary) -> StoredPatient | None:
             patients = opened.library.patients
             if stored is not None and stored.told.code == told.code:
                 return patients.change(stored, told)
-            if patients.find(told.code) is not None:
+            found = patients.find(told.code)
+            if found is not None and (stored is None or found.id != stored.id):
                 return None
-            if stored is None or stored.sessions > 0:
+            if found is None and (stored is None or (stored.sessions > 0 and not is_renamed)):
                 return patients.create(told)
+            assert stored is not None
             return patients.change(stored, told)
 
         self._desk.run(save, self._on_saved, self._on_refused, self)

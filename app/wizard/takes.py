@@ -6,9 +6,11 @@ from datetime import datetime
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Signal
+from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
+from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import StoredRecording, StoredSession
+from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from core.body import Side
 from core.samples import Recording, RecordingKind
@@ -16,8 +18,12 @@ from core.samples import Recording, RecordingKind
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
     from app.acquisition.recorder import Recorder
-    from app.storage.journal.disk import Trouble
     from app.storage.opened import OpenedLibrary
+
+
+READ_AGAIN_MS = 2000  # after the library did not answer
+MOST_READINGS = 15
+ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +62,8 @@ class Takes(QObject):
     begun = Signal()
     ended = Signal(object)  # Take
     refused = Signal(str, str)
-    troubled = Signal(str)  # app.storage.journal.disk.Trouble; emitted by whichever thread meets it
+    troubled = Signal(str, str)  # of the disk, while recording: what happened, and what to do
+    _met = Signal(str)  # Trouble; emitted by whichever thread meets it
 
     def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
         super().__init__(parent)
@@ -65,10 +72,17 @@ class Takes(QObject):
         self.ongoing: Ongoing | None = None
         self.every: tuple[Take, ...] = ()
         self._recorder: Recorder | None = None
+        self._stopped: Recorder | None = None  # until it has been read back
+        self._readings = 0
         self._must_stop = False
         self._strides: Mapping[Side, int] | None = None
         self._is_stopping = False
         self._is_restrapped = False
+        self._again = QTimer(self)
+        self._again.setSingleShot(True)
+        self._again.setInterval(READ_AGAIN_MS)
+        self._again.timeout.connect(self._read_back)
+        self._met.connect(self._on_met)
 
     @property
     def is_recording(self) -> bool:
@@ -96,6 +110,25 @@ class Takes(QObject):
     def is_restrapped(self) -> bool:
         """Whether sensors were strapped anew since the last recording: what was calibrated holds no longer."""
         return self._is_restrapped
+
+    @property
+    def has_moved(self) -> bool:
+        """Whether a free motion holds: kept, and made since sensors were strapped last."""
+        if self._is_restrapped:
+            return False
+        for take in reversed(self.every):
+            if take.told.kind is RecordingKind.FREE_MOTION and take.told.is_kept:
+                return True
+            if take.told.is_restrapped_before:
+                return False
+        return False
+
+    @property
+    def must_move(self) -> bool:
+        """Whether sensors were strapped anew, and the free motion that this asks for is still to come."""
+        return not self.has_moved and (
+            self._is_restrapped or any(take.told.is_restrapped_before for take in self.every)
+        )
 
     def take_over(self, session: StoredSession, takes: tuple[Take, ...]) -> None:
         """Go on with a session of the library."""
@@ -131,7 +164,7 @@ class Takes(QObject):
 
             return Recorder.begin(opened, acquisition, session_id, told, self._on_trouble)
 
-        self._desk.run(start, self._on_started, self._on_refused, self)
+        self._desk.run(start, self._on_started, self._on_not_started, self)
         self.changed.emit()
 
     def stop(self, strides: Mapping[Side, int] | None = None) -> None:
@@ -141,9 +174,9 @@ class Takes(QObject):
         self._must_stop, self._strides = True, strides
         if self._recorder is None:
             return
-        recorder, self._recorder = self._recorder, None
-        self._is_stopping = True
-        self._desk.run(recorder.stop, self._on_stopped, self._on_refused, self)
+        self._stopped, self._recorder = self._recorder, None
+        self._is_stopping, self._readings = True, 0
+        self._read_back()
         self.changed.emit()
 
     def mark(self, text: str) -> None:
@@ -158,6 +191,8 @@ class Takes(QObject):
 
     def keep(self, take: Take, is_kept: bool) -> None:
         """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
+        if take.told.is_restrapped_before and not is_kept and take.id == self.every[-1].id:
+            self._is_restrapped = True  # what comes next is the first that counts
         self._put(replace(take, is_decided=True))
         if take.told.is_kept != is_kept:
             self.change(take, replace(take.told, is_kept=is_kept))
@@ -169,12 +204,21 @@ class Takes(QObject):
             current = opened.library.recordings.find(take.id)
             return opened.library.recordings.change(current or take.stored, told)
 
-        self._desk.run(save, self._on_changed, self._on_refused, self)
+        self._desk.run(save, self._on_changed, self._on_not_changed, self)
 
     def recordings(self) -> tuple[Recording, ...]:
-        """Those that count and have been read, in order of time, as an analysis takes them."""
-        read = [replace(take.told, imu=take.recording.imu) for take in self.every if take.recording is not None]
-        return tuple(recording for recording in read if recording.is_kept)
+        """Those that count and have been read, in order of time, as an analysis takes them.
+
+        That sensors were strapped anew before one that does not count is told of the next.
+        """
+        counted = []
+        is_restrapped = False
+        for take in self.every:
+            is_restrapped |= take.told.is_restrapped_before
+            if take.told.is_kept and take.recording is not None:
+                counted.append(replace(take.told, imu=take.recording.imu, is_restrapped_before=is_restrapped))
+                is_restrapped = False
+        return tuple(counted)
 
     def _of(self, kind: RecordingKind) -> tuple[Take, ...]:
         return tuple(take for take in self.every if take.told.kind is kind)
@@ -191,8 +235,20 @@ class Takes(QObject):
         self.every = tuple((known | {take.id: take}).values())
         self.changed.emit()
 
-    def _on_trouble(self, trouble: "Trouble") -> None:
-        self.troubled.emit(str(trouble))
+    def _read_back(self) -> None:
+        if self._stopped is not None:
+            self._readings += 1
+            self._desk.run(self._stopped.stop, self._on_stopped, self._on_not_stopped, self)
+
+    def _on_trouble(self, trouble: Trouble) -> None:
+        self._met.emit(str(trouble))
+
+    @Slot(str)
+    def _on_met(self, met: str) -> None:
+        what, remedy = TOLD[trouble := Trouble(met)]
+        self.troubled.emit(f"{tr(what)}.", f"{tr(remedy)}.")
+        if trouble in ENDS:
+            self.stop()
 
     def _on_started(self, recorder: "Recorder") -> None:
         self._recorder = recorder
@@ -205,7 +261,7 @@ class Takes(QObject):
         stored, recording = result
         is_walk = stored.told.kind is RecordingKind.WALKING
         take = Take(stored, recording, self._strides, is_decided=not is_walk)
-        self.ongoing, self._is_stopping = None, False
+        self.ongoing, self._stopped, self._is_stopping = None, None, False
         self._put(take)
         self.ended.emit(take)
 
@@ -213,8 +269,21 @@ class Takes(QObject):
         before = next(take for take in self.every if take.id == stored.id)
         self._put(replace(before, stored=stored))
 
-    def _on_refused(self, what: str, remedy: str) -> None:
-        if self._recorder is None:  # it did not begin, or did not end well: nothing is being recorded any more
-            self.ongoing, self._is_stopping = None, False
+    def _on_not_changed(self, what: str, remedy: str) -> None:
         self.changed.emit()
         self.refused.emit(what, remedy)
+
+    def _on_not_started(self, what: str, remedy: str) -> None:
+        self.ongoing = None
+        self.changed.emit()
+        self.refused.emit(what, remedy)
+
+    def _on_not_stopped(self, what: str, remedy: str) -> None:
+        """What was recorded is on the disk: try for a while to read it back, then leave that to the next start."""
+        if self._desk.state is not None and self._readings < MOST_READINGS:
+            self._again.start()
+            self.refused.emit(what, tr("The recording is safe on the disk; it is read back as soon as that can be."))
+            return
+        self.ongoing, self._stopped, self._is_stopping = None, None, False
+        self.changed.emit()
+        self.refused.emit(what, tr("The recording is safe on the disk; it is found when Gaitwright starts again."))

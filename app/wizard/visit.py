@@ -19,6 +19,7 @@ from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
 from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
+from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -59,7 +60,7 @@ class Visit(QObject):
         self._desk, self._now_s = desk, now_s
         self._choices = tuple(choices)
         self.session: StoredSession | None = None
-        self.patient = PatientRecord(desk, self)
+        self.patient = PatientRecord(desk, self, self._refuses_code)
         self.sensors = WornSensors(self)
         self.takes = Takes(desk, self)
         self.evaluation = Evaluation(self)
@@ -71,10 +72,11 @@ class Visit(QObject):
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
-        self._is_changing = False
+        self._is_changing = self._is_of_another_day = False
         self._wanted: Session | None = None
         self.patient.refused.connect(self.refused)
         self.sensors.refused.connect(self.refused)
+        self.sensors.opened.connect(self._on_sensors_opened)
         self.takes.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
         self.takes.ended.connect(self._on_take_ended)
@@ -136,10 +138,11 @@ class Visit(QObject):
         if self.session is not None or patient is None or self._is_changing:
             return
         self._is_changing = True
+        self.patient.has_this_session_only = patient.sessions == 0
         state = self._desk.state
         told = Session(
             recordings=(),
-            started=datetime.now().astimezone().isoformat(timespec="seconds"),
+            started=_now(),
             operator=state.operator.name if state is not None else "",
             software=f"gaitwright {version_of('gaitwright')}",
         )
@@ -264,11 +267,36 @@ class Visit(QObject):
     def _on_resumed(self, read: tuple[StoredPatient, StoredSession, tuple[Take, ...]]) -> None:
         patient, self.session, takes = read
         self.patient.choose(patient)
+        self.patient.has_this_session_only = patient.sessions == 1
+        self._is_of_another_day = bool(takes) and _day(takes[-1].told.started) not in ("", _day(_now()))
         self.takes.take_over(self.session, takes)
         self.rests = _rests(takes)
         self.resumed.emit()
         self.changed.emit()
         self.evaluate()
+
+    def _refuses_code(self, code: str) -> tuple[str, str]:
+        """A session stays its patient's, and what is simulated a simulated patient's."""
+        if self.session is None or self.patient.stored is None:
+            return "", ""
+        own = self.patient.stored.told.code
+        if not self.patient.has_this_session_only:
+            what = tr("This session belongs to {code}.").format(code=own)
+            return what, tr("Go back to all patients to begin one with another.")
+        if self.takes.every and self.is_simulated and own.startswith(DEMO) and not code.startswith(DEMO):
+            what = tr("What is simulated cannot become the session of {code}.").format(code=code)
+            return what, tr("Go back to all patients to begin one with another.")
+        return "", ""
+
+    def _on_sensors_opened(self) -> None:
+        """What was worn on another day was taken off since."""
+        if self._is_of_another_day:
+            self._is_of_another_day = False
+            self.takes.say_restrapped()
+            self.refused.emit(
+                tr("This session was begun on another day, and the sensors were put on anew."),
+                tr("Stand still and move freely once more before the next walk."),
+            )
 
     def _on_take_ended(self, _take: Take) -> None:
         self.evaluate()
@@ -309,10 +337,16 @@ def _rests(takes: Sequence[Take]) -> "dict[str, Rest]":
     return rests
 
 
+def _now() -> str:
+    return datetime.now().astimezone().isoformat(timespec="seconds")
+
+
+def _day(moment: str) -> str:
+    return moment[:10]
+
+
 def patient_line(patient: Patient) -> str:
     """What the clinic typed of a patient, in one line beside the code."""
-    from app.wording import tr
-
     sexes = {"female": tr("female"), "male": tr("male")}
     person = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
     sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}

@@ -159,7 +159,8 @@ class Wizard(QWidget):
             signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
         visit.refused.connect(self._on_refused)
-        visit.takes.troubled.connect(self._tell)
+        visit.takes.troubled.connect(self._on_troubled)
+        visit.takes.begun.connect(self.shell.banner.hide)
         self._current = PATIENT
         self._timer.start()
         return visit
@@ -171,7 +172,8 @@ class Wizard(QWidget):
         visit.resumed.disconnect(self._on_resumed)
         visit.refused.disconnect(self._on_refused)
         visit.refused.connect(self._desk.refused)
-        visit.takes.troubled.disconnect(self._tell)
+        visit.takes.troubled.disconnect(self._on_troubled)
+        visit.takes.begun.disconnect(self.shell.banner.hide)
 
     def _take_up(self, session_id: UUID, step: int) -> None:
         visit = self._begin_visit()
@@ -347,6 +349,10 @@ class Wizard(QWidget):
             self.leave()  # the session that was to be shown is not there
             self._desk.refused.emit(what, then)
         else:
+            self._tell(what, then)
+
+    def _on_troubled(self, what: str, then: str) -> None:
+        if self._current != WALKING:  # whose page says it itself
             self._tell(what, then)
 
     def _on_resumed(self) -> None:

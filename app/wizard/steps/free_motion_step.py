@@ -61,7 +61,7 @@ class FreeMotionStep(Step):
         self._doubted: tuple[Site, ...] = ()
         self._ready: frozenset[Joint] = frozenset()
         self._is_in_sight = self._goes_on = self._is_for_nothing = self._must_correct = False
-        self._is_side_asked = False
+        self._is_side_asked = self._is_refused = False
         self._ticks = 0
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
@@ -69,6 +69,7 @@ class FreeMotionStep(Step):
         self._settled.timeout.connect(self._on_settled)
         visit.takes.begun.connect(self._on_begun)
         visit.takes.ended.connect(self._on_ended)
+        visit.takes.refused.connect(self._on_refused)
 
     @property
     def page(self) -> "FreeMotionPage":
@@ -116,7 +117,7 @@ class FreeMotionStep(Step):
         return "free-motion"
 
     def enter(self) -> None:
-        self._is_in_sight = True
+        self._is_in_sight, self._is_refused = True, False
         self._hold = HintHold(self._visit.prosthetic_sides)
         if not self._has_moved and not self._is_recording:
             self._begin()
@@ -138,7 +139,7 @@ class FreeMotionStep(Step):
             return
         if self._work is not None and self._is_recording:
             self._look_at_motion()
-        elif not self._has_moved and not self._visit.takes.is_recording and not self._is_for_nothing:
+        elif not (self._has_moved or self._visit.takes.is_recording or self._is_for_nothing or self._is_refused):
             self._begin()  # what was recorded before has been closed by now
         self._show()
 
@@ -149,7 +150,8 @@ class FreeMotionStep(Step):
         go_on = Verb(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
         if not self._is_recording:
             if not self._has_moved:
-                return BarState()
+                begin = Verb(tr("Begin the free motion"), tr("Space"), Icon.PLAY)
+                return BarState(primary=begin)
             again = Verb(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
             return BarState(primary=go_on, others=(again,), quiet=repeat)
         if self._is_done:
@@ -162,6 +164,8 @@ class FreeMotionStep(Step):
             self._stop()
         elif self._has_moved:
             self.done.emit()
+        else:
+            self._begin()
 
     def on_other(self, number: int) -> None:
         self._begin()
@@ -190,16 +194,7 @@ class FreeMotionStep(Step):
 
     @property
     def _has_moved(self) -> bool:
-        """Whether a free motion holds: kept, and made since sensors were strapped last."""
-        takes = self._visit.takes
-        if takes.is_restrapped:
-            return False
-        for take in reversed(takes.every):
-            if take.told.kind is KIND and take.told.is_kept:
-                return True
-            if take.told.is_restrapped_before:
-                return False
-        return False
+        return self._visit.takes.has_moved
 
     @property
     def _repeatable(self) -> list[Side]:
@@ -221,7 +216,7 @@ class FreeMotionStep(Step):
             return
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
-        self._goes_on = self._is_for_nothing = False
+        self._goes_on = self._is_for_nothing = self._is_refused = False
         self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -405,6 +400,11 @@ class FreeMotionStep(Step):
     def _on_begun(self) -> None:
         if self._is_recording:
             self._watch()  # only what is recorded counts
+
+    def _on_refused(self, _what: str, _remedy: str) -> None:
+        if self._is_in_sight and not self._visit.takes.is_recording:
+            self._is_refused = not self._has_moved  # it is begun again by a word, not by the clock
+            self.changed.emit()
 
     def _on_settled(self) -> None:
         if self._is_recording and self._is_done:

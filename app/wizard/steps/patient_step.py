@@ -166,6 +166,9 @@ class PatientStep(Step):
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
         self._is_going_on = False  # the wizard's banner says why
+        if self._page is not None and self._page.draft.patient.code.strip() != self._visit.patient.told.code:
+            self._fill()  # another's code, which was not taken
+            self.changed.emit()
 
     def _on_open_pressed(self, code: str) -> None:
         if self._visit.session is not None:

@@ -165,6 +165,8 @@ class StandStillStep(Step):
         acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
         if acquisition is None or self._visit.session is None or takes.is_stopping:
             return
+        if takes.is_recording and not self._is_recording:
+            return  # what another step began is still being closed
         self._shown.stop()
         self._phase = StandPhase.COUNTING
         self._watch()

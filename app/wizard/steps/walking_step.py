@@ -8,7 +8,6 @@ from PySide6.QtCore import QObject, Slot
 
 from app import sounds
 from app.sounds import Sound
-from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarState, RecordingNote, Verb
@@ -92,14 +91,21 @@ class WalkingStep(Step):
 
     @property
     def cannot_enter(self) -> str:
-        sensors = self._visit.sensors
         if self._visit.session is None:
             return tr("Type the patient's code first.")
+        if self._visit.takes.walks:
+            return ""  # they can be kept or discarded whatever is missing for the next
+        return self._cannot_start
+
+    @property
+    def _cannot_start(self) -> str:
+        """What is missing for a walk, in a sentence; empty where nothing is."""
+        sensors = self._visit.sensors
         if sensors.acquisition is None:
             return tr("Choose the source of the sensors first.")
         if not sensors.site_of:
             return tr("Say first which sensor is worn where.")
-        if self._visit.takes.is_restrapped:
+        if self._visit.takes.must_move:
             return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
         return ""
 
@@ -163,11 +169,11 @@ class WalkingStep(Step):
             return BarState(primary=start, note=tr("The walk is being read back."))
         if self._asked is not None:
             both = Verb(tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start)
-            return BarState(primary=both, note=tr("Next: {label}").format(label=self._label))
+            return BarState(primary=both, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
         if any(take.told.is_kept for take in takes.walks):
             again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
-            return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,))
-        return BarState(primary=start, note=tr("Next: {label}").format(label=self._label))
+            return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
+        return BarState(primary=start, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
 
     def on_primary(self) -> None:
         takes = self._visit.takes
@@ -205,13 +211,8 @@ class WalkingStep(Step):
     @property
     def _can_start(self) -> bool:
         takes = self._visit.takes
-        return (
-            self._visit.sensors.acquisition is not None
-            and self._visit.session is not None
-            and not takes.is_recording
-            and not takes.is_stopping
-            and not takes.is_restrapped
-        )
+        is_free = self._visit.session is not None and not takes.is_recording and not takes.is_stopping
+        return is_free and not self._cannot_start
 
     def _run(self) -> None:
         """Start, or stop; between walks, keep the last one and start the next."""
@@ -465,10 +466,9 @@ class WalkingStep(Step):
             self._label = label_after(self._visit.patient.told, self._used)
             self._show()
 
-    @Slot(str)
-    def _on_troubled(self, trouble: str) -> None:
-        what, then = TOLD[Trouble(trouble)]
-        self._trouble = tr(what), tr(then)
+    @Slot(str, str)
+    def _on_troubled(self, what: str, then: str) -> None:
+        self._trouble = what, then
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QScrollArea, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.walk_list import WalkRow, WalkState
@@ -263,3 +263,19 @@ def test_no_word_is_cut_in_a_language_as_long_as_german(
             assert inside.width() <= area.viewport().width()
     page.show_message("R foot has been silent for 2 s.", "Recording goes on. Right ankle and phases are missing.")
     assert words_cut(page) == []
+
+
+def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot, look: Look) -> None:
+    page = WalkingPage(look)
+    window = QWidget()
+    qtbot.addWidget(window)
+    column = QVBoxLayout(window)
+    column.addWidget(page)
+    column.addWidget(QPushButton("Back"))  # which would have the focus next
+    window.show()
+    window.activateWindow()
+    page.show_walks((RECORDING,))
+    page.focus()
+    qtbot.waitUntil(page.charts.hasFocus)
+    page.show_walks(())
+    assert page.empty.hasFocus()

@@ -137,3 +137,12 @@ def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: s
 @pytest.mark.parametrize(("elapsed_s", "shown"), [(0.0, "00:00"), (59.99, "00:59"), (246.0, "04:06"), (-1.0, "00:00")])
 def test_a_time_is_minutes_and_seconds(elapsed_s: float, shown: str) -> None:
     assert clock_time(elapsed_s) == shown
+
+
+def test_a_double_click_is_one_press(bar: ActionBar) -> None:
+    bar.show_state(BarState(Verb("Start walk", "Space", Icon.PLAY)))
+    pressed: list[None] = []
+    bar.primary_pressed.connect(lambda: pressed.append(None))
+    QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
+    QTest.mouseDClick(bar.primary, Qt.MouseButton.LeftButton)  # as the second of the two arrives
+    assert len(pressed) == 1

@@ -1,0 +1,298 @@
+"""What goes wrong around a visit: a busy library, a full disk, somebody who thinks again. Nothing is lost."""
+
+import threading
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from pathlib import Path
+from uuid import uuid4
+
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.recorder import Recorder
+from app.settings import Settings
+from app.storage.journal.disk import Trouble
+from app.storage.recordings import Recordings
+from app.storage.stored import LibraryBusyError, LibraryError
+from app.theme import Look, load_fonts
+from app.wizard import takes as takes_module
+from app.wizard import wizard as wizard_module
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.free_motion_step import FreeMotionStep
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.visit import Visit
+from app.wizard.wizard import RESULTS, Wizard
+from app.workers.library_desk import LibraryDesk
+from core.body import Site
+from core.samples import Patient, RecordingKind, Session
+from tests.app.wizard.test_visit import begin, record
+
+BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
+WAIT_MS = 20_000
+
+
+@pytest.fixture
+def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Iterator[Visit]:
+    """A visit with sensors on, whose recordings nobody evaluates."""
+    monkeypatch.setattr(visit, "evaluate", lambda: None)
+    begin(qtbot, visit, worn)
+    yield visit
+    if visit.takes.is_recording:
+        with qtbot.waitSignal(visit.takes.ended, timeout=WAIT_MS):
+            visit.takes.stop()
+
+
+@pytest.fixture
+def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
+    load_fonts()
+    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+    wizard = Wizard(Look(), desk, settings)
+    qtbot.addWidget(wizard)
+    wizard.resize(1280, 800)
+    wizard.show()
+    yield wizard
+    wizard.finish()
+    qapp.setStyleSheet("")
+
+
+def failing(times: int, error: Exception, otherwise: Callable[..., object]) -> Callable[..., object]:
+    left = [times]
+
+    def call(*arguments: object, **named: object) -> object:
+        if left[0]:
+            left[0] -= 1
+            raise error
+        return otherwise(*arguments, **named)
+
+    return call
+
+
+def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun(
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    assert acquisition is not None
+    walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
+    monkeypatch.setattr(Recordings, "change", failing(1, LibraryError("Changed meanwhile", "Look"), Recordings.change))
+    with qtbot.waitSignals([takes.refused, takes.begun], timeout=WAIT_MS):
+        takes.keep(walk, is_kept=False)
+        takes.begin(acquisition, RecordingKind.WALKING)
+    assert takes.is_recording
+    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS):
+        takes.stop()
+    assert [take.told.name for take in takes.walks] == ["walk 1", "walk 2"]
+
+
+def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(takes_module, "READ_AGAIN_MS", 20)
+    looked_at.takes._again.setInterval(20)
+    monkeypatch.setattr(Recorder, "stop", failing(2, BUSY, Recorder.stop))
+    told: list[tuple[str, str]] = []
+    looked_at.takes.refused.connect(lambda *words: told.append(words))
+    walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
+    assert walk.recording is not None
+    assert len(walk.recording.imu) == len(Site)
+    assert not looked_at.takes.is_recording
+    assert len(told) == 2
+    assert "safe on the disk" in told[0][1]
+
+
+def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    assert acquisition is not None
+    takes._again.setInterval(1)
+    monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
+    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
+        takes.begin(acquisition, RecordingKind.WALKING)
+    told: list[tuple[str, str]] = []
+    takes.refused.connect(lambda *words: told.append(words))
+    takes.stop()
+    qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
+    assert "when Gaitwright starts again" in told[-1][1]
+    acquisition.stop_recording()
+
+
+@pytest.mark.parametrize(("trouble", "ends"), [(Trouble.DISK_FULL, True), (Trouble.LITTLE_ROOM, False)])
+def test_a_full_disk_ends_the_recording_on_the_screen_too(
+    qtbot: QtBot, looked_at: Visit, trouble: Trouble, ends: bool
+) -> None:
+    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    assert acquisition is not None
+    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
+        takes.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as told:
+        threading.Thread(target=takes._on_trouble, args=(trouble,)).start()  # as the journal's writer tells it
+    assert all(sentence.endswith(".") for sentence in told.args)
+    assert takes.is_stopping is ends
+    if ends:
+        qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
+        assert len(takes.walks) == 1
+
+
+def test_a_free_motion_that_is_refused_waits_for_a_word(
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    beginnings: list[object] = []
+    begin_for_real = Recorder.begin
+
+    def refused_once(*arguments: object) -> object:
+        beginnings.append(arguments)
+        if len(beginnings) == 1:
+            raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
+        return begin_for_real(*arguments)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(Recorder, "begin", refused_once)
+    step = FreeMotionStep(Look(), looked_at)
+    qtbot.addWidget(step.page)
+    with qtbot.waitSignal(looked_at.takes.refused, timeout=WAIT_MS):
+        step.enter()
+    for _ in range(30):
+        step.tick()
+        qtbot.wait(1)
+    assert len(beginnings) == 1
+    primary = step.bar().primary
+    assert primary is not None
+    assert primary.text == "Begin the free motion"
+    with qtbot.waitSignal(looked_at.takes.begun, timeout=WAIT_MS):
+        step.on_intent(Intent(Action.RUN))
+    with qtbot.waitSignal(looked_at.takes.ended, timeout=WAIT_MS):
+        step.leave()
+
+
+def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, looked_at: Visit) -> None:
+    takes = looked_at.takes
+    for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
+        takes.keep(record(qtbot, looked_at, kind, 1.0), is_kept=True)
+    takes.say_restrapped()
+    broken_off = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
+    assert broken_off.told.is_restrapped_before
+    takes.keep(broken_off, is_kept=False)
+    assert takes.is_restrapped
+    standing = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
+    assert standing.told.is_restrapped_before
+    step = WalkingStep(Look(), looked_at)
+    assert not step.bar().others[0].is_enabled  # nobody has moved since
+    assert "Stand still and move freely" in step.bar().note
+    record(qtbot, looked_at, RecordingKind.FREE_MOTION, 1.0)
+    assert step.bar().others[0].is_enabled
+
+
+def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: QtBot, looked_at: Visit) -> None:
+    takes = looked_at.takes
+    record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
+    takes.say_restrapped()
+    discarded = record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
+    record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
+    takes.keep(discarded, is_kept=False)
+    qtbot.waitUntil(lambda: len(takes.recordings()) == 2, timeout=WAIT_MS)
+    assert [recording.is_restrapped_before for recording in takes.recordings()] == [False, True]
+
+
+def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looked_at: Visit) -> None:
+    record(qtbot, looked_at, RecordingKind.WALKING, 1.0)
+    assert looked_at.session is not None
+    again = Visit(desk, [])
+    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+        again.resume(looked_at.session.id)
+    step = WalkingStep(Look(), again)
+    qtbot.addWidget(step.page)
+    assert step.cannot_enter == ""
+    step.enter()
+    assert not step.bar().others[0].is_enabled
+    assert step.bar().note == "Choose the source of the sensors first."
+    step._on_discard_pressed(str(again.takes.walks[0].id))
+    qtbot.waitUntil(lambda: not again.takes.walks[0].told.is_kept, timeout=WAIT_MS)
+    step.leave()
+    again.finish()
+
+
+def test_sensors_of_another_day_were_strapped_anew(
+    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
+        record(qtbot, looked_at, kind, 0.5)
+    assert looked_at.session is not None
+    monkeypatch.setattr("app.wizard.visit._now", lambda: "2031-02-03T09:00:00+01:00")
+    again = Visit(desk, looked_at._choices)
+    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+        again.resume(looked_at.session.id)
+    assert again.takes.has_moved
+    looked_at.sensors.close()
+    with qtbot.waitSignal(again.refused, timeout=WAIT_MS) as told:
+        again.sensors.search(again.choices[0])
+    assert "another day" in told.args[0]
+    assert again.takes.must_move
+    again.close()
+    again.finish()
+
+
+def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    begin(qtbot, visit, worn)
+    record(qtbot, visit, RecordingKind.WALKING, 0.5)
+    visit.takes.session = visit.session
+    for code, is_taken in (("DEMO-8", True), ("P-8", False)):
+        visit.patient.edit(replace(visit.patient.told, code=code))
+        with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused], timeout=WAIT_MS):
+            visit.patient.commit()
+    assert visit.patient.told.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
+    assert visit.patient.stored is not None
+    assert visit.session is not None
+    assert visit.patient.stored.id == visit.session.patient_id
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=WAIT_MS)
+
+
+def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit
+) -> None:
+    assert desk.state is not None
+    library = desk.state.library.library
+    library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
+    demo = library.patients.find("DEMO-98")
+    assert demo is not None
+    visit.patient.choose(demo)
+    with qtbot.waitSignal(visit.changed, timeout=WAIT_MS):
+        visit.begin_session()
+    visit.patient.edit(Patient(code="DEMO-99", birth_year=1990))
+    with qtbot.waitSignal(visit.patient.refused) as refused:
+        visit.patient.commit()
+    assert refused.args[0] == f"This session belongs to {demo.told.code}."
+    assert visit.patient.told == demo.told
+    assert library.patients.find("DEMO-99") is None
+
+
+def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Visit) -> None:
+    for code in ("demo-5", "DEMO-5"):
+        visit.patient.edit(Patient(code=code))
+        with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
+            visit.patient.commit()
+    assert visit.patient.stored is not None
+    assert visit.patient.stored.told.code == "DEMO-5"
+
+
+def test_a_session_that_is_gone_leads_back_and_says_so(qtbot: QtBot, wizard: Wizard, desk: LibraryDesk) -> None:
+    with qtbot.waitSignals([wizard.left, desk.refused], timeout=WAIT_MS):
+        wizard.show_session(uuid4())
+    assert wizard.visit is None
+
+
+def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
+    qtbot: QtBot, wizard: Wizard, desk: LibraryDesk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(wizard_module, "choices", tuple)
+    assert desk.state is not None
+    library = desk.state.library.library
+    session = library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
+    wizard.show_session(session.id)
+    assert wizard.visit is not None
+    before = wizard.visit
+    wizard.begin(None)
+    with qtbot.waitSignal(before.resumed, timeout=WAIT_MS):
+        pass
+    assert wizard.current is not wizard._steps[RESULTS]
+    assert wizard.visit.session is None
