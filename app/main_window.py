@@ -21,6 +21,7 @@ from PySide6.QtGui import (
     QPaintEvent,
     QResizeEvent,
     QShortcut,
+    QWindow,
 )
 from PySide6.QtWidgets import QApplication, QStackedWidget, QVBoxLayout, QWidget
 
@@ -47,6 +48,7 @@ FRAME = (8, 40)  # what the desktop may put round a window
 SMALLEST_SIZE = (640, 480)
 DROP_EDGE = 2.5
 POLL_MS = 1000
+SWITCH_S = 0.001  # a frame needs Python several times, and waits so long each time while an analysis runs beside it
 PREPARE_AFTER_MS = 200  # the first frame goes before
 COMPACT_BELOW = (1180, 720)
 ACTIVITY = frozenset(
@@ -151,9 +153,11 @@ class MainWindow(QWidget):
         self._fit()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Hear what the user does, from the window of the desktop: of the application's every event, a hundred times
+        as many would be heard."""
         if event.type() in ACTIVITY:
             self.idle.note_activity()
-        return super().eventFilter(watched, event)
+        return False
 
     def _build(self) -> None:
         column = QVBoxLayout(self)
@@ -193,8 +197,8 @@ class MainWindow(QWidget):
         self.desk.refused.connect(self._on_told)
         self._poll.timeout.connect(self._on_poll)
         app = QApplication.instance()
-        if app is not None:
-            app.installEventFilter(self)
+        if isinstance(app, QApplication):
+            app.focusWindowChanged.connect(self._on_focus_window_changed)
         self._poll.start()
 
     def _begin(self) -> None:
@@ -317,6 +321,12 @@ class MainWindow(QWidget):
 
     # nobody is there
 
+    def _on_focus_window_changed(self, window: QWindow | None) -> None:
+        """Listen in whichever window the user works in, be it a dialog's."""
+        if window is not None:
+            window.installEventFilter(self)
+            self.idle.note_activity()
+
     def _on_poll(self) -> None:
         self.idle.poll()
         if self.entry is not None and self.is_covered:
@@ -420,6 +430,7 @@ def open_window(argv: list[str]) -> int:
         What stood behind the program's name.
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
+    sys.setswitchinterval(SWITCH_S)
     gc.disable()  # until all is imported
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     log_qt_messages()

@@ -22,6 +22,7 @@ from PySide6.QtWidgets import (
     QTextEdit,
     QWidget,
 )
+from shiboken6 import isValid
 
 
 class Action(Enum):
@@ -111,9 +112,11 @@ class Keys(QObject):
     def __init__(self, root: QWidget) -> None:
         super().__init__(root)
         self._root, self._is_running = root, False
+        self._heard: list[QWidget] = []
         application = QApplication.instance()
-        assert application is not None
-        application.installEventFilter(self)
+        assert isinstance(application, QApplication)
+        application.focusChanged.connect(self._on_focus_changed)
+        self._on_focus_changed(None, application.focusWidget())
 
     def set_running(self, is_running: bool) -> None:
         """Say whether something runs that Space stops."""
@@ -135,6 +138,17 @@ class Keys(QObject):
             return False
         intent = self._intent(event, focused)
         return intent is not None and self._emit(intent, event)
+
+    def _on_focus_changed(self, _before: QWidget | None, focused: QWidget | None) -> None:
+        """Listen where keys go and where unwanted ones end: to hear all events of all widgets takes a third of the
+        time that a page takes to be made."""
+        for left in filter(isValid, self._heard):
+            left.removeEventFilter(self)
+        self._heard = [self._root.window()]
+        if focused is not None and focused is not self._root.window():
+            self._heard.append(focused)
+        for widget in self._heard:
+            widget.installEventFilter(self)
 
     def _intent(self, event: QKeyEvent, focused: QWidget) -> Intent | None:
         is_text = _takes_text(focused)

@@ -254,7 +254,9 @@ def test_activity_puts_the_cover_off(open_window: Open, folder: Path, monkeypatc
     window = open_window(folder)
     noted: list[None] = []
     monkeypatch.setattr(window.idle, "note_activity", lambda: noted.append(None))
-    QTest.keyClick(window, Qt.Key.Key_A)
+    handle = window.windowHandle()
+    assert handle is not None
+    QTest.keyClick(handle, Qt.Key.Key_A)  # as the desktop hands it over
     assert noted
 
 
