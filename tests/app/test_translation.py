@@ -4,6 +4,7 @@ import ast
 import importlib
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from string import Formatter
 
@@ -105,6 +106,11 @@ def test_words_that_pass_the_catalogue_by_are_found() -> None:
     assert all(list(untranslated(ast.parse(line))) == [] for line in unseen)
 
 
+@cache
+def parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
 def screen_files() -> list[Path]:
     rooms = [ROOT / "app" / room for room in ROOMS]
     return sorted(file for room in rooms for file in ([room] if room.suffix else room.rglob("*.py")))
@@ -112,9 +118,7 @@ def screen_files() -> list[Path]:
 
 def test_every_sentence_on_the_screen_passes_the_catalogue() -> None:
     found = [
-        f"{file.relative_to(ROOT).as_posix()}:{line}"
-        for file in screen_files()
-        for line in untranslated(ast.parse(file.read_text(encoding="utf-8")))
+        f"{file.relative_to(ROOT).as_posix()}:{line}" for file in screen_files() for line in untranslated(parsed(file))
     ]
     assert found == [], "write tr(...) round what is shown, later(...) round a constant that is shown later"
 
@@ -123,7 +127,7 @@ def test_what_is_to_be_translated_is_written_out() -> None:
     # of an f-string, or of a sentence put together, the catalogue could not know the parts
     found = []
     for file in sorted((ROOT / "app").rglob("*.py")):
-        for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        for node in ast.walk(parsed(file)):
             if isinstance(node, ast.Call) and ast.unparse(node.func) in SPOKEN:
                 count = 2 if ast.unparse(node.func) == "tr_n" else 1
                 if any(isinstance(part, ast.JoinedStr | ast.BinOp) for part in node.args[:count]):
@@ -134,7 +138,7 @@ def test_what_is_to_be_translated_is_written_out() -> None:
 def test_no_constant_is_translated_before_a_language_is_chosen() -> None:
     found = []
     for file in sorted((ROOT / "app").rglob("*.py")):
-        tree = ast.parse(file.read_text(encoding="utf-8"))
+        tree = parsed(file)
         bodies = [tree.body, *(node.body for node in ast.walk(tree) if isinstance(node, ast.ClassDef))]
         for body in bodies:
             for statement in body:

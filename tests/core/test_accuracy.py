@@ -34,7 +34,16 @@ def assert_reached(accuracy: ModuleType, name: str, seeds: range, slack: float) 
         assert p90 <= target * slack, f"{name}, {quantity}: {p90:.2f}, wanted {target}"
 
 
-@pytest.mark.parametrize("name", ["rigid", "rigid, biased sensors", "soft tissue", "walk only, no standing"])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "soft tissue",
+        *(
+            pytest.param(name, marks=pytest.mark.endurance)
+            for name in ("rigid", "rigid, biased sensors", "walk only, no standing")
+        ),
+    ],
+)
 def test_a_few_sessions_reach_the_targets(accuracy: ModuleType, name: str) -> None:
     assert_reached(accuracy, name, range(1000, 1005), SLACK)
 

@@ -45,7 +45,9 @@ def told(found: Analysis) -> set[tuple[str, str]]:
 
 
 @pytest.mark.parametrize("method", list(Method))
-@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(
+    "seed", [0, pytest.param(1, marks=pytest.mark.endurance), pytest.param(2, marks=pytest.mark.endurance)]
+)
 def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person]", seed: int, method: Method) -> None:
     sites = tuple(site for site in Site if site.side is (Side.RIGHT if seed % 2 else Side.LEFT))
     person = make_person(seed=seed)
@@ -73,7 +75,7 @@ def test_a_person_of_hinges_is_measured_right(make_person: "Callable[..., Person
             assert np.mean(np.abs(error) < 2 * sd_deg[0]) > 0.9
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.endurance) for seed in range(2, 6))])
 @pytest.mark.parametrize("kinds", [(W,), (S, W), (F, W), (S, F, W)])
 def test_flexion_is_positive_on_every_leg_whatever_was_recorded(
     make_person: "Callable[..., Person]", seed: int, kinds: tuple[RecordingKind, ...]
@@ -155,6 +157,7 @@ def test_without_standing_range_and_shape_hold(person: "Person") -> None:
 
 @settings(max_examples=6)
 @given(seed=seeds)
+@pytest.mark.endurance
 def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
     make_person: "Callable[..., Person]", seed: int
 ) -> None:
@@ -194,6 +197,7 @@ def swapped(session: Session) -> Session:
     return replace(session, recordings=tuple(recordings))
 
 
+@pytest.mark.endurance
 def test_swapping_left_and_right_swaps_the_names_and_nothing_else(person: "Person") -> None:
     visit = person.visit(tuple(Site), duration_s=6.0)
     plain, mirrored = analyse(visit), analyse(swapped(visit))
@@ -226,7 +230,9 @@ def test_half_the_rate_gives_the_same_angle(knee_visit: Session, every: int) -> 
     assert np.sign(of(plain).axis_distal @ of(slow).axis_distal) == of(plain).clinical_sign * of(slow).clinical_sign
 
 
-@pytest.mark.parametrize("rate_hz", [50.0, 60.0, 200.0])
+@pytest.mark.parametrize(
+    "rate_hz", [60.0, pytest.param(50.0, marks=pytest.mark.endurance), pytest.param(200.0, marks=pytest.mark.endurance)]
+)
 def test_every_rate_finds_the_same_truth(person: "Person", rate_hz: float) -> None:
     found = analyse(person.visit(rate_hz=rate_hz))
     for name in ("free motion", "walk"):

@@ -114,7 +114,9 @@ def test_an_analysis_names_the_slip_and_leaves_out_the_strides_after_it(soft: Si
     assert Reason.SLIPPED not in left.reason
 
 
-@pytest.mark.parametrize("at_s", [22.0, 23.0, 24.7])
+@pytest.mark.parametrize(
+    "at_s", [23.0, pytest.param(22.0, marks=pytest.mark.endurance), pytest.param(24.7, marks=pytest.mark.endurance)]
+)
 def test_no_stride_after_a_slip_is_used_wherever_in_its_window_it_lies(soft: SimulatedSession, at_s: float) -> None:
     session = slipped(soft.session, Site.LEFT_THIGH, np.deg2rad(-15.0), at_s)
     analysis = analyse(session)
@@ -124,7 +126,10 @@ def test_no_stride_after_a_slip_is_used_wherever_in_its_window_it_lies(soft: Sim
     assert strides.end_s[strides.is_used].max() > at_s - 10.0
 
 
-@pytest.mark.parametrize(("between", "is_used"), [(Standing("in between"), False), (FreeMotion("in between"), True)])
+@pytest.mark.parametrize(
+    ("between", "is_used"),
+    [(Standing("in between"), False), pytest.param(FreeMotion("in between"), True, marks=pytest.mark.endurance)],
+)
 def test_a_slip_holds_until_the_next_free_motion_not_the_next_standing(
     between: Standing | FreeMotion, is_used: bool
 ) -> None:

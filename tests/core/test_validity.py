@@ -155,6 +155,7 @@ def visit_of(person: "Person", *plan: tuple[str, RecordingKind, bool, bool], sit
     return Session(tuple(recordings))
 
 
+@pytest.mark.endurance
 def test_every_joint_says_from_which_recordings(person: "Person") -> None:
     plan = [("s1", S), ("f1", F), ("s2", S), ("f2", F), ("w1", W), ("w2", W)]
     visit = visit_of(person, *((n, k, n != "f2", False) for n, k in plan), sites=LEG)

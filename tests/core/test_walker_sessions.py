@@ -61,6 +61,7 @@ def test_a_rigid_leg_is_measured_whatever_the_sensors_do(settings: WalkerSetting
         assert found.calibrations[0].joints[joint].is_sign_certain
 
 
+@pytest.mark.endurance
 def test_averaged_rates_are_found_where_no_sensor_tells() -> None:
     walked = simulate(left_leg(rate_kind=RateKind.AVERAGED))
     found = analyse(without_word(walked.session))
@@ -71,7 +72,7 @@ def test_averaged_rates_are_found_where_no_sensor_tells() -> None:
 
 
 @pytest.mark.parametrize("tissue", [Tissue.SOFT, Tissue.REAL])
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.endurance)])
 def test_on_soft_tissue_the_sign_is_right_and_two_deviations_hold_nine_samples_of_ten(
     tissue: Tissue, seed: int
 ) -> None:

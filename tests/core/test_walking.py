@@ -13,6 +13,7 @@ from core.samples import ImuBlock
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 
+@pytest.mark.endurance
 def test_the_seams_between_blocks_cost_no_stride_and_no_phase(monkeypatch: pytest.MonkeyPatch) -> None:
     """Seams within a swing, and on landings, which the two blocks tell on either side of it or both on the far one."""
     recordings = (Standing(), Walk(strides=30))
@@ -36,7 +37,9 @@ def reversed_in_time(block: ImuBlock) -> ImuBlock:
     return replace(block, gyr_rad_s=-block.gyr_rad_s[::-1], acc_m_s2=block.acc_m_s2[::-1])
 
 
-@pytest.mark.parametrize("turned_sign", [{}, {Joint.LEFT_KNEE: 1, Joint.RIGHT_KNEE: 1}])
+@pytest.mark.parametrize(
+    "turned_sign", [{}, pytest.param({Joint.LEFT_KNEE: 1, Joint.RIGHT_KNEE: 1}, marks=pytest.mark.endurance)]
+)
 def test_walking_backward_leaves_every_sign_and_stride_in_doubt(turned_sign: dict[Joint, int]) -> None:
     """The shank swings the other way: knees bend against it, and an ankle that followed it would be mirrored."""
     session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=12)))).session

@@ -111,6 +111,7 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
+@pytest.mark.endurance
 def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: WalkingStep, visit: Visit) -> None:
     calibrate(qtbot, visit)
     with qtbot.waitSignal(visit.takes.begun, timeout=10_000):

@@ -157,19 +157,22 @@ def test_who_holds_still_is_told_nothing_but_to_move(joint: Joint) -> None:
     assert state.sign_margin == 1.0
 
 
+LONG = pytest.mark.endurance
+
+
 @pytest.mark.parametrize(
     ("joint", "before"),
     [
-        pytest.param(KNEE, STILL, id="a knee held still"),
+        pytest.param(KNEE, STILL, id="a knee held still", marks=LONG),
         pytest.param(KNEE, BEND_KNEE, id="a knee bent in one plane, the thigh still"),
-        pytest.param(KNEE, CIRCLE_SHANK, id="a lower leg circling, the thigh in place"),
-        pytest.param(KNEE, CIRCLE_THIGH, id="a stiff leg circling"),
+        pytest.param(KNEE, CIRCLE_SHANK, id="a lower leg circling, the thigh in place", marks=LONG),
+        pytest.param(KNEE, CIRCLE_THIGH, id="a stiff leg circling", marks=LONG),
         pytest.param(KNEE, SWING_STIFF_LEG, id="a stiff leg swinging in one plane"),
-        pytest.param(ANKLE, STILL, id="an ankle held still"),
+        pytest.param(ANKLE, STILL, id="an ankle held still", marks=LONG),
         pytest.param(ANKLE, BEND_ANKLE, id="a foot bending alone"),
-        pytest.param(ANKLE, CIRCLE_FOOT, id="a foot circling alone"),
-        pytest.param(ANKLE, CIRCLE_SHANK, id="a lower leg circling, the foot stiff"),
-        pytest.param(ANKLE, BEND_KNEE, id="a lower leg swinging, the foot stiff"),
+        pytest.param(ANKLE, CIRCLE_FOOT, id="a foot circling alone", marks=LONG),
+        pytest.param(ANKLE, CIRCLE_SHANK, id="a lower leg circling, the foot stiff", marks=LONG),
+        pytest.param(ANKLE, BEND_KNEE, id="a lower leg swinging, the foot stiff", marks=LONG),
     ],
 )
 def test_the_motion_that_is_asked_for_is_the_one_that_tells_most(joint: Joint, before: Motion) -> None:

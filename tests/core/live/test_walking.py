@@ -114,7 +114,9 @@ def test_events_and_cadence_are_those_of_the_walk(states: list[WalkingState], an
 LEFT = tuple(site for site in Site if site.side is Side.LEFT)
 
 
-@pytest.mark.parametrize("block_s", [0.02, 0.35, 100.0])
+@pytest.mark.parametrize(
+    "block_s", [0.35, pytest.param(0.02, marks=pytest.mark.endurance), pytest.param(100.0, marks=pytest.mark.endurance)]
+)
 def test_the_size_of_the_blocks_changes_nothing(
     made: SimulatedSession,
     sensors: dict[Site, LiveSensor],
@@ -131,6 +133,7 @@ def test_the_size_of_the_blocks_changes_nothing(
     assert events_of(other, Side.LEFT) == events_of(states, Side.LEFT)
 
 
+@pytest.mark.endurance
 def test_one_late_sensor_delays_its_joints_and_changes_nothing(
     made: SimulatedSession,
     sensors: dict[Site, LiveSensor],

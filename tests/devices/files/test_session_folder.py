@@ -450,7 +450,7 @@ def sessions(draw: st.DrawFn) -> Session:
     )
 
 
-@settings(max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.too_slow])
 @given(session=sessions())
 def test_what_is_written_is_read_back_bit_for_bit(session: Session, tmp_path_factory: pytest.TempPathFactory) -> None:
     folder = tmp_path_factory.mktemp("round") / "session"
@@ -576,7 +576,7 @@ def test_a_large_session_is_refused_at_once(make_session: MakeSession, monkeypat
 # --- spoilt files
 
 
-@settings(max_examples=150, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data(), kind=st.sampled_from(["left_thigh.csv", "left_thigh.parquet", "session.toml"]))
 def test_spoilt_files_are_refused_or_read(
     data: st.DataObject, kind: str, tmp_path_factory: pytest.TempPathFactory

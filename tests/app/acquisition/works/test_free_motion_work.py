@@ -127,6 +127,7 @@ def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(worn: Worn) -> Non
     assert fed(work, later)[-1].site_of == {name: worn.site_of[name] for name in right}
 
 
+@pytest.mark.endurance
 def test_no_more_than_half_a_minute_is_held_back(worn: Worn) -> None:
     work = UnplacedFreeMotionWork(worn.live_sensors, Side.LEFT)
     stood = {

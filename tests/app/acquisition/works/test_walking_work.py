@@ -78,7 +78,7 @@ def test_a_walk_counts_its_own_strides(worn: Worn, usual: list[WalkingView]) -> 
         assert 3 < last.strides[side] < usual[-1].strides[side] - 3
 
 
-@pytest.mark.parametrize("block_s", [0.017, 60.0])
+@pytest.mark.parametrize("block_s", [60.0, pytest.param(0.017, marks=pytest.mark.endurance)])
 def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[WalkingView], block_s: float) -> None:
     one, two = usual[-1], fed(work_of(worn), dict(worn.walk), block_s)[-1]
     for joint in Joint:
