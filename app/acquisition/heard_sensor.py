@@ -95,12 +95,16 @@ class HeardSensor:
     def _heard_hz(self, now_s: float) -> float:
         last_s = self.ring.last_s
         end_s = last_s if now_s - last_s < ON_ITS_WAY_S else now_s
-        return len(self.ring.since(end_s - HEARD_S + ROUNDING_S)) / HEARD_S
+        return self.ring.count_since(end_s - HEARD_S + ROUNDING_S) / HEARD_S
 
     def _movement_rad_s(self, now_s: float) -> float:
-        rate = self.ring.since(now_s - MOVEMENT_S).gyr_rad_s
-        rate = rate[np.isfinite(rate).all(axis=1)]
-        return float(np.sqrt(rate.var(axis=0).sum())) if len(rate) else 0.0
+        rate = self.ring.rates_since(now_s - MOVEMENT_S)
+        if not np.isfinite(rate).all():
+            rate = rate[np.isfinite(rate).all(axis=1)]
+        if not len(rate):
+            return 0.0
+        about_mean = rate - rate.mean(axis=0)
+        return float(np.sqrt(np.vdot(about_mean, about_mean) / len(rate)))  # `var` takes three times as long
 
     def _count(self, step_s: FloatArray) -> None:
         """Count samples that follow the ones before them by `step_s` (n,): a step of two intervals lost one."""

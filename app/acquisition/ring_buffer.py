@@ -1,5 +1,7 @@
 """What did a sensor send in the last seconds? For the screen and the live estimate, which may skip but never wait."""
 
+from bisect import bisect_left
+
 import numpy as np
 
 from core.samples import FloatArray, ImuBlock
@@ -41,12 +43,23 @@ class RingBuffer:
 
     def since(self, time_s: float) -> ImuBlock:
         """A copy of the samples that are not older than `time_s`."""
-        rows = self._held()
-        return self._block(rows[rows[:, 0].searchsorted(time_s) :])
+        return self._block(self._since(time_s))
+
+    def count_since(self, time_s: float) -> int:
+        """How many samples are not older than `time_s`."""
+        return len(self._since(time_s))
+
+    def rates_since(self, time_s: float) -> FloatArray:
+        """The angular rates (n, 3) of the samples that are not older than `time_s`, to be read at once: no copy."""
+        return self._since(time_s)[:, 1:4]
 
     def newest(self, count: int) -> ImuBlock:
         """A copy of the last `count` samples, or of fewer where so many are not there."""
         return self._block(self._held()[max(len(self) - count, 0) :])
+
+    def _since(self, time_s: float) -> FloatArray:
+        rows = self._held()
+        return rows[bisect_left(rows[:, 0], time_s) :]  # `searchsorted` would copy all times first
 
     def _held(self) -> FloatArray:
         return self._rows[self._end - len(self) : self._end]

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 STAND_STILL = 2  # the step that sensors strapped anew begin with
 STRIDES_FOR_SPREAD = 10
+WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
 LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second more
 
 
@@ -43,6 +44,7 @@ class WalkingStep(Step):
         self._counted_before: dict[Side, int] = {}
         self._label = ""
         self._is_in_sight = self._is_ankle_asked = False
+        self._ticks = 0
         self._losses = Losses()
         self._trouble: Message = NOTHING
         self._judged: set[UUID] = set()  # recovered walks that somebody has kept or discarded
@@ -136,7 +138,9 @@ class WalkingStep(Step):
         self._work = None
 
     def tick(self) -> None:
-        self._watch_sensors()
+        if self._ticks % WATCH_TICKS == 0:
+            self._watch_sensors()
+        self._ticks += 1
         if self._work is None or not self._visit.takes.is_recording:
             return
         view = self._work.state
