@@ -39,7 +39,7 @@ if TYPE_CHECKING:  # their imports take a second; the window must not wait for t
 _log = logging.getLogger(__name__)
 
 NARROW_BELOW = 800
-BAR = 72
+HEADER, BAR = 56, 72
 
 STOPPED = (
     later("The analysis was stopped."),
@@ -193,7 +193,7 @@ class SessionScreen(QWidget):
         self.empty.set_narrow(is_narrow)
         self.bar.set_narrow(is_narrow)
         if self._results is not None:
-            self._results.set_room(width, height)
+            self._results.set_room(width, height - HEADER - BAR)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.open_folder(Path(folder))
@@ -212,7 +212,8 @@ class SessionScreen(QWidget):
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
         session = opened.session
-        self._results.show_analysis(opened.analysis)
+        is_prosthetic = session.patient.prosthetic_side in set(Side)
+        self._results.show_analysis(opened.analysis, session.recordings, is_prosthetic=is_prosthetic)
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )

@@ -64,10 +64,11 @@ class CyclePage(QWidget):
     def tables(self) -> list[QWidget]:
         return [self.peaks.table, self.time_distance.table]
 
-    def set_room(self, is_compact: bool, has_two_charts: bool) -> None:
+    def set_room(self, is_tight: bool, has_two_charts: bool) -> None:
         """Put the charts side by side where that is the better use of the page, and the note on the band under them."""
         self.charts.set_side_by_side(has_two_charts)
-        self.note.setVisible(is_compact)
+        self.note.setVisible(is_tight)
+        self.peaks_note.setVisible(not is_tight)
 
     def show_walk(
         self, recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], is_simulated: bool

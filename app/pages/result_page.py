@@ -1,15 +1,17 @@
 """What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.pages.compare_page import ComparePage
 from app.pages.cycle_page import CyclePage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
+from app.reports.comparison import calibrated_for, conditions_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -21,17 +23,20 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
-from core.body import Joint
-from core.results import Analysis, JointAngle, JointCalibration, RecordingAnalysis
-from core.samples import RecordingKind
+from core.results import Analysis, JointAngle, RecordingAnalysis
+from core.samples import Recording, RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
-MEAN, WHOLE, FIGURES, FACTS = "mean", "whole", "figures", "facts"  # the views; the last two only where room is short
+# the views; the last two only where room is short
+MEAN, WHOLE, COMPARE, FIGURES, FACTS = "mean", "whole", "compare", "figures", "facts"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
-COMPACT_BELOW = (1272, 720)  # what the charts and both tables of a mean cycle need side by side
+COMPACT_BELOW = (940, 656)  # what the charts of a mean cycle need with one table beside them
 NARROW_BELOW = 940  # what both tables need without the charts
+THREE_COLUMNS_FROM = 1264  # what the charts and both tables need side by side
+LEAST_FINDINGS = 48  # under the peaks; what does not fit scrolls
+SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
 TWO_CHARTS_FROM = 680
 
 HINTS = {
@@ -52,6 +57,8 @@ class ResultPage(QWidget):
         self._is_compact = False
         self._is_narrow = False
         self._has_two_charts = False
+        self._columns_wanted = 3
+        self._is_spacious = False
         self._wanted = MEAN  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
             look,
@@ -59,6 +66,7 @@ class ResultPage(QWidget):
             [
                 (MEAN, tr("Mean cycle"), ""),
                 (WHOLE, tr(WALK), ""),
+                (COMPARE, tr("Compare"), ""),
                 (FIGURES, tr("Figures"), ""),
                 (FACTS, tr("Findings"), ""),
             ],
@@ -77,6 +85,7 @@ class ResultPage(QWidget):
         self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
         self.band = Toggle(look, tr("Band"), "B", is_on=True)
         self.cycles = CyclePage(look)
+        self.compare = ComparePage(look)
         self.charts = JointCharts(look)
         self.shown = Text(look, size=14, tone="ink2")
         self.whole = Button(look, tr("Whole recording"), Kind.QUIET, Icon.WHOLE, tr("Home"), height=44)
@@ -87,9 +96,21 @@ class ResultPage(QWidget):
         self._connect()
         self._on_look_changed()
 
-    def show_analysis(self, analysis: Analysis) -> None:
-        """Show the first walk of `analysis`, or its first recording."""
+    def show_analysis(
+        self, analysis: Analysis, session: Sequence[Recording] = (), *, is_prosthetic: bool = False
+    ) -> None:
+        """Show the first walk of `analysis`, or its first recording.
+
+        Parameters
+        ----------
+        session
+            The session's recordings in order, whose conditions are compared; without them every walk is one of its own.
+        is_prosthetic
+            Whether the affected side of `analysis` wears a prosthesis.
+        """
         self._analysis = analysis
+        parts = conditions_of(analysis, session)
+        self.compare.show_conditions(parts, analysis.affected_side, is_prosthetic, analysis.is_simulated)
         names = [recording.name for recording in analysis.recordings]
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
@@ -103,14 +124,16 @@ class ResultPage(QWidget):
         self._on_recording_changed()
 
     def set_room(self, width: float, height: float) -> None:
-        """Fold the page as far as the window, in px of the design, asks for it.
+        """Fold the page as far as its room, in px of the design, asks for it.
 
         Where there is little room curves, figures and findings are tabs, and the controls take two rows.
         """
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
-        room = is_compact, width < NARROW_BELOW, is_compact and width >= TWO_CHARTS_FROM
-        if room != (self._is_compact, self._is_narrow, self._has_two_charts):
-            self._is_compact, self._is_narrow, self._has_two_charts = room
+        has_two_charts = is_compact and width >= TWO_CHARTS_FROM
+        columns = 1 if is_compact else 2 if width < THREE_COLUMNS_FROM else 3
+        room = is_compact, width < NARROW_BELOW, has_two_charts, columns, columns > 1 and width >= SPACIOUS_FROM
+        if room != (self._is_compact, self._is_narrow, self._has_two_charts, self._columns_wanted, self._is_spacious):
+            self._is_compact, self._is_narrow, self._has_two_charts, self._columns_wanted, self._is_spacious = room
             self._place()
 
     def focus(self) -> None:
@@ -128,7 +151,8 @@ class ResultPage(QWidget):
     def tab_order(self) -> list[QWidget]:
         """What takes the focus, in the order of reading."""
         choices = [*self.view.segments, self.recordings, self.single_strides, self.band, *self.methods.segments]
-        return [*choices, self.charts, self.whole, *self.cycles.tables, self.facts, self.findings]
+        shown = [self.charts, self.whole, *self.cycles.tables, *self.compare.tab_order]
+        return [*choices, *shown, self.facts, self.findings]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
@@ -137,6 +161,16 @@ class ResultPage(QWidget):
         toggles.setContentsMargins(0, 0, 0, 0)
         toggles.addWidget(self.single_strides)
         toggles.addWidget(self.band)
+        self._against = QWidget()
+        self._against_row = QHBoxLayout(self._against)
+        self._against_row.setContentsMargins(0, 0, 0, 0)
+        self._against_row.addWidget(self.compare.kinds)
+        self._against_row.addWidget(self.compare.bases)
+        self._choices = QWidget()
+        choices = QHBoxLayout(self._choices)
+        choices.setContentsMargins(0, 0, 0, 0)
+        for widget in (self.recordings, self._toggles, self._against):
+            choices.addWidget(widget)
         self._curves = QWidget()
         left = QVBoxLayout(self._curves)
         left.setContentsMargins(0, 0, 0, 0)
@@ -164,7 +198,13 @@ class ResultPage(QWidget):
         self._right.addWidget(self._joints)
         self._right.addWidget(self._noticed, 1)
         self._columns = QHBoxLayout()
-        for widget, share in ((self._curves, 1), (self.cycles, 2), (self.cycles.peaks, 0), (self._beside, 0)):
+        for widget, share in (
+            (self._curves, 1),
+            (self.cycles, 2),
+            (self.compare, 1),
+            (self.cycles.peaks, 0),
+            (self._beside, 0),
+        ):
             self._columns.addWidget(widget, share)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
@@ -182,7 +222,7 @@ class ResultPage(QWidget):
         self.whole.clicked.connect(self.charts.show_whole)
         for toggle, slot in (
             (self.single_strides, self.cycles.charts.set_strides_shown),
-            (self.band, self.cycles.charts.set_band_shown),
+            (self.band, self._on_band_toggled),
         ):
             toggle.toggled.connect(slot)
             shortcut = QShortcut(QKeySequence(toggle.key), toggle)  # asleep while its toggle is hidden
@@ -191,33 +231,37 @@ class ResultPage(QWidget):
 
     def _place(self) -> None:
         """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
-        for widget in (self.view, self.recordings, self.methods, self._toggles):
+        for widget in (self.view, self.methods, self._choices):
             self._controls.removeWidget(widget)
         for widget in (self._notes, self.methods, self.whole):
             self._foot.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
-        self._controls.addWidget(self.view, 0, 0)
-        self._controls.addWidget(self.recordings, 0, 1)
+        self._controls.addWidget(self.view, 0, 0, left)
         self._controls.setColumnStretch(3, 1)
+        if self._is_compact:
+            self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
+            self._against_row.insertWidget(2, self.compare.view)
+        else:
+            self._controls.addWidget(self._choices, 0, 1)
         if self._is_narrow:
-            self._controls.addWidget(self._toggles, 1, 0, 1, 4, left)
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
             self._foot.addWidget(self._notes, 2, 0)
-        elif self._is_compact:
-            self._controls.addWidget(self._toggles, 0, 2)
-            self._foot.addWidget(self.methods, 0, 0, left)
-            self._foot.addWidget(self.whole, 0, 1)
-            self._foot.addWidget(self._notes, 1, 0, 1, 2)
+        elif self._columns_wanted < 3:
+            self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
+            self._foot.addWidget(self._notes, 1, 0)
+            self._foot.addWidget(self.whole, 1, 1)
         else:
-            self._controls.addWidget(self._toggles, 0, 2)
             self._controls.addWidget(self.methods, 0, 2)
             self._foot.addWidget(self._notes, 0, 0)
             self._foot.addWidget(self.whole, 0, 1)
+        self.compare.set_room(self._is_compact, self._is_spacious)
+        self.findings.setMinimumHeight(self._look.theme.px(LEAST_FINDINGS) if self._columns_wanted == 2 else 0)
         for frame in (self.charts.knee, self.charts.ankle):
             frame.set_narrow(self._is_narrow)
         self.charts.phases.set_narrow(self._is_narrow or not self._is_compact)  # facts beside it leave it less room
-        self.cycles.set_room(self._is_compact, self._has_two_charts)
+        self.cycles.set_room(self._columns_wanted < 3, self._has_two_charts)
+        self._place_peaks()
         self._offer()
 
     def _offer(self) -> None:
@@ -228,8 +272,10 @@ class ResultPage(QWidget):
         self.view.blockSignals(True)
         self.view.set_word(WHOLE, tr(WALK if is_walk else RECORDING))
         self.view.set_offered(MEAN, is_walk)
-        self.view.set_reason(MEAN, "" if has_strides else tr("no strides"))
-        self.view.set_offered(FIGURES, self._is_compact and has_strides)
+        self.view.set_offered(COMPARE, is_walk)
+        for view in (MEAN, COMPARE):
+            self.view.set_reason(view, "" if has_strides else tr("no strides"))
+        self.view.set_offered(FIGURES, self._columns_wanted < 3 and has_strides)
         self.view.set_offered(FACTS, self._is_compact)
         if self.view.choice in (MEAN, WHOLE):
             self.view.choose(self._wanted if is_walk and has_strides else WHOLE)
@@ -242,20 +288,31 @@ class ResultPage(QWidget):
         view, is_wide = self.view.choice, not self._is_compact
         has_figures = view == FIGURES or (view == MEAN and is_wide)
         self.methods.setVisible(view == WHOLE)
+        self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
+        self._against.setVisible(view == COMPARE)
+        self.compare.setVisible(view == COMPARE)
         self._toggles.setVisible(view == MEAN)
         self._curves.setVisible(view == WHOLE)
         self.cycles.setVisible(view == MEAN)
         self.cycles.peaks.setVisible(has_figures)
-        self.cycles.time_distance.setVisible(has_figures)
+        self.cycles.time_distance.setVisible(has_figures and (self._columns_wanted != 2 or view == FIGURES))
         self._joints.setVisible(view == FACTS or (view == WHOLE and is_wide))
-        self._noticed.setVisible(view == FACTS or is_wide)
-        self._beside.setVisible(is_wide or view in (FIGURES, FACTS))
-        is_row = view == FACTS and not self._is_narrow
+        has_findings = view == FACTS or (is_wide and view not in (COMPARE, FIGURES))
+        self._noticed.setVisible(has_findings)
+        self._beside.setVisible((is_wide and view != COMPARE) or view in (FIGURES, FACTS))
+        is_row = (view == FACTS and not self._is_narrow) or (view == FIGURES and self._columns_wanted == 2)
         self._right.setDirection(QBoxLayout.Direction.LeftToRight if is_row else QBoxLayout.Direction.TopToBottom)
         is_stack = view == FIGURES and self._is_narrow
         self._columns.setDirection(QBoxLayout.Direction.TopToBottom if is_stack else QBoxLayout.Direction.LeftToRight)
         self._right.activate()
         self._page.activate()  # now, else the charts would be painted once too small and once right
+
+    def _place_peaks(self) -> None:
+        """Put the peaks over the findings where there is room for one column of tables only."""
+        if self._columns_wanted == 2:
+            self._right.insertWidget(0, self.cycles.peaks)
+        else:
+            self._columns.insertWidget(self._columns.indexOf(self._beside), self.cycles.peaks)
 
     def _on_view_chosen(self) -> None:
         if self.view.choice in (MEAN, WHOLE) and self.view.segments[0].isEnabled():
@@ -272,7 +329,7 @@ class ResultPage(QWidget):
             return
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
-        calibrated, is_simulated = _in_force(self._analysis, recording), self._analysis.is_simulated
+        calibrated, is_simulated = calibrated_for(self._analysis, recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
         self.cycles.show_walk(recording, calibrated, is_simulated)
         self.facts.show_joints(calibrated)
@@ -290,6 +347,10 @@ class ResultPage(QWidget):
             " ".join(filter(None, [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]))
         )
 
+    def _on_band_toggled(self, is_shown: bool) -> None:
+        self.cycles.charts.set_band_shown(is_shown)
+        self.compare.set_band_shown(is_shown)
+
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)
         if is_whole and self.whole.hasFocus():
@@ -303,7 +364,7 @@ class ResultPage(QWidget):
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(12))
         self._columns.setSpacing(px(12))
-        for side in (self._curves, self._beside, self._toggles):
+        for side in (self._curves, self._beside, self._toggles, self._against, self._choices):
             layout = side.layout()
             assert layout is not None
             layout.setSpacing(px(12))
@@ -323,14 +384,3 @@ def _curve(angle: JointAngle, method: str) -> Curve | None:
             return Curve(result, sd, published)
         case _:
             return Curve(result, sd)
-
-
-def _in_force(analysis: Analysis, recording: RecordingAnalysis) -> Mapping[Joint, JointCalibration]:
-    """Give the calibrations that `recording` was measured with."""
-    for calibration in analysis.calibrations:
-        if recording.name in calibration.walks:
-            return calibration.joints
-    for calibration in analysis.calibrations:  # a free motion is measured with what it gave
-        if any(found.free_motion_from == recording.name for found in calibration.joints.values()):
-            return calibration.joints
-    return analysis.calibrations[-1].joints if analysis.calibrations else {}

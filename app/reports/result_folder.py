@@ -11,6 +11,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
+from app.reports.comparison import Comparison, Kind, compare_sides, conditions_of, first_and_second
+from app.reports.comparison_csv import COMPARED_CYCLES, DIFFERENCES, SIDES, write_comparison, write_sides
 from app.reports.csv_report import write_angles
 from app.reports.gait_csv import write_gait
 from app.reports.summary import read_summary, write_summary
@@ -24,6 +26,7 @@ ANGLES = "angles.csv"
 LOG = "session.rrd"
 REPORT = "report.pdf"
 OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
+TAKEN = tuple((name,) for name in (SUMMARY, LOG, REPORT, OWN_SESSION, DIFFERENCES, COMPARED_CYCLES, SIDES))
 
 
 def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log: bool) -> None:
@@ -37,17 +40,28 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
         The disk is full or cannot be written to.
     """
     for recording in analysis.recordings:
-        if PurePosixPath(recording.folder).parts[:1] in ((SUMMARY,), (LOG,), (REPORT,), (OWN_SESSION,)):
+        if PurePosixPath(recording.folder).parts[:1] in TAKEN:
             what = f"its folder {recording.folder} has the name of one of the results"
             raise FileRefusedError(recording.name, what, "Give this recording's folder another name")
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)
         write_angles(recording, folder / recording.folder / ANGLES)
         write_gait(recording, folder / recording.folder)
+    _write_comparisons(session, analysis, folder)
     if has_log:
         from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write
 
         write_log(session, analysis, folder / LOG)
     write_summary(analysis, folder / SUMMARY)
+
+
+def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:
+    """The conditions of the session, each against the first; and of the last one its legs."""
+    parts = conditions_of(analysis, session.recordings)
+    if len(parts) > 1:
+        write_comparison(Comparison(Kind.CONDITIONS, parts, is_simulated=analysis.is_simulated), folder)
+    if parts and (rows := compare_sides(parts[-1], analysis.affected_side)):
+        first, second = first_and_second(analysis.affected_side)
+        write_sides(rows, first, second, folder / SIDES)
 
 
 def check_place(out: Path, session: Path) -> None:

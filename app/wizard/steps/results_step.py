@@ -94,10 +94,18 @@ class ResultsStep(Step):
             results = page.results()
             if self._shown is not evaluation.analysis:
                 self._shown = evaluation.analysis
-                results.show_analysis(evaluation.analysis)
+                self._show_analysis(results, evaluation.analysis)
             page.setCurrentWidget(results)
             results.focus()
         self.changed.emit()
+
+    def _show_analysis(self, results: "ResultPage", analysis: "Analysis") -> None:
+        session = self._visit.evaluation.session
+        results.show_analysis(
+            analysis,
+            session.recordings if session is not None else (),
+            is_prosthetic=bool(self._visit.prosthetic_sides),
+        )
 
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()

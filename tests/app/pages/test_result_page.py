@@ -20,7 +20,7 @@ from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
-WIDE, COMPACT = (1280.0, 800.0), (960.0, 600.0)
+WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,516 @@
+"""What left the measurement error? Walks, visits or legs on the same axes, and their differences."""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+
+from app.plots.axes import ANKLE_DEG, KNEE_DEG, joint_of
+from app.plots.compared_chart import ComparedChart, ComparedFrame, Line
+from app.plots.cycle_chart import Band, CycleCharts
+from app.plots.difference_plot import DifferenceGroup, DifferencePlot, DifferenceRow, Dot
+from app.reports.comparison import (
+    Compared,
+    Comparison,
+    Kind,
+    Measure,
+    Part,
+    Reservation,
+    SideRow,
+    compare_sides,
+    first_and_second,
+)
+from app.reports.reference_bands import reference_curves
+from app.reports.walk_figures import SideCycle, is_mean_enough, is_spread_enough
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.chip import LETTERS
+from app.widgets.chips import Chips
+from app.widgets.choice import Choice
+from app.widgets.difference_table import Cell, DifferenceTable, DifferenceTableRow
+from app.widgets.icons import Icon, IconMark
+from app.widgets.segmented import Segmented
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import capitalised, later, side_name, tr
+from core.body import Side
+from core.gait.cycles import POINTS
+from core.gait.spatiotemporal import MeanAndSd
+from core.norms import Verdict
+
+CURVES, PLOT, TABLE = "curves", "plot", "table"
+CARD, WIDE_CARD = 312, 460
+WIDEST = 16_777_215  # Qt's own
+BRIEF = ("knee_swing_peak_deg", "knee_range_deg", "ankle_stance_dorsiflexion_deg", "stance_percent")
+MOST_SAID = 3  # sentences about differences; the table has all of them
+MINUS = "\N{MINUS SIGN}"
+DASH = "\N{EN DASH}"
+
+ERROR = {
+    Kind.CONDITIONS: later("Grey: measurement error within a visit."),
+    Kind.VISITS: later("Grey: measurement error between visits. For the ankle none is published, so it is not judged."),
+    Kind.SIDES: later(
+        "Grey: measurement error between separately worn sensors. For the ankle none is published, so it is not judged."
+    ),
+}
+RESTRAPPED = later("Sensors were strapped on anew in between, so the error between visits holds.")
+OTHER_ZERO = later("No common zero: range and shape hold, height does not.")
+NOTHING = {
+    Kind.CONDITIONS: later("One walk has strides. Record a second one to compare."),
+    Kind.VISITS: later("No earlier visit of this patient has a walk to compare."),
+    Kind.SIDES: later("One leg was measured, so there is nothing to compare it with."),
+}
+
+
+class ComparePage(QWidget):
+    """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well.
+
+    Signals
+    -------
+    visits_wished
+        The earlier visits are wanted, and not known yet: `show_visits` is to follow.
+    """
+
+    visits_wished = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._conditions: tuple[Part, ...] = ()
+        self._visits: tuple[Part, ...] | None = None
+        self._affected: Side | None = None
+        self._affected_words = ""
+        self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
+        self._is_reading = False
+        self.comparison: Comparison | None = None
+        self.side_rows: tuple[SideRow, ...] = ()
+        self.kinds = Choice(look, tr("Compare"))
+        self.bases = Choice(look, tr("Starting point"))
+        self.view = Segmented(
+            look, tr("View"), [(CURVES, tr("Curves"), ""), (PLOT, tr("Differences"), ""), (TABLE, tr("Table"), "")]
+        )
+        self.chips = Chips(look, tr("What is compared"), [("", " ")])
+        self.nothing = Text(look, size=16, wraps=True)
+        reference = reference_curves()
+        bands = {
+            True: Band(reference.knee_mean_deg, reference.knee_sd_deg),
+            False: Band(reference.ankle_mean_deg, reference.ankle_sd_deg),
+        }
+        self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
+        for is_knee in (True, False):
+            for side in Side:
+                chart = ComparedChart(look, side, KNEE_DEG if is_knee else ANKLE_DEG)
+                chart.band = bands[is_knee]
+                self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
+        self.side_charts = CycleCharts(look, reference)
+        self.title = Text(look, size=16, weight=SEMIBOLD)
+        self.error = Text(look, size=12, tone="ink2", wraps=True)
+        self.plot = DifferencePlot(look)
+        self.table = DifferenceTable(look, tr("Differences"))
+        self._mark = IconMark(look, Icon.WARNING, size=20)
+        self.conclusion = Text(look, size=14, wraps=True)
+        self._build()
+        self._connect()
+        self._on_look_changed()
+
+    # what is shown
+
+    def show_conditions(
+        self, parts: Sequence[Part], affected: Side | None, is_prosthetic: bool, is_simulated: bool
+    ) -> None:
+        """Show the walks of one session; what was known of other visits is forgotten."""
+        self._conditions, self._visits = tuple(parts), None
+        self._affected, self._is_simulated = affected, is_simulated
+        self._affected_words = tr("Left against right")
+        if affected is not None:
+            said = tr("Prosthetic against sound side") if is_prosthetic else tr("Affected against sound side")
+            self._affected_words = said
+        self._offer_kinds()
+
+    def set_has_visits(self, has_visits: bool) -> None:
+        """Offer earlier visits, which `visits_wished` asks for."""
+        self._has_visits = has_visits
+        self._offer_kinds()
+
+    def show_visits(self, parts: Sequence[Part]) -> None:
+        """Show the visits up to this one, in the order of time; letters are the screen's own."""
+        self._visits, self._is_reading = tuple(parts), False
+        if self.kind is Kind.VISITS:
+            self._on_kind_changed()
+
+    def set_band_shown(self, is_shown: bool) -> None:
+        for frame in self.frames.values():
+            frame.chart.has_band = is_shown
+            frame.chart.redraw()
+        self.side_charts.set_band_shown(is_shown)
+
+    def set_room(self, is_compact: bool, is_spacious: bool) -> None:
+        """Make curves and differences views of their own where room is short; where there is plenty all stand there."""
+        was_compact, was_spacious = self._is_compact, self._is_spacious
+        self._is_compact, self._is_spacious = is_compact, is_spacious
+        self.view.set_offered(CURVES, is_compact)
+        self.side_charts.set_side_by_side(is_compact)
+        if is_compact != was_compact:
+            self.view.choose(CURVES if is_compact else PLOT)
+        if is_spacious != was_spacious:
+            self._show()  # with more rows
+        self._show_parts()
+
+    @property
+    def kind(self) -> Kind:
+        return Kind(self.kinds.currentData() or Kind.CONDITIONS)
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.kinds, self.bases, *self.view.segments, *self.chips.buttons, self.table]
+
+    # how it is laid out
+
+    def _build(self) -> None:
+        self._grid_room, self._grid = QWidget(), QGridLayout()
+        self._grid_room.setLayout(self._grid)
+        self._grid.setContentsMargins(0, 0, 0, 0)
+        for (side, is_knee), frame in self.frames.items():
+            self._grid.addWidget(frame, 0 if is_knee else 1, 0 if side is Side.LEFT else 1)
+        self._charts = QWidget()
+        self._left = QVBoxLayout(self._charts)
+        self._left.setContentsMargins(0, 0, 0, 0)
+        self._left.addWidget(self._grid_room, 1)
+        self._left.addWidget(self.side_charts, 1)
+        self._left.addWidget(self.chips)
+        self._card = Card(self._look)
+        self._card.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        inside = QWidget()
+        column = QVBoxLayout(inside)
+        column.setContentsMargins(0, 0, 0, 0)
+        words = QHBoxLayout()
+        words.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        words.addWidget(self.conclusion, 1)
+        for widget in (self.title, self.error, self.plot, self.table):
+            column.addWidget(widget)
+        column.addLayout(words)
+        column.addStretch(1)
+        self._column = column
+        self._scroll = QScrollArea()
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._scroll.setWidget(inside)
+        self._card.column.addWidget(self._scroll, 1)
+        self._right = QWidget()
+        right = QVBoxLayout(self._right)
+        right.setContentsMargins(0, 0, 0, 0)
+        self._right_column = right
+        right.addWidget(self._card, 1)
+        self._columns = QHBoxLayout()
+        self._columns.addWidget(self._charts, 1)
+        self._columns.addWidget(self._right)
+        self._page = QVBoxLayout(self)
+        self._page.setContentsMargins(0, 0, 0, 0)
+        self._page.addWidget(self.nothing)
+        self._page.addLayout(self._columns, 1)
+
+    def _connect(self) -> None:
+        self.kinds.currentIndexChanged.connect(self._on_kind_changed)
+        self.bases.currentIndexChanged.connect(self._show)
+        self.view.chosen.connect(self._show_parts)
+        self._look.changed.connect(self._on_look_changed)
+
+    def _place_view(self) -> None:
+        """Put the choice of views over the card where the curves stay in sight; else the page around places it."""
+        if not self._is_compact:
+            self._right_column.insertWidget(0, self.view)
+
+    def _show_parts(self) -> None:
+        self._place_view()
+        view, has_any = self.view.choice, not self.nothing.text()
+        is_alone = self._is_compact or (view == TABLE and not self._is_spacious)  # the table takes all the width
+        has_curves = has_any and (not is_alone or view == CURVES)
+        self.nothing.setVisible(not has_any)
+        self._charts.setVisible(has_curves)
+        self._right.setVisible(has_any and (not self._is_compact or view != CURVES))
+        self.view.setVisible(has_any and not self._is_spacious)
+        self.plot.setVisible(view != TABLE or self._is_spacious)
+        self.table.setVisible(view == TABLE or self._is_spacious)
+        is_sides = self.kind is Kind.SIDES
+        self._grid_room.setVisible(not is_sides)
+        self.side_charts.setVisible(is_sides)
+        self.chips.setVisible(not is_sides)
+        self._fit_card()
+
+    def _fit_card(self) -> None:
+        """Give the card what its plot or table needs, but leave the curves the larger part."""
+        px = self._look.theme.px
+        is_alone = self._charts.isHidden()
+        shown = [widget for widget in (self.plot, self.table) if not widget.isHidden()]
+        needed = max(
+            [
+                px(WIDE_CARD if self._is_spacious else CARD),
+                *(widget.minimumWidth() + px(2 * 16 + 14) for widget in shown),
+            ]
+        )
+        self._right.setMinimumWidth(0 if is_alone else needed)
+        self._right.setMaximumWidth(WIDEST if is_alone else needed)
+
+    # what is compared
+
+    def _offer_kinds(self) -> None:
+        before = self.kinds.currentData()
+        self.kinds.blockSignals(True)
+        self.kinds.clear()
+        self.kinds.addItem(tr("Walks of this visit"), Kind.CONDITIONS)
+        if self._has_visits:
+            self.kinds.addItem(tr("Visits"), Kind.VISITS)
+        self.kinds.addItem(self._affected_words, Kind.SIDES)
+        first = Kind.CONDITIONS if len(self._conditions) > 1 else Kind.SIDES
+        self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
+        self.kinds.blockSignals(False)
+        self.kinds.updateGeometry()
+        self._on_kind_changed()
+
+    def _on_kind_changed(self) -> None:
+        if self.kind is Kind.VISITS and self._visits is None and not self._is_reading:
+            self._is_reading = True
+            self.visits_wished.emit()
+        parts = self._parts()
+        self._make_chips(parts)
+        self._offer_bases(parts)
+        self._show()
+
+    def _parts(self) -> tuple[Part, ...]:
+        return (self._visits or ()) if self.kind is Kind.VISITS else self._conditions
+
+    def _make_chips(self, parts: Sequence[Part]) -> None:
+        chips = Chips(
+            self._look, tr("What is compared"), [(part.letter, _part_in_words(part)) for part in parts] or [("", " ")]
+        )
+        chips.choose([part.letter for part in parts])
+        chips.turned.connect(self._on_turned)
+        self._left.replaceWidget(self.chips, chips)
+        self.chips.hide()
+        self.chips.deleteLater()
+        self.chips = chips
+
+    def _offer_bases(self, parts: Sequence[Part]) -> None:
+        pattern = tr("Walk: {letter}") if self.kind is Kind.SIDES else tr("Starting point: {letter}")
+        shown = [part for part in parts if self.kind is Kind.SIDES or part.letter in self.chips.chosen]
+        before = self.bases.currentData()
+        self.bases.blockSignals(True)
+        self.bases.clear()
+        for part in shown:
+            self.bases.addItem(pattern.format(letter=part.letter), part.letter)
+        last = len(shown) - 1 if self.kind is Kind.SIDES else 0
+        found = self.bases.findData(before)
+        self.bases.setCurrentIndex(found if found >= 0 else last)
+        self.bases.blockSignals(False)
+        self.bases.updateGeometry()
+        self.bases.setEnabled(len(shown) > 1)
+
+    def _on_turned(self) -> None:
+        self._offer_bases(self._parts())
+        self._show()
+
+    def _show(self) -> None:
+        self.nothing.setText(self._why_nothing())
+        if not self.nothing.text():
+            if self.kind is Kind.SIDES:
+                self._show_sides()
+            else:
+                self._show_comparison()
+        self._show_parts()
+
+    def _why_nothing(self) -> str:
+        if self.kind is Kind.VISITS and self._visits is None:
+            return tr("The earlier visits are being read.")
+        parts = self._parts()
+        if self.kind is Kind.SIDES:
+            return "" if any(len(part.sides) > 1 for part in parts) else tr(NOTHING[Kind.SIDES])
+        return tr(NOTHING[self.kind]) if len(parts) < 2 else ""
+
+    def _show_comparison(self) -> None:
+        chosen = tuple(part for part in self._parts() if part.letter in self.chips.chosen) or self._parts()[:1]
+        base = next((k for k, part in enumerate(chosen) if part.letter == self.bases.currentData()), 0)
+        self.comparison = found = Comparison(self.kind, chosen, base, self._is_simulated)
+        self.side_rows = ()
+        for (side, is_knee), frame in self.frames.items():
+            joint = joint_of(side, is_knee)
+            lines = [
+                Line(part.letter, part.cycle(joint), part.stance_percent(side))
+                for part in chosen
+                if joint in part.joints
+            ]
+            has_doubt = len(lines) > 1 and not found.has_one_zero(joint)
+            frame.show_lines(lines, tr(OTHER_ZERO) if has_doubt else "", self._is_simulated)
+            frame.setVisible(side in found.sides)
+        letter = found.against.letter
+        self.title.setText(tr("Change from {letter}").format(letter=letter))
+        is_anew = self.kind is Kind.CONDITIONS and not all(map(found.is_same_attachment, found.others))
+        self.error.setText(" ".join([tr(ERROR[self.kind]), tr(RESTRAPPED)] if is_anew else [tr(ERROR[self.kind])]))
+        beyond = sorted((row for row in found.rows if row.exceeds), key=_weight)
+        self._say([_sentence(row) for row in beyond], bool(found.others))
+        self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
+        heads = ["", *(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
+        self.table.show_rows(heads, _table_rows(found))
+        self.table.setAccessibleDescription(self.conclusion.text())
+
+    def _show_sides(self) -> None:
+        parts = [part for part in self._conditions if part.letter == self.bases.currentData()] or [self._conditions[-1]]
+        part = parts[0]
+        first, second = first_and_second(self._affected)
+        self.comparison, self.side_rows = None, compare_sides(part, self._affected)
+        nothing = np.empty((0, POINTS))
+        cycles = {
+            joint: SideCycle(part.cycle(joint), nothing, part.stance_percent(joint.side)) for joint in part.joints
+        }
+        self.side_charts.show_cycles(cycles, {}, self._is_simulated)
+        one, other = LETTERS[first], LETTERS[second]
+        self.title.setText(f"{self._affected_words}: {one} {MINUS} {other}")
+        self.error.setText(tr(ERROR[Kind.SIDES]))
+        self._say([_side_sentence(row, first, second) for row in self.side_rows if row.exceeds], has_any=True)
+        groups = [
+            DifferenceGroup(
+                tr(row.measure.name),
+                (
+                    DifferenceRow(
+                        None,
+                        _change(row.difference.difference_deg, row.measure) if row.is_told else tr("no value"),
+                        (Dot(one, row.difference.difference_deg, row.exceeds),) if row.is_told else (),
+                        row.difference.error_deg,
+                    ),
+                ),
+            )
+            for row in self.side_rows
+            if self._is_spacious or row.measure.column in BRIEF
+        ]
+        self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
+        heads = ["", one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
+        self.table.show_rows(heads, [_side_table_row(row) for row in self.side_rows])
+        self.table.setAccessibleDescription(self.conclusion.text())
+
+    def _groups(self, found: Comparison) -> list[DifferenceGroup]:
+        groups: dict[str, dict[Side, list[Compared]]] = {}
+        for row in found.rows:
+            if self._is_spacious or row.measure.column in BRIEF:
+                groups.setdefault(tr(row.measure.name), {}).setdefault(row.side, []).append(row)
+        return [
+            DifferenceGroup(title, tuple(_plot_row(side, rows) for side, rows in sides.items()))
+            for title, sides in groups.items()
+        ]
+
+    def _say(self, beyond: Sequence[str], has_any: bool) -> None:
+        said = list(beyond[:MOST_SAID])
+        if len(beyond) > MOST_SAID:
+            said.append(tr("The table has all of them."))
+        elif not beyond and has_any:
+            said.append(tr("No difference lies beyond measurement error."))
+        self.conclusion.setText("\n".join(said))
+        self._mark.setVisible(bool(beyond))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        for layout in (self._page, self._columns, self._left, self._right_column):
+            layout.setSpacing(px(12))
+        self._grid.setSpacing(px(12))
+        self._column.setSpacing(px(8))
+        self._fit_card()
+
+
+def _part_in_words(part: Part) -> str:
+    strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
+    return f"{part.letter} {part.name} · {strides}" if strides else f"{part.letter} {part.name}"
+
+
+def _change(value: float, measure: Measure) -> str:
+    """A difference with its sign; the unit is in the measure's name or the title."""
+    said = f"{value:+.1f}"
+    unit = measure.unit if measure.unit == "°" else ""
+    return ("0.0" if float(said) == 0 else said.replace("-", MINUS)) + unit
+
+
+def _plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
+    told = [row for row in rows if row.is_told]
+    dots = tuple(Dot(row.part.letter, row.difference.difference_deg, row.exceeds) for row in told)
+    if not told:
+        is_height = any(row.reservation is Reservation.OTHER_ZERO for row in rows)
+        return DifferenceRow(side, tr("no zero") if is_height else tr("no value"), (), math.nan)
+    last = told[-1]
+    words = f"{last.part.letter} {_change(last.difference.difference_deg, last.measure)}"
+    return DifferenceRow(side, words, dots, last.difference.error_deg)
+
+
+def _table_rows(found: Comparison) -> list[DifferenceTableRow]:
+    rows: dict[tuple[str, Side], list[Compared]] = {}
+    for row in found.rows:
+        rows.setdefault((row.measure.column, row.side), []).append(row)
+    lines = []
+    for (_, side), compared in rows.items():
+        measure = compared[0].measure
+        values = [_value(part.value(side, measure.column)) for part in found.parts]
+        changes = [_changed(row) for row in compared]
+        lines.append(DifferenceTableRow(tr(measure.name), side, (*values, *changes)))
+    return lines
+
+
+def _side_table_row(row: SideRow) -> DifferenceTableRow:
+    change = Cell(DASH, is_grey=True)
+    if row.is_told:
+        change = Cell(_change(row.difference.difference_deg, row.measure), _doubt(row.difference.verdict), row.exceeds)
+    symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
+    return DifferenceTableRow(
+        tr(row.measure.name), None, (_value(row.first), _value(row.second), change, Cell(symmetry))
+    )
+
+
+def _value(value: MeanAndSd) -> Cell:
+    if not value.n:
+        return Cell(DASH, is_grey=True)
+    spread = f"± {value.sd:.1f}" if is_spread_enough(value.n) else ""
+    mean = f"{value.mean:.1f}"
+    return Cell("0.0" if float(mean) == 0 else mean.replace("-", MINUS), spread, is_grey=not is_mean_enough(value.n))
+
+
+def _changed(row: Compared) -> Cell:
+    if not row.is_told:
+        return Cell(DASH, is_grey=True)
+    words = _change(row.difference.difference_deg, row.measure)
+    return Cell(words, _doubt(row.difference.verdict), row.exceeds)
+
+
+def _doubt(verdict: Verdict) -> str:
+    if verdict is Verdict.TOO_FEW_STRIDES:
+        return tr("few strides")
+    return tr("not judged") if verdict is Verdict.NO_PUBLISHED_FIGURE else ""
+
+
+def _weight(row: Compared) -> tuple[str, float]:
+    """What is said first: of the latest part what lies furthest beyond the error."""
+    return chr(ord("Z") - ord(row.part.letter)), -abs(row.difference.difference_deg) / row.difference.error_deg
+
+
+def _sentence(row: Compared) -> str:
+    pattern = tr("{side} {measure} {change} from {first} to {last}: beyond measurement error ({error}).")
+    measure = tr(row.measure.name)
+    return pattern.format(
+        side=capitalised(side_name(row.side)),
+        measure=measure[0].lower() + measure[1:],
+        change=_change(row.difference.difference_deg, row.measure),
+        first=row.against.letter,
+        last=row.part.letter,
+        error=_error(row.difference.error_deg, row.measure),
+    )
+
+
+def _side_sentence(row: SideRow, first: Side, second: Side) -> str:
+    pattern = tr("{measure} {change}, {first} against {second}: beyond measurement error ({error}).")
+    return pattern.format(
+        measure=tr(row.measure.name),
+        change=_change(row.difference.difference_deg, row.measure),
+        first=LETTERS[first],
+        second=LETTERS[second],
+        error=_error(row.difference.error_deg, row.measure),
+    )
+
+
+def _error(value: float, measure: Measure) -> str:
+    return f"{value:.1f}" + ("°" if measure.unit == "°" else "\N{NO-BREAK SPACE}%")

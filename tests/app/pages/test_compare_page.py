@@ -1,0 +1,216 @@
+"""Walks, visits and legs compared: what is on the axes, what is judged, and that a file has every number drawn."""
+
+import csv
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.compare_page import CURVES, PLOT, TABLE
+from app.pages.result_page import COMPARE, ResultPage
+from app.reports.comparison import Comparison, Kind, Part, compare_sides, conditions_of, first_and_second
+from app.reports.comparison_csv import (
+    COMPARED_CYCLES,
+    DIFFERENCES,
+    SIDES,
+    write_comparison,
+    write_sides,
+)
+from app.theme import Look, load_fonts
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.norms import Verdict
+from core.results import Analysis, ZeroKind
+from core.samples import Session
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from devices.walker_body import Tissue
+from tests.app.room import words_cut
+
+DIGITS = 1e-5
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    """Three walks of two conditions; rigid sensors, so that no strap seems to slip."""
+    walks = (Walk(strides=13), Walk("walk 2", strides=13), Walk("walk 3", strides=13, speed_m_s=0.9))
+    played: tuple[Standing | FreeMotion | Walk, ...] = (Standing(), FreeMotion(), *walks)
+    found = simulate(replace(DEMONSTRATION, tissue=Tissue.RIGID, recordings=played)).session
+    conditions = {"walk 1": "barefoot", "walk 2": "barefoot", "walk 3": "AFO"}
+    return replace(
+        found, recordings=tuple(replace(one, condition=conditions.get(one.name, "")) for one in found.recordings)
+    )
+
+
+@pytest.fixture(scope="module")
+def analysis(session: Session) -> Analysis:
+    return analyse(session)
+
+
+@pytest.fixture
+def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
+    return conditions_of(analysis, session.recordings)
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> Iterator[ResultPage]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.resize(1064, 672)
+    page.set_room(1064, 672)
+    page.show_analysis(analysis, session.recordings)
+    page.show()
+    page.view.choose(COMPARE)
+    yield page
+    qapp.setStyleSheet("")
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def differences(page: ResultPage) -> dict[tuple[str, Side], float]:
+    found = page.compare.comparison
+    assert found is not None
+    return {(row.measure.column, row.side): row.difference.difference_deg for row in found.rows}
+
+
+def test_walks_of_one_condition_are_taken_together(parts: tuple[Part, ...]) -> None:
+    assert [(part.letter, part.name, len(part.walks)) for part in parts] == [("A", "barefoot", 2), ("B", "AFO", 1)]
+    one_by_one = [walk.gait[Side.LEFT].strides.is_used.sum() for walk in parts[0].walks]
+    assert parts[0].strides(Side.LEFT) == sum(one_by_one)
+
+
+def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_visits(
+    analysis: Analysis, session: Session
+) -> None:
+    told = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session.recordings)
+    parts = conditions_of(analysis, told)
+    assert [part.attachment for part in parts] == [0, 1, 1]
+    found = Comparison(Kind.CONDITIONS, parts)
+    by_column = {row.measure.column: row.difference for row in found.rows if row.side is Side.LEFT}
+    assert by_column["knee_swing_peak_deg"].error_deg == 9.2
+    assert by_column["ankle_range_deg"].verdict is Verdict.NO_PUBLISHED_FIGURE
+    assert by_column["stance_percent"].verdict is Verdict.NO_PUBLISHED_FIGURE
+
+
+def test_within_one_attachment_the_error_is_that_of_two_means_and_a_degree(parts: tuple[Part, ...]) -> None:
+    found = Comparison(Kind.CONDITIONS, parts)
+    (row,) = (
+        row for row in found.rows if row.side is Side.RIGHT and row.measure.column == "ankle_stance_dorsiflexion_deg"
+    )
+    a, b = row.other, row.value
+    expected = 1.96 * math.sqrt(a.sd**2 / a.n + b.sd**2 / b.n) + 1.0
+    assert row.difference.error_deg == pytest.approx(expected)
+    assert row.difference.difference_deg == pytest.approx(b.mean - a.mean)
+
+
+def test_without_a_common_zero_range_is_compared_and_height_is_not(parts: tuple[Part, ...]) -> None:
+    knee = Joint.LEFT_KNEE
+    other = replace(parts[1].calibrated[knee], zero=ZeroKind.GONIOMETER)
+    changed = (parts[0], replace(parts[1], calibrated={**parts[1].calibrated, knee: other}))
+    told = {
+        row.measure.column: row.is_told for row in Comparison(Kind.CONDITIONS, changed).rows if row.side is Side.LEFT
+    }
+    assert not told["knee_swing_peak_deg"]
+    assert told["knee_range_deg"]
+    assert told["ankle_stance_dorsiflexion_deg"]
+
+
+def test_the_affected_leg_is_told_against_the_sound_one(parts: tuple[Part, ...]) -> None:
+    assert first_and_second(Side.RIGHT) == (Side.RIGHT, Side.LEFT)
+    left = {row.measure.column: row for row in compare_sides(parts[0], None)}
+    right = {row.measure.column: row for row in compare_sides(parts[0], Side.RIGHT)}
+    swing = "knee_swing_peak_deg"
+    assert right[swing].difference.difference_deg == pytest.approx(-left[swing].difference.difference_deg)
+    assert math.isnan(right[swing].symmetry_percent)
+    assert math.isfinite(right["knee_range_deg"].symmetry_percent)
+
+
+def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_path: Path) -> None:
+    compare = page.compare
+    found = compare.comparison
+    assert found is not None
+    write_comparison(found, tmp_path)
+    rows = {(row["measure"], row["side"], row["part"]): row for row in rows_of(tmp_path / DIFFERENCES)}
+    judged = [row for row in found.rows if row.is_told]
+    assert judged
+    for row in judged:
+        told = rows[row.measure.column, str(row.side), row.part.letter]
+        assert float(told["difference"]) == pytest.approx(row.difference.difference_deg, abs=DIGITS)
+        assert float(told["error"]) == pytest.approx(row.difference.error_deg, abs=DIGITS)
+        assert told["verdict"] == row.difference.verdict
+    drawn = [dot.value for group in compare.plot.groups for row in group.rows for dot in row.dots]
+    written = [float(row["difference"]) for row in rows.values() if row["difference"]]
+    assert drawn
+    assert all(any(abs(value - other) < DIGITS for other in written) for value in drawn)
+    cycles = rows_of(tmp_path / COMPARED_CYCLES)
+    for (side, is_knee), frame in compare.frames.items():
+        joint = Joint(f"{side}_{'knee' if is_knee else 'ankle'}")
+        assert len(frame.chart.lines) == 2
+        for line in frame.chart.lines:
+            column = [float(row[f"{line.letter}_{joint}_mean_deg"]) for row in cycles]
+            np.testing.assert_allclose(column, line.mean.mean, atol=DIGITS)
+
+
+def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, tmp_path: Path) -> None:
+    compare = page.compare
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.SIDES))
+    assert compare.side_rows
+    write_sides(compare.side_rows, Side.LEFT, Side.RIGHT, tmp_path / SIDES)
+    written = [float(row["difference"]) for row in rows_of(tmp_path / SIDES)]
+    drawn = [dot.value for group in compare.plot.groups for row in group.rows for dot in row.dots]
+    assert len(drawn) == len(compare.plot.groups)
+    assert all(any(abs(value - other) < DIGITS for other in written) for value in drawn)
+
+
+def test_what_is_turned_off_leaves_axes_and_table(page: ResultPage) -> None:
+    compare = page.compare
+    compare.chips.buttons[0].click()
+    assert [line.letter for line in compare.frames[Side.LEFT, True].chart.lines] == ["B"]
+    assert compare.bases.count() == 1
+    assert compare.comparison is not None
+    assert not compare.comparison.rows
+
+
+def test_another_starting_point_turns_the_differences(page: ResultPage) -> None:
+    compare = page.compare
+    before = differences(page)
+    compare.bases.setCurrentIndex(1)
+    assert compare.title.text() == "Change from B"
+    after = differences(page)
+    assert all(after[key] == pytest.approx(-before[key], nan_ok=True) for key in before)
+
+
+def test_visits_are_asked_for_once_and_told_when_there_are_none(
+    qtbot: QtBot, page: ResultPage, parts: tuple[Part, ...]
+) -> None:
+    compare = page.compare
+    compare.set_has_visits(True)
+    with qtbot.waitSignal(compare.visits_wished):
+        compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    assert compare.nothing.isVisible()
+    compare.show_visits(parts[:1])
+    assert "No earlier visit" in compare.nothing.text()
+    compare.show_visits(parts)
+    assert compare.comparison is not None
+    assert compare.comparison.kind is Kind.VISITS
+    assert compare.plot.isVisible()
+
+
+@pytest.mark.parametrize("room", [(1064, 672), (1680, 952), (736, 432)])
+def test_no_word_is_cut(page: ResultPage, room: tuple[int, int]) -> None:
+    page.set_room(*room)
+    page.resize(*room)
+    for view, segment in zip((CURVES, PLOT, TABLE), page.compare.view.segments, strict=True):
+        if not segment.isHidden():
+            page.compare.view.choose(view)
+            assert words_cut(page) == []
