@@ -6,6 +6,7 @@ INFOCOM, doi:10.1109/INFCOM.2002.1019257). The least latency cannot be seen from
 cable.
 """
 
+from collections import deque
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,6 +20,10 @@ SPREAD_S = 10.0  # pieces whose earliest arrivals tell how straight the clocks r
 BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
 AGREEING = 5  # samples that make a new clock of what looked damaged
+REMEMBERED = 3  # samples, of which the next has to follow one
+
+Arrival = tuple[float, float]
+"""A sample's time by the sensor's clock, and when it arrived."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,39 +96,41 @@ class ClockRuns:
 
     def __init__(self) -> None:
         self.run = -1
-        self._last: tuple[float, float] | None = None
-        self._doubtful: list[tuple[float, float]] = []
+        self._last: deque[Arrival] = deque(maxlen=REMEMBERED)
+        self._doubtful: list[Arrival] = []
 
     def take(self, device_s: FloatArray, host_s: FloatArray) -> IntArray:
         """Number the run of each arrival (n,), in the order in which they arrived; -1 for what cannot be."""
-        if self._last is not None and len(device_s) and not self._doubtful:
-            last_device_s, last_host_s = self._last
+        if self._last and len(device_s) and not self._doubtful:
+            last_device_s, last_host_s = self._last[-1]
             step_s = np.diff(device_s, prepend=last_device_s)
             is_meant = (step_s > -BACK_S) & (step_s < np.diff(host_s, prepend=last_host_s) + AHEAD_S)
             if is_meant.all():
-                self._last = float(device_s[-1]), float(host_s[-1])
+                newest = zip(device_s[-REMEMBERED:].tolist(), host_s[-REMEMBERED:].tolist(), strict=True)
+                self._last.extend(newest)
                 return np.full(len(device_s), self.run, dtype=np.int64)
-        pairs = zip(device_s.tolist(), host_s.tolist(), strict=True)
-        return np.fromiter((self._one(pair) for pair in pairs), np.int64, len(device_s))
+        arrivals = zip(device_s.tolist(), host_s.tolist(), strict=True)
+        return np.fromiter((self._one(arrival) for arrival in arrivals), np.int64, len(device_s))
 
-    def _one(self, pair: tuple[float, float]) -> int:
-        if self._last is None:
+    def _one(self, arrival: Arrival) -> int:
+        if not self._last:
             self.run += 1
-        elif not _follows(self._last, pair):
-            if self._doubtful and not _follows(self._doubtful[-1], pair):
+        elif not any(_follows(before, arrival) for before in self._last):  # of which one may have been wrong itself
+            if self._doubtful and not _follows(self._doubtful[-1], arrival):
                 self._doubtful.clear()
-            self._doubtful.append(pair)
+            self._doubtful.append(arrival)
             if len(self._doubtful) < AGREEING:
                 return -1
             self.run += 1
+            self._last.clear()
         self._doubtful.clear()
-        self._last = pair
+        self._last.append(arrival)
         return self.run
 
 
-def _follows(before: tuple[float, float], pair: tuple[float, float]) -> bool:
-    step_s = pair[0] - before[0]
-    return -BACK_S < step_s < pair[1] - before[1] + AHEAD_S
+def _follows(before: Arrival, arrival: Arrival) -> bool:
+    step_s = arrival[0] - before[0]
+    return -BACK_S < step_s < arrival[1] - before[1] + AHEAD_S
 
 
 class Unwrapping:

@@ -1,0 +1,98 @@
+"""A WitMotion sensor that is not there: registers, and bursts of frames."""
+
+from collections.abc import Callable, Sequence
+from datetime import datetime, timedelta
+
+from devices.host_clock import host_time_ns
+from devices.witmotion import (
+    ANGLES,
+    AXES,
+    CLOCK,
+    CONTENT_AT,
+    EMULATED,
+    FORCE,
+    NUMBER_AT,
+    ORIENTATION,
+    RATE,
+    RATE_AT,
+    RATES,
+    READ_AT,
+    REGISTERS,
+    TIME,
+    UNLOCK,
+    frame,
+)
+
+Motion = Callable[[int], Sequence[float]]
+"""Rate in deg/s (3) and force in g (3) of the sample of this number."""
+
+SWITCHED_ON = datetime(2026, 1, 1)
+COMMAND = 5  # bytes
+USUAL_CONTENT = 0b1110  # force, rate, angles; no time
+
+
+class WitVoice:
+    """The `Voice` of one sensor; `number` has up to four characters and follows `EMULATED`."""
+
+    def __init__(
+        self,
+        number: str,
+        motion: Motion,
+        *,
+        rate_hz: float = 100.0,
+        content: int = USUAL_CONTENT,
+        now_ns: Callable[[], int] = host_time_ns,
+    ) -> None:
+        self._motion, self._now_ns, self._begin_ns = motion, now_ns, now_ns()
+        self._sent, self._is_unlocked, self._rest = 0, False, b""
+        self.number = f"{EMULATED}{number}"[:12]
+        padded = self.number.encode().ljust(16, b"\0")
+        self.registers = {NUMBER_AT + k: int.from_bytes(padded[2 * k : 2 * k + 2], "little") for k in range(8)}
+        self.registers |= {
+            CONTENT_AT: content,
+            RATE_AT: next(code for code, known_hz in RATES.items() if known_hz == rate_hz),
+        }
+
+    @property
+    def rate_hz(self) -> float:
+        return RATES[self.registers[RATE_AT]]
+
+    def say(self) -> bytes:
+        due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
+        said = b"".join(self.sample(number) for number in range(self._sent, due))
+        self._sent = max(self._sent, due)
+        return said
+
+    def sample(self, number: int) -> bytes:
+        """The burst of one sample."""
+        at = SWITCHED_ON + timedelta(seconds=number / self.rate_hz)
+        gx, gy, gz, ax, ay, az = self._motion(number)
+        temperature = 2500
+        frames = {
+            TIME: CLOCK.pack(at.year - 2000, at.month, at.day, at.hour, at.minute, at.second, at.microsecond // 1000),
+            FORCE: AXES.pack(*(round(value / 16 * 32768) for value in (ax, ay, az)), temperature),
+            RATE: AXES.pack(*(round(value / 2000 * 32768) for value in (gx, gy, gz)), temperature),
+            ANGLES: AXES.pack(0, 0, 0, 0),
+            ORIENTATION: AXES.pack(32767, 0, 0, 0),
+        }
+        content = self.registers[CONTENT_AT]
+        return b"".join(frame(kind, payload) for kind, payload in frames.items() if content >> (kind - TIME) & 1)
+
+    def hear(self, data: bytes) -> bytes:
+        self._rest += data
+        answer = b""
+        while len(self._rest) >= COMMAND:
+            command, self._rest = self._rest[:COMMAND], self._rest[COMMAND:]
+            answer += self._answer(command)
+        return answer
+
+    def _answer(self, command: bytes) -> bytes:
+        register, value = command[2], int.from_bytes(command[3:], "little")
+        if command == UNLOCK:
+            self._is_unlocked = True
+        elif register == READ_AT:
+            told = (self.registers.get(value + k, 0) for k in range(4))
+            return frame(REGISTERS, b"".join(one.to_bytes(2, "little") for one in told))
+        elif self._is_unlocked:
+            self.registers[register] = value
+        return b""

@@ -1,0 +1,24 @@
+"""Damaged streams raise nothing, lose nothing whole and are not hoarded; clean ones are decoded fast enough."""
+
+import pytest
+
+from tests.safety.device_fuzz import MOST_HELD, drivers, fuzz, speed
+
+COUNTS = (2_000, pytest.param(100_000, marks=pytest.mark.endurance))
+LEAST_A_SECOND = 50_000
+
+
+@pytest.mark.parametrize("frames", COUNTS)
+@pytest.mark.parametrize("name", drivers())
+def test_damage_stays_where_it_is(name: str, frames: int) -> None:
+    outcome = fuzz(drivers()[name], frames, seed=7)
+    assert outcome.faults == []
+    assert outcome.lost == 0
+    assert outcome.whole > 0.7 * frames
+    assert outcome.most_held <= MOST_HELD
+
+
+@pytest.mark.endurance
+@pytest.mark.parametrize("name", drivers())
+def test_fifty_thousand_messages_a_second_are_decoded(name: str) -> None:
+    assert speed(drivers()[name]) > LEAST_A_SECOND

@@ -1,0 +1,180 @@
+"""T5: damaged streams. Does a driver raise, lose whole messages, fall out of step, or hoard bytes?
+
+    python -m tests.safety.device_fuzz --frames 1000000
+
+One message in seven is changed, cut, doubled in part, or has noise before it; the stream is fed in pieces of any size.
+A message that is whole, and begins where a whole one ended or after a whole end of line, has to be heard.
+"""
+
+import argparse
+import random
+import sys
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from devices.csv_serial import Columns, CsvFramer
+from devices.emulators.witmotion import WitVoice
+from devices.emulators.ximu3 import message
+from devices.stream import Framer, Row
+from devices.witmotion import WitFramer
+from devices.ximu3 import Ximu3Framer
+
+DAMAGED_SHARE = 1 / 7
+LONGEST_PIECE = 300
+MOST_HELD = 4096 + LONGEST_PIECE
+COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), count=7)
+
+
+@dataclass(frozen=True, slots=True)
+class Fuzzed:
+    """A driver's protocol: how a sample of this number is sent, and whether an end of line parts messages."""
+
+    make: Callable[[], Framer]
+    sample: Callable[[int], bytes]
+    has_lines: bool
+
+
+@dataclass(slots=True)
+class Outcome:
+    """`false` counts samples that were never sent: damage that nothing tells from a measurement."""
+
+    frames: int = 0
+    whole: int = 0
+    lost: int = 0
+    false: int = 0
+    most_held: int = 0
+    seconds: float = 0.0
+    faults: list[str] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        return (
+            f"{self.frames} messages, {self.whole} of them whole: {self.lost} lost, {self.false} that were none, "
+            f"{self.most_held} bytes held at most, {len(self.faults)} exceptions, {self.seconds:.1f} s"
+        )
+
+
+def motion(number: int) -> Sequence[float]:
+    chance = random.Random(number)
+    return [*(chance.uniform(-1900, 1900) for _ in range(3)), *(chance.uniform(-15, 15) for _ in range(3))]
+
+
+def line(number: int) -> bytes:
+    return f"{number * 10},{','.join(f'{value:.3f}' for value in motion(number))}\r\n".encode()
+
+
+def drivers() -> dict[str, Fuzzed]:
+    voice = WitVoice("1", motion, content=0b1111, now_ns=lambda: 0)
+    return {
+        "x-IMU3, binary": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), True), True),
+        "x-IMU3, text": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), False), True),
+        "WitMotion": Fuzzed(WitFramer, voice.sample, False),
+        "CSV": Fuzzed(lambda: CsvFramer(COLUMNS), line, True),
+    }
+
+
+def fuzz(driver: Fuzzed, frames: int, seed: int) -> Outcome:
+    chance, outcome = random.Random(seed), Outcome(frames=frames)
+    framer, begin_s = driver.make(), time.monotonic()
+    heard: dict[Row, int] = {}
+    expected: set[Row] = set()
+    waiting = b""
+    is_joined = False  # whether the end of the message before is whole
+    for number in range(frames):
+        sample = driver.sample(number)
+        said = _damaged(sample, chance) if chance.random() < DAMAGED_SHARE else sample
+        if said == sample and (is_joined or not driver.has_lines):
+            expected.add(_row(driver, sample))
+            outcome.whole += 1
+        is_joined = said.endswith(b"\n") if driver.has_lines else True
+        waiting += said
+        while len(waiting) > LONGEST_PIECE:
+            size = chance.randint(1, LONGEST_PIECE)
+            piece, waiting = waiting[:size], waiting[size:]
+            _feed(framer, piece, heard, outcome)
+    _feed(framer, waiting, heard, outcome)
+    framer.flush()
+    _take(framer, heard)
+    outcome.lost = len(expected - heard.keys())
+    known = expected | {_row(driver, driver.sample(number)) for number in range(frames)}
+    outcome.false = len(heard.keys() - known)
+    outcome.seconds = time.monotonic() - begin_s
+    return outcome
+
+
+def _feed(framer: Framer, piece: bytes, heard: dict[Row, int], outcome: Outcome) -> None:
+    try:
+        framer.feed(piece, 0.0)
+    except Exception as error:  # which is what is looked for
+        outcome.faults.append(repr(error))
+    held = getattr(framer, "_rest", b"")
+    outcome.most_held = max(outcome.most_held, len(held))
+    _take(framer, heard)
+
+
+def _take(framer: Framer, heard: dict[Row, int]) -> None:
+    for row in framer.heard.rows:
+        heard[row] = heard.get(row, 0) + 1
+    framer.heard.rows.clear()
+    framer.heard.replies.clear()
+
+
+def _row(driver: Fuzzed, sample: bytes) -> Row:
+    framer = driver.make()
+    framer.feed((b"\n" if driver.has_lines else b"") + sample, 0.0)
+    framer.flush()
+    (row,) = framer.heard.rows
+    return row
+
+
+def _damaged(sample: bytes, chance: random.Random) -> bytes:
+    data = bytearray(sample)
+    at = chance.randrange(len(data))
+    match chance.randrange(7):
+        case 0:
+            data[at] ^= 1 << chance.randrange(8)
+        case 1:
+            for _ in range(chance.randint(2, 8)):
+                data[chance.randrange(len(data))] = chance.randrange(256)
+        case 2:
+            del data[at : at + chance.randint(1, 12)]
+        case 3:
+            data[at:at] = chance.randbytes(chance.randint(1, 20))
+        case 4:
+            del data[at:]
+        case 5:
+            data[at:at] = data[: chance.randint(1, len(data))]
+        case _:
+            data[:0] = chance.randbytes(chance.randint(1, 200))
+    return bytes(data)
+
+
+def speed(driver: Fuzzed, frames: int = 20_000) -> float:
+    """Messages decoded a second, of a clean stream in pieces of 500 bytes."""
+    said = b"".join(driver.sample(number) for number in range(frames))
+    framer = driver.make()
+    begin_s = time.process_time()
+    for at in range(0, len(said), 500):
+        framer.feed(said[at : at + 500], 0.0)
+    framer.flush()
+    assert len(framer.heard.rows) >= frames - 1
+    return frames / (time.process_time() - begin_s)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frames", type=int, default=1_000_000)
+    parser.add_argument("--seed", type=int, default=1)
+    wanted = parser.parse_args()
+    is_right = True
+    for name, driver in drivers().items():
+        outcome = fuzz(driver, wanted.frames, wanted.seed)
+        print(f"{name}: {outcome}; {np.round(speed(driver), -2):.0f} messages decoded a second", flush=True)
+        is_right &= not outcome.lost and not outcome.faults and outcome.most_held <= MOST_HELD
+    return 0 if is_right else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
