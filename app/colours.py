@@ -99,3 +99,35 @@ DARK = Colours(
     band_2sd="#29333C",
     disabled="#5F6D79",
 )
+
+
+@dataclass(frozen=True, slots=True)
+class PaperColours:
+    """What the report is printed in: the band's edges survive a photocopier, its fills alone do not."""
+
+    ink: str
+    paper: str
+    note: str
+    grid: str
+    band_1sd: str
+    band_1sd_edge: str
+    band_2sd: str
+    band_2sd_edge: str
+    band_mean: str
+    left: str
+    right: str
+
+
+PAPER = PaperColours(
+    ink="#000000",
+    paper="#FFFFFF",
+    note="#4A4A4A",
+    grid="#B8B8B8",
+    band_1sd="#CECECE",
+    band_1sd_edge="#8C8C8C",
+    band_2sd="#EAEAEA",
+    band_2sd_edge="#B4B4B4",
+    band_mean="#6E6E6E",
+    left=LIGHT.left,
+    right=LIGHT.right,
+)

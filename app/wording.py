@@ -18,6 +18,7 @@ from core.findings import Finding
 DOMAIN = "gaitwright"
 LOCALE = Path(__file__).parents[1] / "resources" / "locale"
 _catalogue = gettext.NullTranslations()
+_language = "en"
 
 SENTENCES = {
     # what the reader noticed
@@ -244,13 +245,19 @@ def use_language(language: str) -> None:
 
     "pseudo" is no language: it is English made as long as German, which tests show on every page.
     """
-    global _catalogue
+    global _catalogue, _language
+    _language = language if gettext.find(DOMAIN, LOCALE, languages=[language]) else "en"
     if language == "pseudo":
         from app.pseudo_language import PseudoLanguage
 
         _catalogue = PseudoLanguage()
     else:
         _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
+
+
+def spoken_language() -> str:
+    """Give the language that is spoken now, as "de"."""
+    return _language
 
 
 def tr(message: str) -> str:

@@ -17,6 +17,7 @@ from app.reports.patient_report.drawing import (
     INNER_EDGE,
     OUTER,
     OUTER_EDGE,
+    WHITE,
     Picture,
     area,
     badge,
@@ -122,7 +123,7 @@ def draw(chart: Chart) -> Picture:
         parts += [curve(frame.x(PERCENT), frame.y(stride), one.colour, thin) for stride in one.strides_deg]
     for one in chart.lines:
         x, y = frame.x(PERCENT), frame.y(one.angle_deg)
-        parts += [curve(x, y, "#FFFFFF", one.width + one.casing), curve(x, y, one.colour, one.width, one.dash)]
+        parts += [curve(x, y, WHITE, one.width + one.casing), curve(x, y, one.colour, one.width, one.dash)]
         parts += _beyond(frame, chart.axis, one)
     for one in chart.lines:
         parts += _peaks(frame, one)

@@ -23,12 +23,14 @@ from app.reports.patient_report.first_page import (
 )
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.peaks_page import peaks_page
-from app.reports.patient_report.plain_text import isolated, plain
+from app.reports.patient_report.plain_text import isolated, plain, shortened
 from app.reports.patient_report.request import ReportRequest
-from app.wording import tr
+from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
 CODE_LENGTH = 16  # of the running head
+TITLE_CODE_LENGTH = 24
+CONDITION_LENGTH = 32  # within a sentence or a legend
 
 
 def make_report(request: ReportRequest) -> bytes:
@@ -63,7 +65,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     session = request.visit.session
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
-    condition = typed(request.visit.recording(request.shown).condition or request.shown)
+    condition = typed(request.visit.recording(request.shown).condition or request.shown, CONDITION_LENGTH)
     pages: list[list[Block]] = [
         curves_page(facts, condition),
         peaks_page(facts),
@@ -75,7 +77,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         filter(
             None,
             [
-                tr("Gait report {code}").format(code=isolated(code)).strip(),
+                tr("Gait report {code}").format(code=isolated(shortened(code, TITLE_CODE_LENGTH))).strip(),
                 recorded if session.started else "",
                 tr("SIMULATED") if facts.is_simulated else "",
             ],
@@ -83,19 +85,19 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     )
     return {
         "paper": "us-letter" if request.paper == "letter" else "a4",
-        "language": tr("en"),  # the language of the words: their catalogue names it
+        "language": spoken_language(),
         "title": title,
         "subject": _subject(facts),
         "head": {
             "brand": "Gaitwright",
             "kind": tr("Gait report"),
             "simulated": tr("SIMULATED DATA, not a person") if facts.is_simulated else "",
-            "code": isolated(code if len(code) <= CODE_LENGTH else code[: CODE_LENGTH - 1] + "…"),
+            "code": isolated(shortened(code, CODE_LENGTH)),
             "date": recorded if session.started else "",
         },
         "foot": {
             "use": tr("Research use. Not a medical device."),
-            "software": f"Gaitwright {request.software_version}",
+            "software": f"Gaitwright {plain(request.software_version)[:CODE_LENGTH]}",
             "page": tr("Page {page} of {pages}"),
         },
         "fields": [list(field) for field in fields(request, facts)],
@@ -112,7 +114,9 @@ def _comparison(request: ReportRequest, shown: Facts) -> Comparison | None:
         parts = []
         for letter, name in zip("ABC", request.walks, strict=False):
             facts = shown if name == request.shown else Facts(request.visit, request.visit.walk(name))
-            parts.append(Compared(letter, typed(request.visit.recording(name).condition or name), facts))
+            parts.append(
+                Compared(letter, typed(request.visit.recording(name).condition or name, CONDITION_LENGTH), facts)
+            )
         return Comparison(parts, is_visits=False)
     if request.earlier is not None:
         earlier, name = request.earlier

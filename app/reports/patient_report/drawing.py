@@ -6,15 +6,17 @@ from html import escape
 
 import numpy as np
 
+from app.colours import PAPER
 from core.body import Side
 from core.samples import FloatArray
 
 MM = 72 / 25.4
-INK, GREY = "#000000", "#4A4A4A"
-COLOURS = {Side.LEFT: "#D55E00", Side.RIGHT: "#0072B2"}
+INK, WHITE, GREY = PAPER.ink, PAPER.paper, PAPER.note
+COLOURS = {Side.LEFT: PAPER.left, Side.RIGHT: PAPER.right}
 DASHES = {Side.LEFT: "", Side.RIGHT: "4.6 2.2"}
-GRID = "#B8B8B8"
-OUTER, OUTER_EDGE, INNER, INNER_EDGE, BAND_MEAN = "#EAEAEA", "#B4B4B4", "#CECECE", "#8C8C8C", "#6E6E6E"
+GRID = PAPER.grid
+OUTER, OUTER_EDGE, INNER, INNER_EDGE = PAPER.band_2sd, PAPER.band_2sd_edge, PAPER.band_1sd, PAPER.band_1sd_edge
+BAND_MEAN = PAPER.band_mean
 BADGE = 9.0
 
 
@@ -68,7 +70,7 @@ def area(x: FloatArray, low: FloatArray, high: FloatArray, fill: str, edge: str,
 def badge(x: float, y: float, letter: str, side: Side, colour: str, size: float = BADGE) -> str:
     """A letter on a line: in a circle on the left leg's, in a square on the right leg's."""
     half = size / 2
-    look = f'fill="#FFFFFF" stroke="{colour}" stroke-width="1.1"'
+    look = f'fill="{WHITE}" stroke="{colour}" stroke-width="1.1"'
     if side is Side.LEFT:
         shape = f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" {look}/>'
     else:
@@ -80,8 +82,8 @@ def marker(x: float, y: float, side: Side, fill: str = INK, size: float = 4.0) -
     """A mark at one value: round for the left leg, square for the right."""
     half = size / 2
     if side is Side.LEFT:
-        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" fill="{fill}" stroke="#FFFFFF" stroke-width="0.5"/>'
-    return box(x - half, y - half, size, size, fill, "#FFFFFF", 0.5)
+        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" fill="{fill}" stroke="{WHITE}" stroke-width="0.5"/>'
+    return box(x - half, y - half, size, size, fill, WHITE, 0.5)
 
 
 def mixed(colour: str, other: str, share: float) -> str:

@@ -18,7 +18,7 @@ from app.reports.patient_report.numbers_in_words import (
     signed,
     spread,
 )
-from app.reports.patient_report.plain_text import breakable, isolated, plain
+from app.reports.patient_report.plain_text import breakable, isolated, plain, shortened
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.small_charts import gauge
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
@@ -28,12 +28,13 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.norms import Verdict
 
 MAX_SENTENCES = 4
+MAX_TYPED = 120  # characters of one field, of which the page shows two lines
 NOT_STATED = ("", "none")
 
 
-def typed(text: str) -> str:
+def typed(text: str, most: int = MAX_TYPED) -> str:
     """Give what the clinic typed, ready to stand within a line of ours."""
-    return isolated(breakable(plain(text))) or tr("not stated")
+    return isolated(breakable(shortened(plain(text), most))) or tr("not stated")
 
 
 def day(started: str) -> str:
@@ -386,7 +387,7 @@ def _sensors(request: ReportRequest, facts: Facts) -> str:
     models = {info.model for site, info in request.visit.session.sensors.items() if site in worn and info.model}
     count = tr_n("{count} sensor", "{count} sensors", len(worn)).format(count=len(worn))
     rate = [f"{rates.pop():g}\u00a0Hz"] if len(rates) == 1 else []
-    return ", ".join([count, *rate, *sorted(isolated(breakable(plain(model))) for model in models)])
+    return ", ".join([count, *rate, *sorted(typed(model, 40) for model in models)])
 
 
 def _side_in_words(side: str) -> str:

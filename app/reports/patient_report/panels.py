@@ -15,6 +15,7 @@ from app.reports.patient_report.drawing import (
     INNER_EDGE,
     OUTER,
     OUTER_EDGE,
+    WHITE,
     Picture,
     box,
     line,
@@ -102,9 +103,9 @@ def line_of(facts: Facts, side: Side, kind: str, *, width: float, has_peaks: boo
 def condition_look(k: int, count: int, side: Side) -> tuple[str, float]:
     """Colour and width of condition or visit `k` of `count`: earlier is pale and thin, later plain, dark and thick."""
     pale, plain, dark = (
-        mixed(COLOURS[side], "#FFFFFF", 0.42),
+        mixed(COLOURS[side], WHITE, 0.42),
         COLOURS[side],
-        mixed(COLOURS[side], "#000000", 0.45),
+        mixed(COLOURS[side], INK, 0.45),
     )
     if count == 2:
         return ((pale, 1.0), (plain, 1.9))[k]

@@ -19,7 +19,8 @@ FONT_FILES = (
 )
 BOX = "□"
 MAX_MARKS = 2  # combining marks on one character: more climb into the lines above
-MAX_RUN = 22  # characters without a space, after which a line may break anywhere
+MAX_RUN = 22  # characters without a space, beyond which a line may break within them
+BREAK_EVERY = 6
 UNSEEN = {"Cc", "Cf", "Cs", "Co", "Cn"}
 ISOLATE, POP = "\u2068", "\u2069"
 BREAK = "\u200b"
@@ -54,6 +55,11 @@ def breakable(text: str) -> str:
     return " ".join(word if len(word) <= MAX_RUN else _broken(word) for word in text.split(" "))
 
 
+def shortened(text: str, most: int) -> str:
+    """Cut a text that would take the place of others; what is missing is shown by an ellipsis."""
+    return text if len(text) <= most else text[: most - 1].rstrip() + "…"
+
+
 def isolated(text: str) -> str:
     """Keep a typed text's direction to itself: a Hebrew code would turn the date beside it round."""
     return f"{ISOLATE}{text}{POP}" if text else ""
@@ -73,8 +79,10 @@ def font_data() -> tuple[bytes, ...]:
 
 
 def _broken(word: str) -> str:
-    parts = [BREAK + c if k and not unicodedata.category(c).startswith("M") else c for k, c in enumerate(word)]
-    return "".join(parts)
+    """Parts of a word written to the left would be set in the order of ours, so those stand in lines of their own."""
+    is_to_left = any(unicodedata.bidirectional(character) in ("R", "AL") for character in word)
+    every, between = (MAX_RUN, " ") if is_to_left else (BREAK_EVERY, BREAK)
+    return between.join(word[k : k + every] for k in range(0, len(word), every))
 
 
 def _covered(font: bytes) -> set[int]:

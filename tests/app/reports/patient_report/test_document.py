@@ -1,0 +1,149 @@
+"""Is the report a document that everybody can read, now and in thirty years, and the same each time?"""
+
+import io
+from collections.abc import Iterator
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+
+import pikepdf
+import pypdf
+import pytest
+
+from app.reports.patient_report.document import make_report
+from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+
+
+def texts(pdf: bytes) -> list[str]:
+    return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
+
+
+def elements(node: pikepdf.Object) -> Iterator[pikepdf.Object]:
+    """Walk the structure tree from the root down."""
+    if isinstance(node, pikepdf.Array):
+        for part in node:
+            yield from elements(part)
+    elif isinstance(node, pikepdf.Dictionary):
+        yield node
+        if "/K" in node:
+            yield from elements(node.K)
+
+
+@pytest.fixture(scope="module")
+def report(alignments: Visit) -> bytes:
+    made_at = datetime.fromisoformat("2026-11-21T22:15:30+01:00")
+    return make_report(ReportRequest(alignments, default_walks(alignments), made_at, "1.2.3"))
+
+
+def test_it_is_tagged_titled_and_tells_its_language(report: bytes) -> None:
+    with pikepdf.open(io.BytesIO(report)) as pdf:
+        assert pdf.Root.MarkInfo.Marked
+        assert "/StructTreeRoot" in pdf.Root
+        assert str(pdf.Root.Lang) == "en-GB"
+        assert pdf.Root.ViewerPreferences.DisplayDocTitle
+        with pdf.open_metadata() as metadata:
+            assert metadata["pdfuaid:part"] == "1"
+            assert (metadata["pdfaid:part"], metadata["pdfaid:conformance"]) == ("2", "A")
+            assert "20 Nov 2026" in metadata["dc:title"]
+            assert "SIMULATED" in metadata["dc:title"]
+            assert "SIMULATED" in metadata["dc:description"]
+        assert [str(intent.S) for intent in pdf.Root.OutputIntents] == ["/GTS_PDFA1"]
+
+
+def test_every_figure_has_words_with_numbers_in_them(report: bytes) -> None:
+    with pikepdf.open(io.BytesIO(report)) as pdf:
+        figures = [node for node in elements(pdf.Root.StructTreeRoot.K) if node.get("/S") == "/Figure"]
+        alts = [str(figure.get("/Alt", "")) for figure in figures]
+    assert len(alts) == 3 + 2 + 4 + 4 + 1  # key numbers, curves, comparison, single strides, strip
+    assert [alt for alt in alts if not any(character.isdigit() for character in alt)] == []
+
+
+def test_column_headings_are_tagged_as_such(report: bytes) -> None:
+    with pikepdf.open(io.BytesIO(report)) as pdf:
+        kinds = [str(node.get("/S")) for node in elements(pdf.Root.StructTreeRoot.K)]
+    assert kinds.count("/Table") == 4
+    assert kinds.count("/TH") > 20
+    assert "/H1" in kinds
+
+
+def test_every_font_is_embedded(report: bytes) -> None:
+    with pikepdf.open(io.BytesIO(report)) as pdf:
+        described = [
+            o for o in pdf.objects if isinstance(o, pikepdf.Dictionary) and o.get("/Type") == "/FontDescriptor"
+        ]
+        assert described
+        for font in described:
+            assert {"/FontFile", "/FontFile2", "/FontFile3"} & set(font.keys())
+            assert "Inter" in str(font.FontName)
+
+
+def test_the_same_request_gives_the_same_bytes(request_of_demonstration: ReportRequest) -> None:
+    first = make_report(request_of_demonstration)
+    assert first == make_report(request_of_demonstration)
+    assert str(Path(__file__).parents[4]).encode() not in first
+
+
+@pytest.mark.parametrize("paper", ["a4", "letter"])
+@pytest.mark.parametrize("language", ["en", "pseudo"])
+def test_page_one_stays_one_page(
+    request_of_alignments: ReportRequest, paper: str, language: str, request: pytest.FixtureRequest
+) -> None:
+    """Its fields two lines long, its box with three sentences, on either paper, in a language as long as German."""
+    if language == "pseudo":
+        request.getfixturevalue("pseudo_language")
+    visit = request_of_alignments.visit
+    patient = replace(visit.session.patient, device="W" * 200, aids="two crutches", code="W" * 60)
+    session = replace(visit.session, patient=patient, surface="corridor " * 40)
+    wanted = replace(
+        request_of_alignments, visit=Visit(session, visit.analysis), paper=paper, operator="W" * 200, clinic="W " * 200
+    )
+    reader = pypdf.PdfReader(io.BytesIO(make_report(wanted)))
+    pages = [reader.get_destination_page_number(entry) for entry in reader.outline if not isinstance(entry, list)]
+    assert pages[:5] == [0, 0, 0, 0, 1]  # quality, key numbers, time and distance, what stands out; then the curves
+
+
+def test_the_pages_stand_in_their_order(report: bytes) -> None:
+    headings = (
+        "Key numbers",
+        "Joint angles over the stride",
+        "Peaks and range",
+        "Comparison of conditions",
+        "Consistency from stride to stride",
+        "Clinician's words",
+    )
+    pages = texts(report)
+    assert len(pages) == len(headings)
+    for page, heading in zip(pages, headings, strict=True):
+        assert heading in page
+        assert "SIMULATED DATA, not a person" in page
+        assert "Research use. Not a medical device." in page
+        assert "Gaitwright 1.2.3" in page
+
+
+def test_without_a_comparison_there_are_five_pages(request_of_demonstration: ReportRequest) -> None:
+    assert len(texts(make_report(request_of_demonstration))) == 5
+
+
+def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
+    request_of_alignments: ReportRequest, alignments: Visit
+) -> None:
+    wanted = replace(request_of_alignments, walks=("walk 3",), earlier=(alignments, "walk 1"))
+    page = texts(make_report(wanted))[3]
+    assert "Comparison of visits" in page
+    assert "sensors put on anew" in page
+    assert "9.2" in page
+
+
+def test_a_long_comment_is_printed_whole(request_of_demonstration: ReportRequest) -> None:
+    comment = "\n".join(f"Line {k} of what the clinician says." for k in range(150))
+    pages = texts(make_report(replace(request_of_demonstration, comment=comment)))
+    assert len(pages) > 5
+    assert "Line 0 of" in pages[4]
+    assert any("Line 149 of" in page for page in pages)
+
+
+def test_a_request_without_time_zone_or_walk_is_refused(demonstration: Visit) -> None:
+    with pytest.raises(ValueError, match="time zone"):
+        ReportRequest(demonstration, ("walk 1",), datetime(2026, 11, 21), "1.2.3")
+    with pytest.raises(ValueError, match="0 walks"):
+        ReportRequest(demonstration, (), datetime.fromisoformat("2026-11-21T12:00+00:00"), "1.2.3")

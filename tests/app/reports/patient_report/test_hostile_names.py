@@ -1,0 +1,97 @@
+"""Does any typed text prevent a report, or change a number in it?"""
+
+import io
+import random
+from dataclasses import replace
+
+import pypdf
+import pytest
+
+from app.reports.patient_report.document import make_report
+from app.reports.patient_report.plain_text import BOX, MAX_MARKS, breakable, isolated, plain, plain_lines
+from app.reports.patient_report.request import ReportRequest, Visit
+
+HOSTILE = (
+    '#image("/etc/passwd") $x^2$ *bold* _it_ @ref <label> // comment \\ #eval("1")',
+    "<script>alert(1)</script>&amp;<svg/>",
+    "\u202eevil\u202c \u2066x\u2069 \u200f\u061c",
+    "מטופל 123, דוד",
+    "مريض ١٢٣ محمد",
+    "W" * 200,
+    "a\x00b\x1bc\x07\ud800\ue000\ufffe",
+    "😀漢字 e" + "\u0301\u0323" * 20,
+    "",
+    " \t\u00a0\u3000 ",
+    "= Heading\n== Another\n- list\n+ enum",
+    "]]}}))\"\"''``{{[[((",
+    "x" * 5000,
+)
+CHARACTERS = [*range(0x20, 0x7F), *range(0xA0, 0x250), *range(0x300, 0x370), *range(0x590, 0x700)]
+CHARACTERS += [*range(0x2000, 0x2070), *range(0x1F600, 0x1F650), *range(0xE000, 0xE010), 0, 0x1B, 0xD800, 0xFFFF]
+
+
+def with_text(request: ReportRequest, text: str) -> ReportRequest:
+    """Put the text into every place that somebody can type into, but for names of recordings."""
+    session = request.visit.session
+    patient = replace(session.patient, code=text, sex=text, device=text, aids=text)
+    sensors = {site: replace(sensor, model=text) for site, sensor in session.sensors.items()}
+    recordings = tuple(replace(recording, condition=text) for recording in session.recordings)
+    session = replace(
+        session, patient=patient, sensors=sensors, recordings=recordings, surface=text, started=text, notes=text
+    )
+    visit = Visit(session, request.visit.analysis)
+    return replace(request, visit=visit, comment=text, operator=text, clinic=text, software_version=text[:20] or "1")
+
+
+def figures_of(pdf: bytes) -> tuple[int, list[str]]:
+    """Give the pages' count, and the words of the table on the third but for head and foot."""
+    pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
+    lines = pages[2].extract_text().splitlines()
+    first = lines.index("Peaks and range")
+    last = next(k for k, line in enumerate(lines) if "marks what" in line)
+    return len(pages), lines[first:last]
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+def test_a_typed_text_prevents_no_report_and_moves_no_number(
+    request_of_demonstration: ReportRequest, text: str
+) -> None:
+    pages, figures = figures_of(make_report(with_text(request_of_demonstration, text)))
+    expected_pages, expected = figures_of(make_report(request_of_demonstration))
+    assert figures == expected
+    assert pages == expected_pages or len(text) == 5000  # a comment is printed whole, however long
+
+
+@pytest.mark.endurance
+def test_none_of_500_random_texts_prevents_a_report(request_of_demonstration: ReportRequest) -> None:
+    chance = random.Random(14)
+    for _ in range(500):
+        text = "".join(map(chr, chance.choices(CHARACTERS, k=chance.randrange(80))))
+        assert make_report(with_text(request_of_demonstration, text)).startswith(b"%PDF"), repr(text)
+
+
+def test_a_direction_stays_within_its_own_text(request_of_demonstration: ReportRequest) -> None:
+    """A Hebrew code may not turn round the date beside it in the title."""
+    patient = replace(request_of_demonstration.visit.session.patient, code="אבג 1")
+    session = replace(request_of_demonstration.visit.session, patient=patient, started="2026-11-20T09:42:00+01:00")
+    pdf = make_report(replace(request_of_demonstration, visit=Visit(session, request_of_demonstration.visit.analysis)))
+    reader = pypdf.PdfReader(io.BytesIO(pdf))
+    assert reader.metadata is not None
+    assert reader.metadata.title == "Gait report \u2068אבג 1\u2069, 20 Nov 2026, SIMULATED"
+    shown = reader.pages[0].extract_text().replace("\u2068", "").replace("\u2069", "")
+    assert ", 20 Nov 2026, SIMULATED" in shown
+
+
+def test_what_no_font_shows_becomes_a_box_and_what_nobody_sees_is_dropped() -> None:
+    assert plain("Zoë\u200b \x00漢 \ue000x\u202e") == f"Zoë {BOX} x"
+    assert plain("e\u0301") == "é"
+    assert len(plain("x" + "\u0301" * 9)) <= 1 + MAX_MARKS
+    assert plain(" \t a \n b ") == "a b"
+    assert plain_lines("one\n\n\n\ntwo\n") == ["one", "", "two"]
+    assert isolated("") == ""
+
+
+def test_only_long_words_may_break_within() -> None:
+    assert breakable("short words stay as they are") == "short words stay as they are"
+    assert breakable("W" * 23).replace("\u200b", "") == "W" * 23
+    assert breakable("W" * 23).count("\u200b") == 3
