@@ -1,0 +1,132 @@
+"""How does a hospital's system read the averages? A FHIR R4 Bundle of Observations, one per figure of summary.json.
+
+Our figures have no codes of their own in LOINC or SNOMED CT that say how they were measured, so each is coded by its
+column's name; sides are coded. Simulated figures carry the label that HL7 gives to test data.
+"""
+
+import datetime
+import json
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any
+from uuid import NAMESPACE_URL, uuid5
+
+from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, software, unit_of, walk_figures
+from core.body import Side
+from core.results import Analysis
+from core.samples import Session
+
+PARAMETERS = "urn:x-gaitwright:parameter"
+CODES = "urn:x-gaitwright:patient"
+UCUM = "http://unitsofmeasure.org"
+UCUM_OF = {"°": "deg", "%": "%", "s": "s", "m": "m", "m/s": "m/s", "steps/min": "/min"}
+SNOMED = "http://snomed.info/sct"
+LEG = {"system": SNOMED, "code": "61685007", "display": "Lower limb structure"}
+SIDES = {
+    Side.LEFT: {"system": SNOMED, "code": "7771000", "display": "Left"},
+    Side.RIGHT: {"system": SNOMED, "code": "24028007", "display": "Right"},
+}
+ACTIVITY = "http://terminology.hl7.org/CodeSystem/observation-category"
+TEST_DATA = {
+    "system": "http://terminology.hl7.org/CodeSystem/v3-ActReason",
+    "code": "HTEST",
+    "display": "test health data",
+}
+GENDERS = ("male", "female", "other")
+
+
+def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
+    """Write one Bundle (JSON).
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    text = json.dumps(bundle(session, analysis), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8", errors="backslashreplace", newline="\n")
+
+
+def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
+    """A Bundle of kind collection: the patient, as far as is told, and an Observation per figure."""
+    patient_url = _url(session, "patient")
+    resources = [(patient_url, _patient(session))]
+    conditions = {recording.name: recording.condition for recording in session.recordings}
+    started = {recording.name: recording.started or session.started for recording in session.recordings}
+    for one in walk_figures(analysis):
+        when = _when(started.get(one.walk, ""))
+        url = _url(session, one.walk, str(one.side), one.name)
+        notes = [*_notes(one.walk, conditions.get(one.walk, "")), *([SIMULATED] if analysis.is_simulated else [])]
+        resources.append((url, dict(_observation(one, patient_url, when, notes))))
+    if analysis.is_simulated:
+        resources = [(url, {**resource, "meta": {"security": [TEST_DATA]}}) for url, resource in resources]
+    return {
+        "resourceType": "Bundle",
+        "type": "collection",
+        "entry": [{"fullUrl": url, "resource": resource} for url, resource in resources],
+    }
+
+
+def _patient(session: Session) -> dict[str, Any]:
+    patient = session.patient
+    told: dict[str, Any] = {"resourceType": "Patient"}
+    if patient.code.strip():
+        told["identifier"] = [{"system": CODES, "value": patient.code.strip()}]
+    if patient.sex in GENDERS:
+        told["gender"] = patient.sex
+    if patient.birth_year is not None:
+        told["birthDate"] = f"{patient.birth_year:04d}"
+    return told
+
+
+def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
+    yield "resourceType", "Observation"
+    yield "status", "final"
+    yield "category", [{"coding": [{"system": ACTIVITY, "code": "activity", "display": "Activity"}]}]
+    yield "code", _code(one.name)
+    yield "subject", {"reference": patient_url}
+    if when:
+        yield "effectiveDateTime", when
+    yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
+    yield "note", [{"text": text} for text in notes]
+    if one.side is not None:
+        yield "bodySite", {"coding": [LEG], "text": f"{one.side} leg"}
+    yield "device", {"display": software()}
+    components: list[dict[str, Any]] = []
+    if one.side is not None:
+        components.append({"code": _code("side"), "valueCodeableConcept": {"coding": [SIDES[one.side]]}})
+    if one.sd is not None:
+        sd = _quantity(one.sd, unit_of(one.name))
+        components.append({"code": _code("stride_sd", "standard deviation between strides"), "valueQuantity": sd})
+    if one.strides is not None:
+        components.append({"code": _code("strides_used"), "valueInteger": one.strides})
+    if components:
+        yield "component", components
+
+
+def _notes(walk: str, condition: str) -> Iterator[str]:
+    yield f"{walk}, {condition}" if condition.strip() else walk
+    yield RESEARCH
+
+
+def _code(name: str, words: str = "") -> Mapping[str, Any]:
+    return {"coding": [{"system": PARAMETERS, "code": name}], "text": words or name.replace("_", " ")}
+
+
+def _quantity(value: float, unit: str) -> Mapping[str, Any]:
+    return {"value": value, "unit": unit, "system": UCUM, "code": UCUM_OF[unit]}
+
+
+def _when(started: str) -> str:
+    """An instant as FHIR takes it: with a time only where its zone is told."""
+    try:
+        instant = datetime.datetime.fromisoformat(started)
+    except ValueError:
+        return ""
+    return instant.isoformat(timespec="seconds") if instant.tzinfo else instant.date().isoformat()
+
+
+def _url(session: Session, *parts: str) -> str:
+    """The same name for the same figure at every writing."""
+    whole = json.dumps([session.patient.code, session.started, *parts])
+    return f"urn:uuid:{uuid5(NAMESPACE_URL, whole)}"

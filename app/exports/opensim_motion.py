@@ -1,0 +1,51 @@
+"""How does OpenSim read the angles? One motion file (.mot) per recording, in degrees, named as a model's coordinates.
+
+The names and signs are those of models whose knee flexion is positive, as Rajagopal et al. 2016, doi
+10.1109/TBME.2016.2586891; in gait2392 the knee has the other sign.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from app.exports.figures import RESEARCH, SIMULATED, as_in_csv_deg
+from core.body import Joint
+from core.results import RecordingAnalysis
+
+COORDINATES = {
+    Joint.RIGHT_KNEE: "knee_angle_r",
+    Joint.LEFT_KNEE: "knee_angle_l",
+    Joint.RIGHT_ANKLE: "ankle_angle_r",
+    Joint.LEFT_ANKLE: "ankle_angle_l",
+}
+
+
+def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> None:
+    """Write one recording's angles, a row per row of angles.csv; NaN in gaps.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    joints = [joint for joint in COORDINATES if joint in recording.joints]
+    columns = [as_in_csv_deg(recording.joints[joint].angle_rad) for joint in joints]
+    n = len(recording.time_s)
+    header = [
+        "Coordinates",
+        "version=1",
+        f"nRows={n}",
+        f"nColumns={1 + len(joints)}",
+        "inDegrees=yes",
+        "",
+        *([SIMULATED] if is_simulated else []),
+        f"Made by gaitwright. {RESEARCH}",
+        "Knee flexion and ankle dorsiflexion are positive. Coordinates that are not named were not measured.",
+        "endheader",
+        "\t".join(["time", *(COORDINATES[joint] for joint in joints)]),
+    ]
+    with path.open("w", encoding="ascii", newline="\n") as file:
+        file.write("\n".join(header) + "\n")
+        for k in range(n):
+            cells = [f"{column[k]:.5f}" if np.isfinite(column[k]) else "NaN" for column in columns]
+            file.write("\t".join([repr(float(recording.time_s[k])), *cells]) + "\n")

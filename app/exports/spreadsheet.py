@@ -1,0 +1,150 @@
+"""What does a spreadsheet say? Summary, strides, mean cycles and events of all recordings, one sheet each.
+
+Rows and numbers are those of summary.json and the CSV files, with the recording before them. What somebody typed is
+text whatever it begins with, so that it is never worked out as a formula.
+"""
+
+import datetime
+import io
+import re
+import zipfile
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from openpyxl import Workbook
+from openpyxl.cell import Cell, WriteOnlyCell
+from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
+from openpyxl.styles import Font
+from openpyxl.worksheet._write_only import WriteOnlyWorksheet
+
+from app.exports.figures import RESEARCH, SIMULATED, software, unit_of, walk_figures
+from app.reports.gait_csv import gait_tables
+from app.wording import sentence
+from core.results import Analysis
+from core.samples import Session
+
+Value = str | float | int | None
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
+NO_TIME = datetime.datetime(1980, 1, 1)  # the first that a ZIP can hold: the same analysis gives the same bytes
+PROPERTIES, MODIFIED = "docProps/core.xml", re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
+WIDEST = 42
+
+
+def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
+    """Write one workbook (Office Open XML).
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    book = Workbook(write_only=True)
+    book.properties.creator, book.properties.created = "gaitwright", NO_TIME
+    _sheet(book, "About", ["what", "value"], _about(session, analysis))
+    of_summary = ["recording", "condition", "side", "parameter", "mean", "stride_sd", "unit", "strides_used"]
+    _sheet(book, "Summary", of_summary, _summary(session, analysis))
+    columns: dict[str, None] = dict.fromkeys(of_summary)
+    for name in ("strides", "cycles", "events"):
+        header, rows = _joined(analysis, name)
+        _sheet(book, name.capitalize(), header, rows)
+        columns |= dict.fromkeys(header)
+    _sheet(book, "Units", ["column", "unit"], ([column, unit] for column in columns if (unit := unit_of(column))))
+    if analysis.findings:
+        findings = ([str(f.severity), f.where, sentence(f)] for f in analysis.findings)
+        _sheet(book, "Findings", ["severity", "where", "text"], findings)
+    written = io.BytesIO()
+    book.save(written)
+    path.write_bytes(_without_times(written.getvalue()))
+
+
+def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
+    patient = session.patient
+    rows: list[list[Value]] = [[SIMULATED, None]] if analysis.is_simulated else []
+    rows += [
+        ["patient", patient.code],
+        ["birth year", patient.birth_year],
+        ["sex", patient.sex],
+        ["height, m", patient.height_m],
+        ["mass, kg", patient.mass_kg],
+        ["device", patient.device],
+        ["aids", patient.aids],
+        ["affected side", patient.affected_side],
+        ["prosthetic side", patient.prosthetic_side],
+        ["session", session.started],
+        ["operator", session.operator],
+        ["surface", session.surface],
+        ["notes", session.notes],
+        ["method", str(analysis.method)],
+        ["software", software()],
+        ["use", RESEARCH],
+    ]
+    return [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
+
+
+def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
+    conditions = {recording.name: recording.condition for recording in session.recordings}
+    for one in walk_figures(analysis):
+        side = str(one.side) if one.side else "both"
+        condition = conditions.get(one.walk, "")
+        yield [one.walk, condition, side, one.name, one.mean, one.sd, unit_of(one.name), one.strides]
+
+
+def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Value]]]:
+    """One table of all recordings; a recording has empty cells where it lacks a column."""
+    tables = {recording.name: gait_tables(recording)[name] for recording in analysis.recordings}
+    header = list(dict.fromkeys(column for columns, _ in tables.values() for column in columns))
+
+    def rows() -> Iterable[list[Value]]:
+        for recording, (columns, cells) in tables.items():
+            for row in cells:
+                told = dict(zip(columns, row, strict=True))
+                yield [recording, *(_value(told.get(column, "")) for column in header)]
+
+    return ["recording", *header], rows()
+
+
+def _value(cell: str) -> Value:
+    """A cell of a CSV file as the number that it holds, or as text."""
+    if not cell:
+        return None
+    return float(cell) if NUMBER.fullmatch(cell) else cell
+
+
+def _sheet(book: Workbook, title: str, header: Sequence[str], rows: Iterable[Sequence[Value]]) -> None:
+    sheet = book.create_sheet(title)
+    sheet.freeze_panes = "A2"
+    for number, name in enumerate(header):
+        sheet.column_dimensions[_letters(number)].width = min(max(len(name) + 2, 12), WIDEST)
+    headings = [_text(sheet, name) for name in header]
+    for heading in headings:
+        heading.font = Font(bold=True)
+    sheet.append(headings)
+    for row in rows:
+        sheet.append([_text(sheet, value) if isinstance(value, str) else value for value in row])
+
+
+def _text(sheet: WriteOnlyWorksheet, value: str) -> Cell:
+    cell = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub("", value))
+    cell.data_type = "s"  # or what begins with = would be a formula
+    return cell
+
+
+def _letters(number: int) -> str:
+    return _letters(number // 26 - 1) + chr(65 + number % 26) if number >= 26 else chr(65 + number)
+
+
+def _without_times(workbook: bytes) -> bytes:
+    """The same ZIP without the times of writing."""
+    again = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(workbook)) as old, zipfile.ZipFile(again, "w", zipfile.ZIP_DEFLATED) as new:
+        for name in sorted(old.namelist(), key=lambda name: (name != "[Content_Types].xml", name)):
+            info = zipfile.ZipInfo(name, NO_TIME.timetuple()[:6])
+            info.compress_type = zipfile.ZIP_DEFLATED
+            content = old.read(name)
+            new.writestr(
+                info,
+                MODIFIED.sub(rb"\g<1>" + NO_TIME.isoformat().encode() + b"Z", content)
+                if name == PROPERTIES
+                else content,
+            )
+    return again.getvalue()

@@ -1,0 +1,228 @@
+"""Does every format hold the numbers of the CSV files, and can other programs read it?"""
+
+import csv
+import json
+import shutil
+import subprocess
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import ezc3d
+import numpy as np
+import openpyxl
+import pytest
+from fhir.resources.R4B.bundle import Bundle
+
+from app.exports.c3d_angles import MOST_FRAMES, POINTS, write_c3d
+from app.exports.fhir_bundle import bundle, write_bundle
+from app.exports.opensim_motion import COORDINATES, write_motion
+from app.exports.spreadsheet import write_spreadsheet
+from core.results import Analysis, RecordingAnalysis
+from core.samples import FloatArray, RecordingKind, Session
+from devices.files.refusal import FileRefusedError
+
+
+def walk_of(analysis: Analysis) -> RecordingAnalysis:
+    return next(r for r in analysis.recordings if r.kind is RecordingKind.WALKING)
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def column(path: Path, name: str) -> FloatArray:
+    return np.array([float(row[name] or "nan") for row in rows_of(path)])
+
+
+def sheet_rows(path: Path, title: str) -> list[dict[str, Any]]:
+    header, *rows = openpyxl.load_workbook(path)[title].iter_rows(values_only=True)
+    return [dict(zip([str(name) for name in header], row, strict=True)) for row in rows]
+
+
+@pytest.fixture(scope="module")
+def workbook(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("xlsx") / "gaitwright.xlsx"
+    write_spreadsheet(*visit, path)
+    return path
+
+
+@pytest.mark.parametrize("name", ["strides", "cycles", "events"])
+def test_a_sheet_holds_the_cells_of_its_csv_file(
+    visit: tuple[Session, Analysis], tables: Path, workbook: Path, name: str
+) -> None:
+    walk = walk_of(visit[1])
+    found = [row for row in sheet_rows(workbook, name.capitalize()) if row["recording"] == walk.name]
+    told = rows_of(tables / walk.folder / f"{name}.csv")
+    assert len(found) == len(told) > 10
+    for one, other in zip(found, told, strict=True):
+        for key, cell in other.items():
+            if cell == "":
+                assert one[key] is None
+            elif isinstance(one[key], int | float):
+                assert float(one[key]) == float(cell)
+            else:
+                assert one[key] == cell
+
+
+def test_the_summary_holds_the_means_of_summary_json_with_their_units(
+    visit: tuple[Session, Analysis], tables: Path, workbook: Path
+) -> None:
+    walk = walk_of(visit[1]).name
+    told = json.loads((tables / "summary.json").read_text())["walks"][walk]
+    found = {(row["side"], row["parameter"]): row for row in sheet_rows(workbook, "Summary")}
+    assert len(found) > 30
+    for (side, parameter), row in found.items():
+        if side == "both":
+            assert row["mean"] == pytest.approx(told["both"][parameter], rel=1e-15)
+        else:
+            # a workbook holds 16 digits
+            assert row["mean"] == pytest.approx(told[side][f"{parameter}_mean"], rel=1e-15)
+            assert row["stride_sd"] == pytest.approx(told[side][f"{parameter}_sd"], rel=1e-15)
+            assert row["strides_used"] == told[side]["strides_used"]
+    assert found["left", "knee_range_deg"]["unit"] == "°"
+    assert found["left", "stride_length_m"]["unit"] == "m"
+    assert found["left", "speed_m_s"]["unit"] == "m/s"
+    assert found["both", "cadence_steps_min"]["unit"] == "steps/min"
+    units = {row["column"]: row["unit"] for row in sheet_rows(workbook, "Units")}
+    assert (units["percent"], units["toe_off_s"]) == ("%", "s")
+
+
+def test_what_was_typed_is_no_formula_and_simulated_is_said(workbook: Path) -> None:
+    book = openpyxl.load_workbook(workbook)
+    condition = book["Summary"]["B2"]
+    assert (condition.value, condition.data_type) == ("=barefoot", "s")
+    assert book["About"]["A2"].value.startswith("SIMULATED")
+
+
+def test_the_same_analysis_gives_the_same_workbook(
+    visit: tuple[Session, Analysis], workbook: Path, tmp_path: Path
+) -> None:
+    write_spreadsheet(*visit, tmp_path / "again.xlsx")
+    assert (tmp_path / "again.xlsx").read_bytes() == workbook.read_bytes()
+    assert zipfile.ZipFile(workbook).testzip() is None
+
+
+@pytest.mark.skipif(shutil.which("soffice") is None, reason="LibreOffice is not installed")
+def test_libreoffice_opens_the_workbook(workbook: Path, tmp_path: Path) -> None:
+    profile = f"-env:UserInstallation=file://{tmp_path / 'profile'}"
+    command = ["soffice", profile, "--headless", "--convert-to", "csv", "--outdir", str(tmp_path), str(workbook)]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
+    assert "SIMULATED" in (tmp_path / "gaitwright.csv").read_text()
+
+
+def test_the_motion_file_holds_the_rows_of_the_angles(
+    visit: tuple[Session, Analysis], tables: Path, tmp_path: Path
+) -> None:
+    walk = walk_of(visit[1])
+    knee = next(iter(walk.joints))
+    angle_rad = walk.joints[knee].angle_rad.copy()
+    write_motion(walk, True, tmp_path / "angles.mot")
+    head, body = (tmp_path / "angles.mot").read_text().split("endheader\n")
+    header, *lines = body.splitlines()
+    assert head.startswith("Coordinates\nversion=1\n")
+    assert f"nRows={len(lines)}\nnColumns={len(header.split())}\ninDegrees=yes\n" in head
+    assert "SIMULATED" in head
+    values = np.array([[float(cell) for cell in line.split("\t")] for line in lines])
+    names = header.split("\t")
+    angles = tables / walk.folder / "angles.csv"
+    np.testing.assert_array_equal(values[:, 0], column(angles, "time_s"))
+    for joint, name in COORDINATES.items():
+        np.testing.assert_array_equal(values[:, names.index(name)], column(angles, f"{joint}_deg"))
+    angle_rad[3:6] = np.nan
+    with_gap = replace(walk, joints={knee: replace(walk.joints[knee], angle_rad=angle_rad)})
+    write_motion(with_gap, False, tmp_path / "gap.mot")
+    assert (tmp_path / "gap.mot").read_text().count("NaN") == 3
+
+
+def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis], tables: Path, tmp_path: Path) -> None:
+    walk = walk_of(visit[1])
+    write_c3d(walk, True, tmp_path / "angles.c3d")
+    read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
+    point, event = read["parameters"]["POINT"], read["parameters"]["EVENT"]
+    angles = tables / walk.folder / "angles.csv"
+    assert read["data"]["points"].shape[2] == len(walk.time_s)
+    assert point["RATE"]["value"][0] == pytest.approx(1 / np.diff(walk.time_s).mean(), rel=1e-4)
+    for k, label in enumerate(point["LABELS"]["value"]):
+        joint = next(joint for joint, name in POINTS.items() if name == label)
+        told_deg = column(angles, f"{joint}_deg")
+        np.testing.assert_array_equal(read["data"]["points"][0, k], told_deg.astype(np.float32))
+    events = rows_of(tables / walk.folder / "events.csv")
+    minutes, seconds = event["TIMES"]["value"]
+    told_s = np.array([float(row["time_s"]) for row in events]) - walk.time_s[0]
+    np.testing.assert_allclose(60 * minutes + seconds, told_s, atol=1e-4)
+    strikes = sum(row["event"] == "initial_contact" for row in events)
+    assert event["LABELS"]["value"].count("Foot Strike") == strikes > 20
+    assert read["parameters"]["SUBJECTS"]["NOTE"]["value"][0].startswith("SIMULATED")
+
+
+def test_a_gap_of_the_angles_and_a_missing_row_are_no_points(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    walk = walk_of(visit[1])
+    joint, angle = next(iter(walk.joints.items()))
+    angle_rad = angle.angle_rad.copy()
+    angle_rad[10:13] = np.nan
+    kept = np.setdiff1d(np.arange(len(walk.time_s)), np.arange(50, 70))
+    with_gaps = replace(
+        walk, time_s=walk.time_s[kept], joints={joint: replace(angle, angle_rad=angle_rad[kept])}, gait={}
+    )
+    write_c3d(with_gaps, False, tmp_path / "angles.c3d")
+    read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
+    is_missing = read["data"]["meta_points"]["residuals"][0, 0] < 0
+    np.testing.assert_array_equal(np.flatnonzero(is_missing), [10, 11, 12, *range(50, 70)])
+    after_deg = np.rad2deg(angle.angle_rad[70:])
+    np.testing.assert_allclose(read["data"]["points"][0, 0, 70:], after_deg, atol=1e-4)
+
+
+def test_many_events_are_all_there(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    walk = walk_of(visit[1])
+    side, gait = next(iter(walk.gait.items()))
+    many = replace(walk, gait={side: replace(gait, events=gait.events * 12)})
+    write_c3d(many, False, tmp_path / "angles.c3d")
+    event = ezc3d.c3d(str(tmp_path / "angles.c3d"))["parameters"]["EVENT"]
+    lists = [event[name]["value"] for name in event if name.startswith("LABELS")]
+    assert len(lists) > 1
+    assert sum(len(labels) for labels in lists) == event["USED"]["value"][0]
+
+
+def test_a_walk_that_a_c3d_cannot_hold_is_refused(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    walk = walk_of(visit[1])
+    time_s = np.arange(MOST_FRAMES + 1) / 100
+    with pytest.raises(FileRefusedError, match="more than a C3D can hold"):
+        write_c3d(replace(walk, time_s=time_s, joints={}, gait={}), False, tmp_path / "angles.c3d")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_another_library_takes_the_bundle(visit: tuple[Session, Analysis], tables: Path, tmp_path: Path) -> None:
+    write_bundle(*visit, tmp_path / "bundle.json")
+    read = Bundle.model_validate_json((tmp_path / "bundle.json").read_bytes())
+    assert read.entry is not None
+    resources: list[Any] = [entry.resource for entry in read.entry]
+    patient, *observations = resources
+    assert (patient.gender, patient.get_resource_type()) == ("female", "Patient")
+    told = json.loads((tables / "summary.json").read_text())["walks"][walk_of(visit[1]).name]
+    assert len(observations) > 30
+    for one in observations:
+        name, quantity = one.code.coding[0].code, one.valueQuantity
+        parts = {part.code.coding[0].code: part for part in one.component or ()}
+        if one.bodySite is None:
+            assert float(quantity.value) == told["both"][name]
+            continue
+        side = parts["side"].valueCodeableConcept.coding[0].display.lower()
+        assert one.bodySite.text == f"{side} leg"
+        assert float(quantity.value) == told[side][f"{name}_mean"]
+        if "stride_sd" in parts:
+            assert float(parts["stride_sd"].valueQuantity.value) == told[side][f"{name}_sd"]
+        assert parts["strides_used"].valueInteger == told[side]["strides_used"]
+        assert one.meta.security[0].code == "HTEST"
+        assert any(note.text.startswith("SIMULATED") for note in one.note)
+    names = [one.fullUrl for one in read.entry]
+    assert len(set(names)) == len(names)
+
+
+def test_a_date_without_a_zone_is_told_as_a_day(visit: tuple[Session, Analysis]) -> None:
+    session, analysis = visit
+    for started, told in (("2026-11-21T10:00:00", "2026-11-21"), ("2026-11-21T10:00:00+01:00", None), ("soon", "")):
+        first = bundle(replace(session, started=started), analysis)["entry"][1]["resource"]
+        assert first.get("effectiveDateTime", "") == (started if told is None else told)
