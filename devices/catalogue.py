@@ -1,0 +1,69 @@
+"""Whose sensors are understood, and how was that shown? One line per driver; `devices/search.py` finds them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from devices.csv_serial import DRIVER as CSV
+from devices.csv_serial import CsvSerial
+from devices.source import StreamDecoder
+from devices.stream import Decoder, Dialect
+from devices.witmotion import DRIVER as WITMOTION
+from devices.witmotion import WitMotion
+from devices.ximu3 import DRIVER as XIMU3
+from devices.ximu3 import Ximu3
+
+
+@dataclass(frozen=True, slots=True)
+class Driver:
+    """One maker's sensors.
+
+    Attributes
+    ----------
+    key
+        As journals name it.
+    proof
+        Against what it was tried, and against what not.
+    dialect
+        A new one as a search uses it; None: it has to be told more first.
+    bauds
+        Of its serial ports, the likeliest first.
+    hint
+        What a port's description says where one of these is plugged in, so that it is spoken to although it is silent.
+    """
+
+    key: str
+    name: str
+    proof: str
+    decoder: Callable[[], StreamDecoder]
+    dialect: Callable[[], Dialect] | None = None
+    bauds: tuple[int, ...] = ()
+    hint: str = ""
+
+
+DRIVERS = (
+    Driver(
+        XIMU3,
+        "x-io x-IMU3",
+        "The maker's package (ximu3 1.9) and ours decode the same bytes to the same floats, and it speaks with our "
+        "emulator. No hardware was at hand.",
+        lambda: Decoder(Ximu3()),
+        Ximu3,
+        (115200,),
+        "x-IMU3",
+    ),
+    Driver(
+        WITMOTION,
+        "WitMotion, standard protocol",
+        "By the published protocol, an emulator on a pseudo-terminal and damaged streams. No recorded stream and no "
+        "hardware was at hand.",
+        lambda: Decoder(WitMotion()),
+        WitMotion,
+        (115200, 9600, 230400),
+    ),
+    Driver(
+        CSV,
+        "lines of numbers over a serial port",
+        "By an emulator on a pseudo-terminal and damaged streams. What the columns mean has to be told.",
+        lambda: Decoder(CsvSerial()),
+    ),
+)

@@ -1,0 +1,172 @@
+"""Which sensors can be heard now? Every port is listened to, and the network for what x-IMU3s announce there."""
+
+import json
+import socket
+import threading
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from devices.catalogue import DRIVERS, Driver
+from devices.channels import Channel, TcpChannel, UdpChannel
+from devices.live import LiveSource, SourceLostError, SourceRefusedError
+from devices.ports import PortInfo, SerialPort, list_ports
+from devices.source import SourceInfo
+from devices.stream import ByteSource
+from devices.ximu3 import DRIVER as XIMU3
+from devices.ximu3 import Ximu3
+
+LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
+LEAST = 3  # messages
+ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
+ANNOUNCED_S = 1.3
+MOST_DATAGRAM = 2048
+
+
+@dataclass(frozen=True, slots=True)
+class FoundSensor:
+    """A sensor that was heard. `make` gives a source of it; nothing is open until that is opened."""
+
+    driver: str
+    name: str
+    place: str
+    make: Callable[[], LiveSource]
+    is_simulated: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """A port that no sensor was heard at, and what to do about it."""
+
+    port: PortInfo
+    what: str
+    remedy: str
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    sensors: tuple[FoundSensor, ...] = ()
+    passed: tuple[Passed, ...] = ()
+
+    def of(self, driver: str) -> tuple[FoundSensor, ...]:
+        return tuple(sensor for sensor in self.sensors if sensor.driver == driver)
+
+
+def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCED_AT) -> Found:
+    """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
+
+    Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open.
+    """
+    looked_at = [port for port in (list_ports() if ports is None else ports) if port.usb or port.is_told]
+    heard: list[FoundSensor | Passed] = []
+    works = [threading.Thread(target=lambda port=port: heard.append(_at_port(port)), daemon=True) for port in looked_at]
+    on_network: list[FoundSensor] = []
+    works.append(threading.Thread(target=lambda: on_network.extend(_announced(announced_at)), daemon=True))
+    for work in works:
+        work.start()
+    for work in works:
+        work.join()
+    by_name: dict[tuple[str, str], FoundSensor] = {}
+    at_ports = sorted((one for one in heard if isinstance(one, FoundSensor)), key=lambda one: one.place)
+    for one in [*at_ports, *on_network]:  # by cable rather than by radio
+        by_name.setdefault((one.driver, one.name), one)
+    passed = sorted((one for one in heard if isinstance(one, Passed)), key=lambda one: one.port.device)
+    return Found(tuple(by_name.values()), tuple(passed))
+
+
+def _at_port(port: PortInfo) -> FoundSensor | Passed:
+    bauds = dict.fromkeys(baud for driver in DRIVERS if driver.dialect for baud in driver.bauds)
+    for baud in bauds:
+        channel = SerialPort(port, baud)
+        try:
+            channel.open()
+            driver = _recognised(channel, port)
+            if driver is not None and driver.dialect is not None:
+                info, _ = driver.dialect().greet(channel)
+                return FoundSensor(
+                    driver.key, info.sensors[0], port.device, _making(driver, port, baud), info.is_simulated
+                )
+        except SourceRefusedError as refusal:
+            return Passed(port, refusal.what, refusal.remedy)
+        except SourceLostError:
+            break
+        finally:
+            channel.close()
+    return Passed(
+        port, f"No sensor was heard at {port.device}", "Switch it on, and let it send rates and accelerations"
+    )
+
+
+def _recognised(channel: Channel, port: PortInfo) -> Driver | None:
+    """Whose messages these are; of several, whose are damaged least."""
+    candidates = [
+        (driver, driver.dialect().framer(SourceInfo(driver.key, "")))
+        for driver in DRIVERS
+        if driver.dialect is not None
+    ]
+    until_s = time.monotonic() + LISTEN_S
+    while time.monotonic() < until_s:
+        data, now_s = channel.read(), time.monotonic()
+        for _, framer in candidates:
+            framer.feed(data, now_s)
+    # a sensor may send what it is not asked for yet; noise is understood by nobody
+    understood = [
+        (whole - framer.heard.damaged, driver)
+        for driver, framer in candidates
+        if (whole := len(framer.heard.rows) + framer.heard.skipped) >= LEAST and whole > framer.heard.damaged
+    ]
+    if understood:
+        return max(understood, key=lambda one: one[0])[1]
+    return next((driver for driver in DRIVERS if driver.hint and driver.hint in port.description), None)
+
+
+def _making(driver: Driver, port: PortInfo, baud: int) -> Callable[[], LiveSource]:
+    def make() -> LiveSource:
+        assert driver.dialect is not None
+        return ByteSource(driver.dialect(), SerialPort(port, baud))
+
+    return make
+
+
+def _announced(at_port: int) -> list[FoundSensor]:
+    """The x-IMU3s that announce themselves within a second or so."""
+    found: dict[str, FoundSensor] = {}
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
+        try:
+            listening.bind(("", at_port))
+        except OSError:  # the maker's program is listening
+            return []
+        until_s = time.monotonic() + ANNOUNCED_S
+        while (left_s := until_s - time.monotonic()) > 0:
+            listening.settimeout(left_s)
+            try:
+                datagram, (address, _) = listening.recvfrom(MOST_DATAGRAM)
+            except OSError:
+                continue
+            if (one := announcement(datagram, address)) is not None:
+                found[one.name] = one
+    return list(found.values())
+
+
+def announcement(datagram: bytes, address: str) -> FoundSensor | None:
+    """What an x-IMU3 says of itself on the network; None where it is something else."""
+    try:
+        told = json.loads(datagram)
+    except (ValueError, RecursionError):
+        return None
+    if not isinstance(told, dict) or not isinstance(serial := told.get("sn"), str) or not serial:
+        return None
+    tcp, send, receive = (_port(told.get(key)) for key in ("port", "send", "receive"))
+    # what the sensor told is its address is not believed: a datagram is no reason to speak with somebody else
+    channel: Callable[[], Channel]
+    if tcp:
+        channel, place = lambda: TcpChannel(address, tcp), f"TCP {address}:{tcp}"
+    elif send and receive:
+        channel, place = lambda: UdpChannel(address, receive, send), f"UDP {address}:{send}"
+    else:
+        return None
+    return FoundSensor(XIMU3, serial, place, lambda: ByteSource(Ximu3(), channel()))
+
+
+def _port(told: object) -> int:
+    return told if isinstance(told, int) and 0 < told < 65536 else 0

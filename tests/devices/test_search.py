@@ -1,0 +1,145 @@
+"""Sensors are found at ports and announced on the network, each once; the other ports say why not."""
+
+import json
+import socket
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from devices import ports as ports_module
+from devices.catalogue import DRIVERS
+from devices.emulators.transports import Emulation, Terminal, Voice
+from devices.emulators.witmotion import WitVoice
+from devices.emulators.ximu3 import Ximu3Voice
+from devices.live import SourceRefusedError
+from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
+from devices.search import announcement, search
+
+
+def motion(number: int) -> tuple[float, ...]:
+    return (number % 100, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+
+def free_port() -> int:
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@pytest.fixture
+def emulated(tmp_path: Path) -> Iterator[list[PortInfo]]:
+    voices: dict[str, Voice] = {
+        "a": Ximu3Voice("0000000A", motion),
+        "b": Ximu3Voice("0000000B", motion, is_binary=False),
+        "c": WitVoice("000C", motion),
+        "d": Silence(),
+    }
+    emulations = [
+        Emulation(voice, lambda name=name: Terminal(tmp_path / name))  # type: ignore[misc]  # a default binds the name
+        for name, voice in voices.items()
+    ]
+    yield [PortInfo(emulation.place, is_told=True) for emulation in emulations]
+    for emulation in emulations:
+        emulation.close()
+
+
+class Silence:
+    def say(self) -> bytes:
+        return b""
+
+    def hear(self, data: bytes) -> bytes:
+        return b""
+
+
+def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: Path) -> None:
+    found = search([*emulated, PortInfo(str(tmp_path / "nothing"), is_told=True)], free_port())
+    assert {(one.driver, one.name) for one in found.sensors} == {
+        ("ximu3", "0000000A"),
+        ("ximu3", "0000000B"),
+        ("witmotion", "EMULATED000C"),
+    }
+    assert all(one.is_simulated for one in found.sensors)
+    assert [one.what for one in found.passed] == [
+        f"No sensor was heard at {tmp_path / 'd'}",
+        f"{tmp_path / 'nothing'} is not there",
+    ]
+    source = found.of("ximu3")[0].make()
+    source.open()
+    assert source.info.sensors == ("0000000A",)
+    source.close()
+
+
+def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
+    holding = SerialPort(emulated[0])
+    holding.open()
+    with pytest.raises(SourceRefusedError, match="is used by another program"):
+        SerialPort(emulated[0]).open()
+    holding.close()
+
+
+def test_what_is_announced_on_the_network_is_found() -> None:
+    at_port = free_port()
+    told = {"name": "x-IMU3", "sn": "655782F7", "ip": "10.0.0.9", "port": 7000, "send": 8000, "receive": 9000}
+    ends = threading.Event()
+
+    def announce() -> None:
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sending:
+            while not ends.wait(0.1):
+                sending.sendto(json.dumps(told).encode(), ("127.0.0.1", at_port))
+
+    thread = threading.Thread(target=announce)
+    thread.start()
+    found = search([], at_port)
+    ends.set()
+    thread.join()
+    (one,) = found.sensors
+    assert (one.driver, one.name, one.place) == ("ximu3", "655782F7", "TCP 127.0.0.1:7000")
+
+
+@pytest.mark.parametrize(
+    "datagram", [b"", b"{", b"[]", b"[" * 2000, b'{"sn":5}', b'{"sn":"A"}', b'{"sn":"A","port":99999}', b"\xff\xfe"]
+)
+def test_another_datagram_is_no_sensor(datagram: bytes) -> None:
+    assert announcement(datagram, "127.0.0.1") is None
+
+
+def test_the_search_takes_a_second_or_two() -> None:
+    begin_s = time.monotonic()
+    assert search([], free_port()).sensors == ()
+    assert time.monotonic() - begin_s < 3.0
+
+
+def test_a_port_without_permission_names_the_group(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    def refuse(*_arguments: object, **_settings: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    (tmp_path / "port").touch()
+    monkeypatch.setattr(ports_module, "Serial", refuse)
+    monkeypatch.setattr(sys, "platform", "linux")
+    with pytest.raises(SourceRefusedError, match="only be used by members of the group") as refused:
+        SerialPort(PortInfo(str(tmp_path / "port"))).open()
+    assert "usermod -aG" in refused.value.remedy
+
+
+def test_a_port_is_found_again_by_what_is_plugged_in(emulated: list[PortInfo]) -> None:
+    before = PortInfo("/nowhere/ttyACM0", serial="S1", usb=(1, 2))
+    now = [PortInfo(emulated[1].device, serial="other", usb=(1, 2)), PortInfo(emulated[0].device, "", "S1", (1, 2))]
+    port = SerialPort(before, list_all=lambda: now)
+    port.open()
+    assert port.place == emulated[0].device
+    port.close()
+
+
+def test_ports_are_listed_and_more_can_be_told(monkeypatch: pytest.MonkeyPatch, emulated: list[PortInfo]) -> None:
+    monkeypatch.setenv(MORE_PORTS, f"{emulated[0].device}:/nowhere/at-all")
+    assert emulated[0].device in [port.device for port in list_ports()]
+    assert "/nowhere/at-all" not in [port.device for port in list_ports()]
+
+
+def test_every_driver_says_how_it_was_proved() -> None:
+    assert len({driver.key for driver in DRIVERS}) == len(DRIVERS)
+    assert all(len(driver.proof) > 40 for driver in DRIVERS)
