@@ -1,0 +1,189 @@
+"""Are streams of Lab Streaming Layer heard, understood and stamped right, and missed without harm?"""
+
+import builtins
+import sys
+import threading
+import time
+import uuid
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from core.samples import FloatArray
+from devices.host_clock import host_time_ns
+from devices.live import SourceLostError, SourceRefusedError
+from devices.lsl import LslSensor, LslSource, LslStream, find_streams, sensors_of
+
+AXES = ("x", "y", "z")
+SHIMMER = tuple(
+    f"Shimmer_{number}_{quantity}_{axis.upper()}_CAL"
+    for number in ("5E3A", "5E3B")
+    for quantity in ("Accel_LN", "Accel_WR", "Gyro")
+    for axis in AXES
+)
+SHIMMER_UNITS = (*["m/(s^2)"] * 6, *["deg/s"] * 3) * 2
+PLAIN = tuple(f"{quantity}_{axis}" for quantity in ("gyr", "acc") for axis in AXES)
+RATE_HZ = 200.0
+
+
+# labels and units
+
+
+def test_two_sensors_in_one_stream_are_told_apart_and_the_wide_range_is_taken() -> None:
+    first, second = sensors_of("Consensys", SHIMMER, SHIMMER_UNITS)
+    assert (first.name, second.name) == ("Shimmer_5E3A", "Shimmer_5E3B")
+    assert (first.force, first.rate) == ((3, 4, 5), (6, 7, 8))
+    assert second.rate == (15, 16, 17)
+    assert (first.rate_scale, first.force_scale) == (np.pi / 180, 1.0)
+
+
+@pytest.mark.parametrize("labels", [("GyroX", "GyroY", "GyroZ", "AccX", "AccY", "AccZ"), PLAIN])
+def test_a_stream_of_one_sensor_has_its_name(labels: tuple[str, ...]) -> None:
+    (sensor,) = sensors_of("left shank", labels, ["rad/s"] * 3 + ["g"] * 3)
+    assert sensor == LslSensor("left shank", (0, 1, 2), (3, 4, 5), 1.0, 9.80665)
+
+
+@pytest.mark.parametrize("units", [[], ["", "", "", "g", "g", "g"], ["deg/s"] * 2 + ["rad/s"] + ["g"] * 3])
+def test_units_that_are_not_told_are_not_guessed(units: list[str]) -> None:
+    with pytest.raises(SourceRefusedError, match="does not tell its units"):
+        sensors_of("s", PLAIN, units)
+
+
+@pytest.mark.parametrize("labels", [(), ("EEG1", "EEG2"), PLAIN[:3], ("gyr_x", "gyr_y", "acc_x", "acc_y", "acc_z")])
+def test_streams_of_something_else_are_refused(labels: tuple[str, ...]) -> None:
+    with pytest.raises(SourceRefusedError, match="has no channels of angular rate and acceleration"):
+        sensors_of("s", labels, ["deg/s"] * len(labels))
+
+
+def test_without_the_library_there_are_no_streams_and_the_refusal_says_what_to_do(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    found = builtins.__import__
+
+    def importing(name: str, *arguments: Any, **more: Any) -> Any:
+        if name.startswith("pylsl"):
+            raise ImportError(name)
+        return found(name, *arguments, **more)
+
+    monkeypatch.setattr(builtins, "__import__", importing)
+    monkeypatch.delitem(sys.modules, "pylsl", raising=False)
+    assert find_streams(0.0) == ()
+    with pytest.raises(SourceRefusedError, match="extra lsl"):
+        LslSource(LslStream("s", "IMU", "", "", None)).open()
+
+
+# real outlets on this machine
+
+
+class Outlet:
+    """Sends a sample every 5 ms, in a thread, stamped by a clock that is `offset_s` wrong and `skew` too fast.
+
+    The rate about x tells the sample's number, so that whoever hears it knows when it was taken.
+    """
+
+    def __init__(self, offset_s: float = 0.0, skew: float = 0.0, per_chunk: int = 1) -> None:
+        pylsl = pytest.importorskip("pylsl", reason="Lab Streaming Layer is an extra")
+        self.name = f"gaitwright test {uuid.uuid4()}"
+        info = pylsl.StreamInfo(self.name, "IMU", 6, RATE_HZ, pylsl.cf_double64, self.name)
+        info.set_channel_labels(list(PLAIN))
+        info.set_channel_units(["rad/s"] * 3 + ["m/s^2"] * 3)
+        self._clock = pylsl.local_clock
+        self._offset_s, self._skew, self._per_chunk = offset_s, skew, per_chunk
+        self._outlet = pylsl.StreamOutlet(info, chunk_size=per_chunk)
+        self._begin_s = self._clock()
+        self.host_begin_s = host_time_ns() / 1e9
+        self._is_closing = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+        self._thread.start()
+        if not pylsl.resolve_byprop("source_id", self.name, timeout=5.0):
+            self._is_closing.set()
+            pytest.skip("streams are not announced on this machine: it lets no multicast through")
+
+    def taken_s(self, number: FloatArray) -> FloatArray:
+        """When samples (n,) were taken, by the host's clock."""
+        return self.host_begin_s + number / RATE_HZ
+
+    def close(self) -> None:
+        self._is_closing.set()
+        self._thread.join()
+        del self._outlet
+
+    def _run(self) -> None:
+        number = 0
+        while not self._is_closing.is_set():
+            while (passed_s := number / RATE_HZ) <= self._clock() - self._begin_s:
+                stamp_s = self._begin_s + self._offset_s + passed_s * (1 + self._skew)
+                self._outlet.push_sample([float(number), 0.0, 0.0, 0.0, 0.0, 9.81], stamp_s)
+                number += 1
+            time.sleep(0.002)
+
+
+@pytest.fixture
+def outlets() -> Iterator[list[Outlet]]:
+    made: list[Outlet] = []
+    yield made
+    for one in made:
+        one.close()
+
+
+def opened(outlet: Outlet) -> LslSource:
+    (stream,) = [one for one in find_streams() if one.name == outlet.name]
+    source = LslSource(stream)
+    source.open()
+    return source
+
+
+def heard(sources: list[LslSource], seconds: float) -> list[tuple[FloatArray, FloatArray]]:
+    """Numbers and stamps of what each source gave."""
+    got: list[list[tuple[FloatArray, FloatArray]]] = [[] for _ in sources]
+    until_s = time.monotonic() + seconds
+    while time.monotonic() < until_s:
+        for source, pieces in zip(sources, got, strict=True):
+            for block in source.read(lambda _: None):
+                pieces.append((block.gyr_rad_s[:, 0], block.time_s))
+    return [
+        (np.concatenate([number for number, _ in pieces]), np.concatenate([time_s for _, time_s in pieces]))
+        for pieces in got
+    ]
+
+
+def assert_stamped(outlets: list[Outlet], seconds: float) -> None:
+    sources = [opened(outlet) for outlet in outlets]
+    try:
+        for outlet, source, (number, time_s) in zip(outlets, sources, heard(sources, seconds), strict=True):
+            assert np.array_equal(np.diff(number), np.ones(len(number) - 1))  # none lost, none twice
+            assert len(number) > 0.5 * seconds * RATE_HZ
+            wrong_s = (time_s - outlet.taken_s(number))[int(RATE_HZ / 2) :]
+            assert np.sqrt(np.mean(wrong_s**2)) < 0.002
+            told = source.told()[outlet.name]
+            assert (told.model, told.rate_hz) == ("IMU", RATE_HZ)
+            assert source.info.sensors == (outlet.name,)
+    finally:
+        for source in sources:
+            source.close()
+
+
+def test_a_stream_by_the_common_clock_and_one_three_seconds_wrong_are_stamped_alike(outlets: list[Outlet]) -> None:
+    outlets += [Outlet(), Outlet(offset_s=3.0, skew=200e-6, per_chunk=4)]
+    assert_stamped(outlets, 2.5)
+
+
+@pytest.mark.endurance
+def test_a_clock_that_drifts_is_followed_for_a_minute(outlets: list[Outlet]) -> None:
+    outlets += [Outlet(), Outlet(offset_s=3.0, skew=200e-6), Outlet(offset_s=-3.0, skew=-200e-6, per_chunk=8)]
+    assert_stamped(outlets, 60.0)
+
+
+def test_a_stream_that_ends_is_lost_and_then_not_there(outlets: list[Outlet], monkeypatch: pytest.MonkeyPatch) -> None:
+    outlets.append(Outlet())
+    source = opened(outlets[0])
+    heard([source], 0.3)
+    outlets.pop().close()
+    with pytest.raises(SourceLostError):
+        heard([source], 10.0)
+    source.close()
+    monkeypatch.setattr("devices.lsl.OPEN_S", 0.5)
+    with pytest.raises(SourceRefusedError, match="is not there"):
+        source.open()
