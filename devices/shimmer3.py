@@ -112,7 +112,7 @@ def calibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
 
 
 class Shimmer3Framer:
-    """See `devices.stream.Framer`."""
+    """See `devices.stream.Framer`. Without what an inquiry tells, nothing is understood."""
 
     def __init__(self, info: SourceInfo) -> None:
         self.heard = Heard()
@@ -120,26 +120,28 @@ class Shimmer3Framer:
         self._host_s = 0.0
         self._is_lost = False
         self._unwrapping, self._before = Unwrapping(TIME_BITS, TICK_HZ), 0
-        self._shape = _Shape(info.settings)
+        self._shape = _Shape(info.settings) if "channels" in info.settings else None
         self._last: int | None = None
         self._battery_raw = 0
 
     def feed(self, data: bytes, host_s: float) -> None:
         self._host_s = host_s
-        self._cut(self._held + data, is_end=False)
+        if self._shape is not None:
+            self._cut(self._shape, self._held + data, is_end=False)
 
     def flush(self) -> None:
-        self._cut(self._held, is_end=True)
+        if self._shape is not None:
+            self._cut(self._shape, self._held, is_end=True)
         self._held = b""
 
-    def _cut(self, held: bytes, is_end: bool) -> None:
-        at, size = 0, self._shape.size
+    def _cut(self, shape: "_Shape", held: bytes, is_end: bool) -> None:
+        at, size = 0, shape.size
         while len(held) - at >= size:
-            is_packet = self._is_packet(held, at, is_end)
+            is_packet = self._is_packet(shape, held, at, is_end)
             if is_packet is None:
                 break  # the next one tells
             if is_packet:
-                self._take(held, at)
+                self._take(shape, held, at)
                 at += size
             else:
                 self._pass_over(held[at])
@@ -149,9 +151,8 @@ class Shimmer3Framer:
                 self._pass_over(byte)
         self._held = held[at:]
 
-    def _is_packet(self, held: bytes, at: int, is_end: bool) -> bool | None:
+    def _is_packet(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
         """None: that cannot be told yet."""
-        shape = self._shape
         if held[at] != Command.PACKET:
             return False
         following = at + shape.size
@@ -165,19 +166,9 @@ class Shimmer3Framer:
             return is_due if is_end else None
         if held[following] == Command.PACKET and shape.is_step(_ticks(held, following) - ticks, shape.period):
             return True
-        return is_due and not self._is_cut(held, at, ticks)
+        return is_due and not shape.is_cut(held, at, ticks)
 
-    def _is_cut(self, held: bytes, at: int, ticks: int) -> bool:
-        """Whether the next packet begins within this one."""
-        start = held.find(Command.PACKET, at + 1, at + self._shape.size)
-        while start >= 0:
-            if self._shape.is_step(_ticks(held, start) - ticks, CUT_STEPS * self._shape.period):
-                return True
-            start = held.find(Command.PACKET, start + 1, at + self._shape.size)
-        return False
-
-    def _take(self, held: bytes, at: int) -> None:
-        shape = self._shape
+    def _take(self, shape: "_Shape", held: bytes, at: int) -> None:
         counter = _ticks(held, at)
         ticks = self._unwrapping.ticks(counter, self._host_s)
         if self._last is None:  # so that the clock goes on after a cut, although it begins anew every 512 s

@@ -153,6 +153,13 @@ def test_noise_alone_gives_next_to_nothing(has_checksum: bool) -> None:
     assert len(framer.heard.rows) <= 1
 
 
+def test_a_stream_whose_channels_nobody_told_is_not_understood() -> None:
+    framer = Shimmer3Framer(SourceInfo(DRIVER, VERSION))
+    framer.feed(streaming(True).sample(0), 0.0)
+    framer.flush()
+    assert framer.heard.rows == []
+
+
 # through a real port
 
 
