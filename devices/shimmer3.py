@@ -214,6 +214,15 @@ class _Shape:
         steps = (ticks + self._slack) // self.period
         return steps > 0 and ticks <= most + self._slack and ticks - steps * self.period <= self._slack
 
+    def is_cut(self, held: bytes, at: int, ticks: int) -> bool:
+        """Whether a later packet begins within the one at `at`, which was taken at `ticks`."""
+        start = held.find(Command.PACKET, at + 1, at + self.size)
+        while start >= 0:
+            if self.is_step(_ticks(held, start) - ticks, CUT_STEPS * self.period):
+                return True
+            start = held.find(Command.PACKET, start + 1, at + self.size)
+        return False
+
 
 def _vector(
     shape: str, place: int, offset: FloatArray, matrix: FloatArray
@@ -262,9 +271,11 @@ class Shimmer3:
         name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda said: 1 + said[0])[1:].decode("ascii", "replace")
         kind, major, minor, internal = struct.unpack("<HHBB", firmware)
         if not name or not all(talk.told(bytes(wish)) for wish in self._wishes()):
-            raise _unwilling(channel, "Plug it into its dock and out again, then search again")
+            raise _unwilling(channel, RESTART)
         calibration = talk.asked(Command.CALIBRATION, Command.CALIBRATION_ANSWER, lambda _: 4 * CALIBRATION_SIZE)
         inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda said: 8 + said[6])
+        if not calibration or not inquiry:
+            raise _unwilling(channel, RESTART)
         blocks = [calibration[k * CALIBRATION_SIZE :][:CALIBRATION_SIZE] for k in (GYR_CALIBRATION, ACC_CALIBRATION)]
         has_checksum = kind == 3 and (major, minor, internal) >= CHECKSUM_SINCE
         settings: dict[str, object] = {
@@ -348,6 +359,9 @@ class _Talk:
             if answer := found(said):
                 return answer
         return b""
+
+
+RESTART = "Plug it into its dock and out again, then search again"
 
 
 def _unwilling(channel: Channel, remedy: str) -> SourceRefusedError:
