@@ -89,13 +89,14 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     legs = {side: make_leg(settings, side) for side in Side}
     faults = {site: draw_faults(settings.errors, _rng(settings, 2, _index(site))) for site in settings.sites}
     start_faults = faults
-    mountings = _mount(settings, 0)
+    mountings, strapped = _mount(settings, 0), 0
     recordings: list[Recording] = []
     takes: list[Take] = []
     for number, wanted in enumerate(settings.recordings):
         if wanted.is_restrapped_before:
-            mountings = _mount(settings, number)
-        recording, take, faults = _take(settings, number, legs, mountings, faults)
+            mountings, strapped = _mount(settings, number), number
+        drawn = strapped if settings.is_tissue_steady else number
+        recording, take, faults = _take(settings, number, legs, mountings, faults, drawn)
         recordings.append(recording)
         takes.append(take)
     truth = tell_truth(settings, legs, takes, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
@@ -138,6 +139,7 @@ def _take(
     legs: Mapping[Side, Leg],
     mountings: Mapping[Site, Mounting],
     faults: Mapping[Site, SensorFaults],
+    tissue_drawn: int,
 ) -> tuple[Recording, Take, dict[Site, SensorFaults]]:
     """Recording `number`, how it was moved, and the sensors' faults at its end."""
     wanted = settings.recordings[number]
@@ -150,7 +152,7 @@ def _take(
         leg = motions[site.side]
         is_bare = legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
         tissue = Tissue.RIGID if is_bare else settings.tissue
-        poses = sensor_poses(leg, site, mountings[site], tissue, _rng(settings, 4, _index(site), number))
+        poses = sensor_poses(leg, site, mountings[site], tissue, _rng(settings, 4, _index(site), tissue_drawn))
         clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
         noise = _rng(settings, 8, _index(site), number)
         imu[site], bias = record(settings, site, clocks[site], leg.time_s, poses, faults[site], noise)
