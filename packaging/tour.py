@@ -1,16 +1,20 @@
-"""Walk through a whole session as a user would, with real keys or a real mouse: `python packaging/tour.py OUT`.
+"""Walk through whole sessions as a user would, with real keys or a real mouse: `python packaging/tour.py OUT`.
 
 Starts the application on a display of its own (Xvfb with openbox) and with a data folder of its own, which is gone
-afterwards. The window is worked by xdotool alone, from outside: `--hands keys` uses no mouse, `--hands mouse` uses keys
-only to type into fields. What is on the screen is told by the application's own process, and a picture of every stop is
-written into OUT. It exits with 1, naming the stop, when the session cannot be led to its end.
+afterwards. The window is worked by xdotool alone, from outside. `--keyboard` uses no mouse: from the first start, with
+a library of its own, to the saved results. `--mouse` uses keys for nothing, in the demonstration. What is on the screen
+is told by the application's own process, and pictures of every stop are written into OUT, a folder for each look. It
+exits with 1, naming the stop, when a session cannot be led to its end, or not in five minutes of the application's
+stopwatch.
 
-To change the tour change `STOPS`: each waits until the screen says what it should, takes a picture and acts.
+To change a tour change `KEYBOARD` or `MOUSE`: each stop waits until the screen says what it should, has its pictures
+taken and acts.
 """
 
 import argparse
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -27,12 +31,18 @@ from typing import IO, TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from PySide6.QtGui import QPixmap
     from PySide6.QtWidgets import QWidget
 
 ROOT = Path(__file__).resolve().parents[1]
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool"}  # and Debian's package of each
-SCREEN = "1920x1200x24"
-WINDOW = (1280, 800)
+SCREEN = "2000x1200x24"
+WINDOW = "1280x800@100"
+THEMES = ("light", "dark")
+CORNER = (20, 30)  # of the window on the display
+SETTLE_MS = 150
+TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
+MOST_S = 300.0  # of the application's stopwatch
 LOOK_EVERY_S = 0.2
 PATIENCE_S = 30.0
 MOST_TABS = 60  # more stops than any page has
@@ -49,6 +59,7 @@ class Seen:
     focus: str
     is_recording: bool
     banner: str
+    stopwatch_s: float
     words: tuple[str, ...]
     controls: Mapping[str, tuple[int, int]]
 
@@ -66,24 +77,26 @@ class Stop:
     Attributes
     ----------
     name
-        Of its picture.
+        Of its pictures.
     until
         What the screen must say before anything is done.
-    keys
-        Pressed one after the other, as xdotool names them; "type P-1" types P-1, and "to Stop" presses Tab until a
-        control whose name begins with Stop has the focus.
-    clicks
-        Controls that are clicked instead where the mouse has to do; the beginning of the name is enough.
+    does
+        One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
+        folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
+        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
     lingers_s
-        Before the picture, for what moves.
+        Before the pictures, for what moves.
     """
 
     name: str
     until: Callable[[Seen], bool]
-    keys: tuple[str, ...] = ()
-    clicks: tuple[str, ...] = ()
+    does: tuple[str, ...] = ()
     lingers_s: float = 0.5
     patience_s: float = PATIENCE_S
+
+
+def at(screen: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.screen == screen
 
 
 def at_step(step: str) -> Callable[[Seen], bool]:
@@ -94,29 +107,126 @@ def offers(*controls: str) -> Callable[[Seen], bool]:
     return lambda seen: all(seen.has(control) for control in controls)
 
 
-STOPS: tuple[Stop, ...] = (
-    Stop("01-first-start", lambda seen: seen.screen == "FirstStartPage", ("ctrl+d",), ("Look at the demonstration",)),
-    Stop("02-home", offers("New session"), ("Return",), ("New session",), lingers_s=1.0),
-    Stop("03-patient", offers("Put on sensors"), ("Return",), ("Put on sensors",), lingers_s=1.0),
-    Stop("04-source", at_step("SensorsStep"), ("to Simulated patient", "Return"), ("Simulated patient",)),
-    Stop("05-sensors", offers("Movement decides"), ("to Drag", "Right", "Right"), ("Movement decides",), lingers_s=5.0),
-    Stop("06-placed", offers("Stand still"), ("to Stand still", "Return"), ("Stand still",), lingers_s=1.0),
-    Stop("07-stand-still", at_step("StandStillStep"), ("space",), ("Start the count",), lingers_s=1.0),
-    Stop("08-standing", lambda seen: seen.is_recording, lingers_s=1.5),
-    Stop("09-free-motion", at_step("FreeMotionStep"), lingers_s=6.0),
-    Stop("09-which-leg", lambda seen: seen.says("Which one wears"), ("to Left", "Return"), ("Left",), patience_s=60.0),
-    Stop("10-walking", at_step("WalkingStep"), ("space",), ("Start walk",), lingers_s=1.0, patience_s=90.0),
-    Stop("11-recording", lambda seen: seen.is_recording, lingers_s=20.0),
-    Stop("12-still-recording", lambda seen: seen.is_recording, ("space",), ("Stop walk",)),
-    Stop("13-keep", offers("Keep"), ("k",), ("Keep",), lingers_s=1.0),
-    Stop("14-kept", offers("Start"), ("ctrl+6",), ("Step 6",)),
-    Stop("15-results", lambda seen: at_step("ResultsStep")(seen) and seen.has("Mean cycle"), lingers_s=2.0),
-    Stop("16-report", at_step("ResultsStep"), ("ctrl+7",), ("Step 7",)),
-    Stop("17-help", at_step("ReportStep"), ("F1",), ("Help",), lingers_s=1.0),
-    Stop("18-manual", offers("Search the help"), ("Escape",), ("Back",), lingers_s=1.0),
-    Stop("19-leave", at_step("ReportStep"), ("to Step 7", "Down", "Return"), ("All patients",)),
-    Stop("20-home-again", offers("New session"), lingers_s=1.0),
+def says(words: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.says(words)
+
+
+def is_recording(seen: Seen) -> bool:
+    return seen.is_recording
+
+
+def has_walked(strides: int) -> Callable[[Seen], bool]:
+    """Whether so many strides are counted of the walk that is being recorded."""
+
+    def counted(seen: Seen) -> bool:
+        if not seen.is_recording or "Strides" not in seen.words:
+            return False
+        figure = seen.words[seen.words.index("Strides") + 1]
+        return figure.isdigit() and int(figure) >= strides
+
+    return counted
+
+
+PASSPHRASE = "seven quiet herons cross"
+STRIDES = 13  # the simulated patient takes 14 steps with each foot
+PLACES = {
+    "DEMO-09": "L thigh",
+    "DEMO-17": "R thigh",
+    "DEMO-1B": "R shank",
+    "DEMO-22": "R foot",
+    "DEMO-2C": "L foot",
+    "DEMO-31": "L shank",
+}
+DIGITS = {"L thigh": 1, "L shank": 2, "L foot": 3, "R thigh": 4, "R shank": 5, "R foot": 6}
+PLACED_BY_KEYS = tuple(key for place in PLACES.values() for key in (f"press {DIGITS[place]}", "press Down"))
+PLACED_BY_MOUSE = tuple(f"drag {sensor} to {place}" for sensor, place in PLACES.items())
+
+
+def walk(number: int, starts: tuple[str, ...], stops: str) -> tuple[Stop, ...]:
+    """Give the stops of one walk."""
+    return (
+        Stop(f"{number + 9:02d}a-choose", offers("Barefoot"), starts, lingers_s=1.0, patience_s=90.0),
+        Stop(f"{number + 9:02d}b-walking", has_walked(6), patience_s=60.0),
+        Stop(f"{number + 9:02d}c-walked", has_walked(STRIDES), (stops,), patience_s=60.0),
+    )
+
+
+KEYBOARD: tuple[Stop, ...] = (
+    Stop(
+        "01-first-start",
+        at("FirstStartPage"),
+        (
+            "type TM",
+            "press Tab",
+            "type Tour Guide",
+            "press Tab",
+            f"type {PASSPHRASE}",
+            "press Tab",
+            f"type {PASSPHRASE}",
+        ),
+    ),
+    Stop("02-typed", at("FirstStartPage"), ("press Return",)),
+    Stop("03-recovery-key", says("Your recovery key"), ("to Type it back", "copy key")),
+    Stop("04-typed-back", says("Your recovery key"), ("press Return",)),
+    Stop("05-home", offers("New patient"), ("press ctrl+n",), lingers_s=1.0),
+    Stop(
+        "06-patient",
+        at_step("PatientStep"),
+        ("type DEMO-7", "to Birth year", "type 1990", "to Height", "type 178", "to Mass", "type 74"),
+        lingers_s=1.0,
+    ),
+    Stop("07-patient-typed", offers("Put on sensors"), ("press Return",), lingers_s=1.0),
+    Stop("07a-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
+    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_KEYS, lingers_s=5.0),
+    Stop("07c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+    Stop("08a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("08b-standing", is_recording, lingers_s=1.5),
+    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(1, ("press 1", "press space"), "press space"),
+    Stop("10d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    *walk(2, ("press 2", "press space"), "press space"),
+    *walk(3, ("press 4", "press space"), "press space"),  # kept, and the next begun, by one key
+    Stop("12d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("12e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("13a-results", offers("Mean cycle"), ("to Mean cycle", "press Right"), lingers_s=2.0, patience_s=60.0),
+    Stop("13b-whole-walk", offers("Mean cycle"), ("press Right",), lingers_s=2.0),
+    Stop("13c-figures", offers("Mean cycle"), ("press Right",), lingers_s=1.0),
+    Stop("13d-findings", offers("Mean cycle"), ("press ctrl+7",), lingers_s=1.0),
+    Stop("14a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0),
+    Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("14c-saved", says("results are saved"), ("press F1",), lingers_s=1.0),
+    Stop("15-manual", offers("Search the help"), ("press Escape",), lingers_s=1.0),
+    Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
+    Stop("17-home-again", offers("New session"), lingers_s=1.0),
 )
+MOUSE: tuple[Stop, ...] = (
+    Stop("01-first-start", at("FirstStartPage"), ("click Look at the demonstration",)),
+    Stop("05-home", offers("New session"), ("click New session",), lingers_s=1.0),
+    Stop("06-patient", offers("Put on sensors"), ("click Put on sensors",), lingers_s=1.0),
+    Stop("07a-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
+    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_MOUSE, lingers_s=5.0),
+    Stop("07c-placed", says("All six are worn"), ("click Stand still",), lingers_s=1.0),
+    Stop("08a-stand-still", at_step("StandStillStep"), ("click Start the count",), lingers_s=1.0),
+    Stop("08b-standing", is_recording, lingers_s=1.5),
+    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(1, ("click Barefoot", "click Start walk"), "click Stop walk"),
+    Stop("10d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
+    *walk(2, ("click Shoes", "click Start walk"), "click Stop walk"),
+    *walk(3, ("click Alignment A", "click Keep, start next"), "click Stop walk"),
+    Stop("12d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
+    Stop("12e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
+    Stop("13a-results", offers("Mean cycle"), ("click Whole walk",), lingers_s=2.0, patience_s=60.0),
+    Stop("13b-whole-walk", offers("Mean cycle"), ("click Figures",), lingers_s=2.0),
+    Stop("13c-figures", offers("Mean cycle"), ("click Findings",), lingers_s=1.0),
+    Stop("13d-findings", offers("Mean cycle"), ("click Go to the report",), lingers_s=1.0),
+    Stop("14a-report", at_step("ReportStep"), ("click Save the results",), lingers_s=1.0),
+    Stop("14b-where", offers("Save"), ("click Save",), lingers_s=1.0),
+    Stop("14c-saved", says("results are saved"), ("click Help",), lingers_s=1.0),
+    Stop("15-manual", offers("Search the help"), ("click Back",), lingers_s=1.0),
+    Stop("16-leave", at_step("ReportStep"), ("click All patients",)),
+    Stop("17-home-again", offers("New session"), lingers_s=1.0),
+)
+TOURS = {"keyboard": KEYBOARD, "mouse": MOUSE}
 
 
 class TourError(Exception):
@@ -129,6 +239,7 @@ class Application:
 
     process: subprocess.Popen[str]
     display: str
+    home: Path
 
     def ask(self, command: str) -> dict[str, Any]:
         if self.process.stdin is None or self.process.stdout is None or self.process.poll() is not None:
@@ -141,11 +252,13 @@ class Application:
         raise TourError("The application has ended.")
 
     def seen(self) -> Seen:
-        told = self.ask("look")
+        told = self.ask("tell")
         controls = {name: (x, y) for name, (x, y) in told.pop("controls").items()}
         return Seen(**{**told, "words": tuple(told["words"]), "controls": controls})
 
-    def picture(self, file: Path) -> None:
+    def picture(self, look: str, file: Path) -> None:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        self.ask(f"look {look}")
         self.ask(f"picture {file}")
 
     def hand(self, *arguments: str) -> None:
@@ -156,9 +269,18 @@ class Application:
 def main(arguments: list[str]) -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("out", metavar="OUT", type=Path, help="the folder for the pictures")
-    parser.add_argument("--hands", choices=["keys", "mouse"], default="keys")
-    parser.add_argument("--theme", choices=["light", "dark"], default="light")
-    parser.add_argument("--size", type=int, nargs=2, default=WINDOW, metavar=("WIDTH", "HEIGHT"))
+    hands = parser.add_mutually_exclusive_group()
+    for tour in TOURS:
+        hands.add_argument(f"--{tour}", action="store_const", const=tour, dest="tour", help=f"by {tour} alone")
+    parser.add_argument("--theme", choices=[*THEMES, "both"], default="both", help="of the pictures")
+    parser.add_argument(
+        "--sizes",
+        nargs="+",
+        default=[WINDOW],
+        metavar="SIZE",
+        help=f"of the pictures: window and size of everything, as {WINDOW}; the first is the one that is worked with",
+    )
+    parser.add_argument("--trace", type=Path, metavar="FILE", help="note there, by strace, whom the application calls")
     parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)  # this is the application's process
     wanted = parser.parse_args(arguments)
     if wanted.inside:
@@ -166,53 +288,96 @@ def main(arguments: list[str]) -> None:
     missing = [package for program, package in PROGRAMS.items() if shutil.which(program) is None]
     if missing:
         sys.exit(f"The tour needs a display and hands. Install {', '.join(missing)}, then start again.")
-    wanted.out.mkdir(parents=True, exist_ok=True)
-    begun_s = time.monotonic()
-    with ExitStack() as stack:
-        display = stack.enter_context(_display())
-        application = stack.enter_context(_application(display, wanted.theme, tuple(wanted.size)))
-        try:
-            lead(application, wanted.out.resolve(), STOPS, uses_mouse=wanted.hands == "mouse")
-        except TourError as end:
-            sys.exit(str(end))
-    print(f"{len(STOPS)} stops by {wanted.hands} alone in {time.monotonic() - begun_s:.0f} s. Pictures: {wanted.out}")
+    themes = THEMES if wanted.theme == "both" else (wanted.theme,)
+    looks = [f"{theme} {size}" for size in wanted.sizes for theme in themes]
+    for tour in [wanted.tour] if wanted.tour else list(TOURS):
+        with ExitStack() as stack:
+            display = stack.enter_context(_display())
+            application = stack.enter_context(_application(display, wanted.trace))
+            try:
+                stopwatch_s = lead(application, TOURS[tour], wanted.out.resolve(), looks)
+            except TourError as end:
+                sys.exit(str(end))
+        print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
 
 
-def lead(application: Application, out: Path, stops: Sequence[Stop], *, uses_mouse: bool) -> None:
-    """Go from stop to stop.
+def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> float:
+    """Go from stop to stop, and give what the application's own stopwatch says of the session.
+
+    Parameters
+    ----------
+    looks
+        Of the pictures: theme, window and size of everything, as "dark 1280x800@100". The first is worked with.
 
     Raises
     ------
     TourError
-        A stop was not reached in time.
+        A stop was not reached in time, or the session took too long.
     """
+    stopwatch_s = 0.0
+    application.ask(f"look {looks[0]}")
     for stop in stops:
-        _wait_for(application, stop)
+        seen = _wait_for(application, stop)
+        stopwatch_s = max(stopwatch_s, seen.stopwatch_s)
         time.sleep(stop.lingers_s)
-        application.picture(out / f"{stop.name}.png")
-        if uses_mouse:
-            for control in stop.clicks:
-                _click(application, stop, control)
-        else:
-            for key in stop.keys:
-                _press(application, stop, key)
+        for look in looks:
+            application.picture(look, out / look.replace(" ", "-") / f"{stop.name}.png")
+        if len(looks) > 1:
+            application.ask(f"look {looks[0]}")
+        for deed in stop.does:
+            _do(application, stop, deed)
+    if stopwatch_s > MOST_S:
+        raise TourError(f"The session took {stopwatch_s:.0f} s of the application's stopwatch, {MOST_S:.0f} s at most.")
+    return stopwatch_s
 
 
-def _press(application: Application, stop: Stop, key: str) -> None:
-    verb, _, words = key.partition(" ")
-    if not words:
-        application.hand("key", key)
-    elif verb == "type":
-        application.hand("type", "--delay", "40", words)
-    else:
-        for _ in range(MOST_TABS):
-            if application.seen().focus.startswith(words):
-                break
-            application.hand("key", "Tab")
-            time.sleep(KEY_PAUSE_S)
-        else:
-            raise TourError(f"{stop.name}: Tab never comes to “{words}”.\n{_in_words(application.seen())}")
+def _do(application: Application, stop: Stop, deed: str) -> None:
+    verb, _, words = deed.partition(" ")
+    match verb:
+        case "press":
+            application.hand("key", words)
+        case "type":
+            application.hand("type", "--delay", "40", words.format(home=application.home))
+        case "copy":
+            application.hand("type", "--delay", "20", _recovery_key(application.seen()))
+        case "to":
+            _tab_to(application, stop, words)
+        case "click":
+            application.hand("mousemove", *_place_of(application, stop, words), "click", "1")
+        case "drag":
+            what, _, where = words.partition(" to ")
+            _drag(application, _place_of(application, stop, what), _place_of(application, stop, where))
     time.sleep(KEY_PAUSE_S)
+
+
+def _recovery_key(seen: Seen) -> str:
+    """What a user would copy from the paper: groups of letters and figures, in lines."""
+    for words in seen.words:
+        groups = words.split()
+        if len(groups) > 4 and all(re.fullmatch("[0-9A-Z]{1,4}", group) for group in groups):
+            return "-".join(groups)
+    raise TourError(f"No recovery key is shown.\n{_in_words(seen)}")
+
+
+def _tab_to(application: Application, stop: Stop, name: str) -> None:
+    for _ in range(MOST_TABS):
+        if application.seen().focus.startswith(name):
+            return
+        application.hand("key", "Tab")
+        time.sleep(KEY_PAUSE_S)
+    raise TourError(f"{stop.name}: Tab never comes to “{name}”.\n{_in_words(application.seen())}")
+
+
+def _drag(application: Application, start: tuple[str, str], end: tuple[str, str]) -> None:
+    """As a hand does: not at once."""
+    (x0, y0), (x1, y1) = ((int(x), int(y)) for x, y in (start, end))
+    application.hand("mousemove", *start, "mousedown", "1")
+    for share in (0.05, 0.1, 0.4, 0.7, 0.95, 1.0, 1.0):
+        time.sleep(KEY_PAUSE_S)
+        application.hand("mousemove", str(round(x0 + share * (x1 - x0))), str(round(y0 + share * (y1 - y0))))
+    time.sleep(KEY_PAUSE_S)
+    application.hand("mouseup", "1")
+    time.sleep(3 * KEY_PAUSE_S)
 
 
 def _wait_for(application: Application, stop: Stop) -> Seen:
@@ -226,17 +391,14 @@ def _wait_for(application: Application, stop: Stop) -> Seen:
         time.sleep(LOOK_EVERY_S)
 
 
-def _click(application: Application, stop: Stop, control: str) -> None:
+def _place_of(application: Application, stop: Stop, control: str) -> tuple[str, str]:
     until_s = time.monotonic() + stop.patience_s
     while True:
-        found = [at for name, at in application.seen().controls.items() if name.startswith(control)]
+        found = [place for name, place in application.seen().controls.items() if name.startswith(control)]
         if found:
-            x, y = found[0]
-            application.hand("mousemove", str(x), str(y), "click", "1")
-            time.sleep(KEY_PAUSE_S)
-            return
+            return str(found[0][0]), str(found[0][1])
         if time.monotonic() > until_s:
-            raise TourError(f"{stop.name}: nothing to click is called “{control}”.\n{_in_words(application.seen())}")
+            raise TourError(f"{stop.name}: nothing in sight is called “{control}”.\n{_in_words(application.seen())}")
         time.sleep(LOOK_EVERY_S)
 
 
@@ -271,7 +433,7 @@ def _display() -> "Iterator[str]":
 
 
 @contextmanager
-def _application(display: str, theme: str, size: tuple[int, int]) -> "Iterator[Application]":
+def _application(display: str, trace: Path | None) -> "Iterator[Application]":
     with tempfile.TemporaryDirectory(prefix="gaitwright-tour-") as folder:
         places = {
             name: str(Path(folder) / name.lower())
@@ -280,16 +442,18 @@ def _application(display: str, theme: str, size: tuple[int, int]) -> "Iterator[A
         environment = {**os.environ, **places, "DISPLAY": display, "QT_QPA_PLATFORM": "xcb"}
         for place in places.values():
             Path(place).mkdir()
+        tracer = [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
         process = subprocess.Popen(
-            [sys.executable, __file__, "--inside", "."],
+            [*tracer, sys.executable, str(Path(__file__).resolve()), "--inside", "."],
+            cwd=places["HOME"],  # where dialogs begin
             env=environment,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
         )
-        application = Application(process, display)
+        application = Application(process, display, Path(places["HOME"]))
         try:
-            application.ask(f"begin {theme} {size[0]} {size[1]}")
+            application.ask("begin")
             yield application
             application.ask("end")
             process.wait(timeout=PATIENCE_S)
@@ -342,46 +506,96 @@ def _answer(command: str) -> None:
     told: dict[str, Any] = {}
     match verb:
         case "begin":
-            window._look.set_dark(rest[0] == "dark")
-            window.move(40, 40)
-            window.resize(int(rest[1]), int(rest[2]))
+            window.move(*CORNER)
             window.activateWindow()
         case "look":
-            told = _look_at(window)
+            _take_look(window, *rest)
         case "picture":
-            window.grab().save(rest[0])
+            _picture_of(window).save(rest[0])
+        case "tell":
+            told = _look_at(window)
         case "end":
             window.close()
     print(f"tour: {json.dumps(told)}", flush=True)
 
 
-def _look_at(window: "QWidget") -> dict[str, Any]:
-    from PySide6.QtWidgets import QAbstractButton, QAbstractItemView, QApplication, QComboBox, QLabel, QLineEdit
+def _take_look(window: Any, theme: str, size: str) -> None:
+    """Show the window in this theme and size, and let it settle."""
+    from PySide6.QtTest import QTest
 
-    screen = window.screens.currentWidget()  # type: ignore[attr-defined]  # of the main window
+    look, (side, scale) = window._look, size.split("@")
+    width, height = (int(one) for one in side.split("x"))
+    if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
+        look.set_dark(theme == "dark")
+        look.set_scale(int(scale) / 100)
+    if (window.width(), window.height()) != (width, height):
+        window.resize(width, height)
+        QTest.qWait(SETTLE_MS)
+    QTest.qWait(SETTLE_MS)
+
+
+def _picture_of(window: Any) -> "QPixmap":
+    """What is in sight, an open dialog over the window included."""
+    from PySide6.QtGui import QPainter
+    from PySide6.QtWidgets import QApplication
+
+    picture: QPixmap = window.grab()
+    dialog = QApplication.activeModalWidget()
+    if dialog is not None:
+        painter = QPainter(picture)
+        painter.drawPixmap(window.mapFromGlobal(dialog.mapToGlobal(dialog.rect().topLeft())), dialog.grab())
+        painter.end()
+    return picture
+
+
+def _look_at(window: Any) -> dict[str, Any]:
+    from PySide6.QtWidgets import (
+        QAbstractButton,
+        QAbstractItemView,
+        QApplication,
+        QComboBox,
+        QLabel,
+        QLineEdit,
+        QWidget,
+    )
+
+    screen = window.screens.currentWidget()
     step = getattr(screen, "current", None)
+    visit = getattr(screen, "visit", None)
     focus = QApplication.focusWidget()
+    front = QApplication.activeModalWidget() or window
     controls: dict[str, tuple[int, int]] = {}
     words = []
-    for widget in window.findChildren(QLabel):
-        if widget.isVisible() and widget.text():
+    for widget in front.findChildren(QWidget):
+        if not widget.isVisible():
+            continue
+        if isinstance(widget, QLabel):
             words.append(widget.text())
-    for kind in (QAbstractButton, QComboBox, QLineEdit, QAbstractItemView):
-        for control in window.findChildren(kind):
-            name = control.accessibleName()
-            seen = control.visibleRegion().boundingRect()
-            if name and control.isVisible() and control.isEnabled() and not seen.isEmpty():
-                middle = control.mapToGlobal(seen.center())
+        elif isinstance(widget, QAbstractButton | QComboBox | QLineEdit | QAbstractItemView):
+            seen = widget.visibleRegion().boundingRect()
+            if (name := _name_of(widget)) and widget.isEnabled() and not seen.isEmpty():
+                middle = widget.mapToGlobal(seen.center())
                 controls.setdefault(name, (middle.x(), middle.y()))
+        elif widget.accessibleName():
+            words.append(widget.accessibleName())
     return {
         "screen": type(screen).__name__,
         "step": type(step).__name__ if step is not None else "",
-        "focus": focus.accessibleName() if focus is not None else "",
+        "focus": _name_of(focus) if focus is not None else "",
         "is_recording": bool(getattr(screen, "is_recording", False)),
         "banner": next((b.text for b in _banners(window) if b.isVisible()), ""),
+        "stopwatch_s": visit.elapsed_s if visit is not None else 0.0,
         "words": words,
         "controls": controls,
     }
+
+
+def _name_of(widget: "QWidget") -> str:
+    """By its accessible name, or as a native dialog's button is read."""
+    from PySide6.QtWidgets import QAbstractButton
+
+    said = widget.text().replace("&", "") if isinstance(widget, QAbstractButton) else ""
+    return widget.accessibleName() or said
 
 
 def _banners(window: "QWidget") -> list[Any]:
