@@ -5,12 +5,16 @@ from dataclasses import dataclass
 
 from devices.csv_serial import DRIVER as CSV
 from devices.csv_serial import CsvSerial
+from devices.shimmer3 import DRIVER as SHIMMER3
+from devices.shimmer3 import Shimmer3
 from devices.source import StreamDecoder
 from devices.stream import Decoder, Dialect
 from devices.witmotion import DRIVER as WITMOTION
 from devices.witmotion import WitMotion
 from devices.ximu3 import DRIVER as XIMU3
 from devices.ximu3 import Ximu3
+from devices.xsens_mti import DRIVER as XSENS_MTI
+from devices.xsens_mti import XsensMti
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,5 +69,25 @@ DRIVERS = (
         "lines of numbers over a serial port",
         "By an emulator on a pseudo-terminal and damaged streams. What the columns mean has to be told.",
         lambda: Decoder(CsvSerial()),
+    ),
+    Driver(
+        XSENS_MTI,
+        "Xsens MTi",
+        "Five recorded streams are read to the last digit as another program read them, and it speaks with our "
+        "emulator on a pseudo-terminal. No hardware was at hand.",
+        lambda: Decoder(XsensMti()),
+        XsensMti,
+        (115200, 921600),
+        "MTi",
+    ),
+    Driver(
+        SHIMMER3,
+        "Shimmer3, LogAndStream",
+        "By the published protocol and the checksums that the firmware tests itself with, an emulator on a "
+        "pseudo-terminal and damaged streams. No recorded stream and no hardware was at hand.",
+        lambda: Decoder(Shimmer3()),
+        Shimmer3,
+        (115200,),
+        "Shimmer3",
     ),
 )

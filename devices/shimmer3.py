@@ -21,7 +21,7 @@ from devices.channels import Channel
 from devices.clock import Unwrapping
 from devices.live import SensorTold, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Decoder, Heard
+from devices.stream import Heard
 
 DRIVER, VERSION = "shimmer3", "1"
 EMULATED = "emulated Shimmer3"  # what our own emulator is called
@@ -366,7 +366,3 @@ RESTART = "Plug it into its dock and out again, then search again"
 
 def _unwilling(channel: Channel, remedy: str) -> SourceRefusedError:
     return SourceRefusedError(f"The Shimmer3 at {channel.place} did not take its settings", remedy)
-
-
-def decoder() -> Decoder:
-    return Decoder(Shimmer3())

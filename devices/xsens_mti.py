@@ -14,7 +14,7 @@ from devices.channels import Channel
 from devices.clock import Unwrapping
 from devices.live import SensorTold, SourceRefusedError
 from devices.source import SourceInfo
-from devices.stream import Decoder, Heard, Row, ask
+from devices.stream import Heard, Row, ask
 from devices.xbus import (
     AXES_MASK,
     ITEM_MASK,
@@ -176,7 +176,3 @@ class XsensMti:
 def _asked(channel: Channel, framer: MtiFramer, mid: int, data: bytes = b"") -> bytes:
     """The answer to a request, identifier first; empty where none comes."""
     return ask(channel, framer, message(mid, data), lambda reply: reply[0] in (mid + 1, Mid.ERROR), ANSWERS_S)
-
-
-def decoder() -> Decoder:
-    return Decoder(XsensMti())

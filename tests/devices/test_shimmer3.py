@@ -14,9 +14,9 @@ from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, FIRST_TICKS, G
 from devices.emulators.transports import Emulation, Terminal
 from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo, SerialPort
-from devices.shimmer3 import DRIVER, EMULATED, VERSION, Shimmer3, Shimmer3Framer, calibrating, checksum, decoder
+from devices.shimmer3 import DRIVER, EMULATED, VERSION, Shimmer3, Shimmer3Framer, calibrating, checksum
 from devices.source import SourceInfo
-from devices.stream import ByteSource
+from devices.stream import ByteSource, Decoder
 from tests.devices.scripted import ScriptedChannel
 
 PERIOD = 320
@@ -88,7 +88,7 @@ def test_answers_between_packets_are_no_damage() -> None:
 
 @pytest.mark.parametrize("seconds", [3.0, 700.0])
 def test_what_is_missing_is_counted_by_the_clock_even_where_it_begins_anew(seconds: float) -> None:
-    voice, decoding = streaming(True), decoder()
+    voice, decoding = streaming(True), Decoder(Shimmer3())
     missing = round(seconds * 32768 / PERIOD)
     decoding.begin(info(has_checksum=True))
     for number in [*range(500), *range(500 + missing, 1000 + missing)]:
@@ -203,7 +203,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
     assert (told.model, told.rate_hz) == ("Shimmer3", 204.8)
     assert told.battery == pytest.approx(0.48, abs=0.02)
     live = np.concatenate([block.gyr_rad_s for block in blocks + more])
-    again = decoder()
+    again = Decoder(Shimmer3())
     again.begin(source.info)
     for number, data in enumerate(kept + kept_more):
         again.feed(data, number * 0.015)

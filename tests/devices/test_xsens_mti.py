@@ -19,9 +19,9 @@ from devices.emulators.xsens_mti import MtiVoice, sample
 from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor, SourceInfo
-from devices.stream import ByteSource
+from devices.stream import ByteSource, Decoder
 from devices.xbus import Framer, Item, Mid, item, message, values
-from devices.xsens_mti import DRIVER, EMULATED, VERSION, MtiFramer, XsensMti, decoder
+from devices.xsens_mti import DRIVER, EMULATED, VERSION, MtiFramer, XsensMti
 from tests.devices.scripted import ScriptedChannel
 
 CAPTURES = range(1, 6)
@@ -175,7 +175,7 @@ def test_without_a_fine_time_the_counter_tells_it_even_where_it_begins_anew() ->
 
 def decoded(data: bytes) -> DecodedSensor:
     """Decode a recorded stream that came as evenly as it was sent."""
-    decoding = decoder()
+    decoding = Decoder(XsensMti())
     decoding.begin(INFO)
     for number, one in enumerate(Framer().feed(data)):
         decoding.feed(message(one.mid, one.data), 100.0 + 0.01 * number)
@@ -185,7 +185,7 @@ def decoded(data: bytes) -> DecodedSensor:
 def test_a_sensor_that_counts_on_after_a_gap_has_lost_what_is_missing() -> None:
     voice = MtiVoice("0123")
     numbers = [number for number in range(300) if not 100 <= number < 130 and number != 200]
-    one = decoder()
+    one = Decoder(XsensMti())
     one.begin(INFO)
     for number in numbers:
         one.feed(sample(voice, number), number / 100.0)
@@ -283,7 +283,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(
     assert (told.model, told.firmware, told.rate_hz) == (EMULATED, "1.8.2", 200.0)
     assert told.rate_kind is RateKind.AVERAGED
     live = np.concatenate([block.gyr_rad_s for block in blocks])
-    again = decoder()
+    again = Decoder(XsensMti())
     again.begin(source.info)
     for number, data in enumerate(kept):
         again.feed(data, number * 0.015)
