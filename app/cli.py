@@ -17,6 +17,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
+from app.compare_command import add_compare_arguments, compare
+from app.export_command import add_export_arguments, export
 from app.library_commands import LibrarySession, add_key_arguments, default_folder
 from app.logs import log_folder, start_logging, version_of
 
@@ -35,7 +37,7 @@ METHODS = ("robust", "published")
 KINDS = ("standing", "free_motion", "walking")
 PAPERS = ("a4", "letter")  # as app.reports.patient_report.request has them
 FORMATS = ("xsens-mtmanager",)
-SUBCOMMANDS = ("analyse", "demo", "import", "recover", "audit")
+SUBCOMMANDS = ("analyse", "demo", "report", "compare", "export", "import", "recover", "audit")
 OF_LIBRARY = "the folder of the library (your own)"
 
 
@@ -116,6 +118,8 @@ def _parser() -> argparse.ArgumentParser:
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
     _add_report(commands.add_parser("report", help="make the report of a session as a PDF"))
+    _add_compare(commands.add_parser("compare", help="tell what differs between conditions or sessions"))
+    _add_export(commands.add_parser("export", help="write results for other programs"))
     _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
@@ -183,6 +187,16 @@ def _add_report(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")
     parser.add_argument("--paper", type=_one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
     parser.set_defaults(run=_report)
+
+
+def _add_compare(parser: argparse.ArgumentParser) -> None:
+    add_compare_arguments(parser, _session)
+    parser.set_defaults(run=_compare)
+
+
+def _add_export(parser: argparse.ArgumentParser) -> None:
+    add_export_arguments(parser, _session)
+    parser.set_defaults(run=_export)
 
 
 def _add_import(parser: argparse.ArgumentParser) -> None:
@@ -320,6 +334,18 @@ def _report(wanted: argparse.Namespace) -> None:
         request = ReportRequest(visit, walks, now, version, comment, paper=wanted.paper, earlier=earlier)
         replace_report(make_report(request), wanted.out)
     print(f"{wanted.out}: the report of {', '.join(walks)}.")
+
+
+def _compare(wanted: argparse.Namespace) -> None:
+    with _Progress(sys.stderr) as progress:
+        lines = compare(wanted, progress)
+    print(*lines, sep="\n")
+
+
+def _export(wanted: argparse.Namespace) -> None:
+    with _Progress(sys.stderr) as progress:
+        lines = export(wanted, progress)
+    print(*lines, sep="\n")
 
 
 def _comment(file: Path | None) -> str:

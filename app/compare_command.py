@@ -1,0 +1,117 @@
+"""`gaitwright compare`: what differs between conditions or sessions, as a table on the terminal and as a CSV file."""
+
+import argparse
+import math
+from collections.abc import Callable, Iterator, Sequence
+from itertools import groupby
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.library_commands import LibrarySession, add_key_arguments, default_folder, read_library_session
+from devices.files.refusal import FileRefusedError, one_line
+
+if TYPE_CHECKING:
+    from app.reports.differences import Row, Told
+    from core.samples import Session
+
+DIFFERENCES = "differences.csv"
+FLAGS = {  # as core.norms.Verdict and app.reports.differences have them
+    "exceeds_error": "beyond measurement error",
+    "inside_error": "inside measurement error",
+    "too_few_strides": "too few strides",
+    "no_published_figure": "not judged",
+    "no_common_zero": "no common zero",
+}
+
+Report = Callable[[float, str], None]
+
+
+def add_compare_arguments(parser: argparse.ArgumentParser, session: Callable[[str], Path | LibrarySession]) -> None:
+    parser.description = (
+        "Tell the differences between the conditions of a session, or between sessions, and which of them are inside "
+        "the measurement error."
+    )
+    help_text = (
+        "session folders, results with their session inside, or library:ID; the first is what others differ from"
+    )
+    parser.add_argument("sessions", metavar="SESSION", type=session, nargs="+", help=help_text)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help=f"the folder for {DIFFERENCES}")
+
+
+def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
+    """Write the table and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        A session cannot be read, nothing can be compared, or something else stands at OUT.
+    OSError
+        The table cannot be written.
+    """
+    from app.reports.differences import pairs, rows_of, write_differences
+    from app.reports.patient_report.request import Visit
+    from app.reports.result_folder import written_beside
+    from core.analysis import analyse
+
+    _check_place(wanted.out)
+    visits = []
+    for number, place in enumerate(wanted.sessions):
+
+        def told(share: float, what: str, number: int = number) -> None:
+            report((number + share) / len(wanted.sessions), what)
+
+        session = _read(wanted, place, told)
+        visits.append(Visit(session, analyse(session, progress=told)))
+    rows = [row for one, other in pairs(visits) for row in rows_of(one, other)]
+    if not rows:
+        names = ", ".join(one_line(str(place)) for place in wanted.sessions)
+        what = "there are no two conditions, nor two sessions, with strides in both"
+        raise FileRefusedError(names, what, "Name two sessions, or one with two conditions")
+    with written_beside(wanted.out) as folder:
+        write_differences(rows, folder / DIFFERENCES)
+        report(1.0, "writing")
+    return [
+        *_table(rows),
+        "",
+        f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
+    ]
+
+
+def _read(wanted: argparse.Namespace, place: "Path | LibrarySession", report: Report) -> "Session":
+    from app.reports.patient_report.report_file import session_of
+    from devices.files.session_folder import read_session
+
+    if isinstance(place, LibrarySession):
+        return read_library_session(wanted, place, report)
+    return read_session(session_of(place))
+
+
+def _check_place(out: Path) -> None:
+    """See whether a comparison may stand at `out`: nothing is there, or only a comparison."""
+    if out.exists() and not (out.is_dir() and {path.name for path in out.iterdir()} <= {DIFFERENCES}):
+        raise FileRefusedError(str(out), "this is there already and is not a comparison", "Choose another --out")
+
+
+def _table(rows: "Sequence[Row]") -> Iterator[str]:
+    for (one, other), of_pair in groupby(rows, key=lambda row: (row.one, row.other)):
+        simulated = "SIMULATED. " if one.facts.is_simulated or other.facts.is_simulated else ""
+        yield f"{simulated}{_named(one)} less {_named(other)}"
+        yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
+        for row in of_pair:
+            side = "" if row.side is None else row.side[0].upper()
+            figures = (row.one_mean.mean, row.other_mean.mean, row.difference)
+            cells = " ".join(f"{_short(figure):>9}" for figure in figures)
+            yield f"  {side:5} {row.parameter:38} {cells} {_short(row.error):>7}  {FLAGS[row.verdict]}"
+
+
+def _named(told: "Told") -> str:
+    condition = f" ({one_line(told.condition)})" if told.condition.strip() else ""
+    return f"session {told.number}, {one_line(told.facts.walk.name)}{condition}"
+
+
+def _short(value: float) -> str:
+    return f"{round(value, 2) + 0.0:.2f}" if math.isfinite(value) else ""  # no minus before zero

@@ -1,0 +1,67 @@
+"""`gaitwright export`: the results of a session for other programs, without names unless identity is asked for."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+
+from app.library_commands import DECODERS, LibrarySession, add_key_arguments, default_folder, opened_library
+from devices.files.refusal import FileRefusedError, one_line
+
+FORMATS = ("xlsx", "c3d", "mot", "fhir")  # as app.exports.exports has them, whose import takes long
+
+Report = Callable[[float, str], None]
+
+
+def add_export_arguments(parser: argparse.ArgumentParser, session: Callable[[str], Path | LibrarySession]) -> None:
+    parser.description = (
+        "Analyse a session and write its results for other programs: a spreadsheet, C3D, OpenSim's mot, a FHIR R4 "
+        "bundle. Names are taken away unless identity is asked for."
+    )
+    help_text = "the session folder, results with their session inside, or library:ID"
+    parser.add_argument("session", metavar="SESSION", type=session, help=help_text)
+    parser.add_argument(
+        "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
+    )
+    add_key_arguments(parser)
+    parser.add_argument("--as", dest="formats", metavar="FORMAT,...", required=True, help=", ".join(FORMATS))
+    parser.add_argument("--identified", action="store_true", help="leave code, notes, operator and dates as they are")
+    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="an empty or new folder")
+
+
+def export(wanted: argparse.Namespace, report: Report) -> list[str]:
+    """Write the formats asked for and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        No such format, a session that cannot be read, or something stands at OUT.
+    OSError
+        The files cannot be written.
+    """
+    from app.exports.exports import Format, export_from_folder, export_from_library
+    from app.reports.patient_report.report_file import session_of
+    from app.reports.result_folder import written_beside
+    from core.analysis import analyse
+    from devices.files.session_folder import read_session
+
+    names = wanted.formats.split(",")
+    for name in names:
+        if name not in FORMATS:
+            raise FileRefusedError("--as", f"{one_line(name)} is no format", f"Choose of: {', '.join(FORMATS)}")
+    formats = [Format(name) for name in dict.fromkeys(names)]
+    if wanted.out.exists() and not (wanted.out.is_dir() and not any(wanted.out.iterdir())):
+        raise FileRefusedError(
+            str(wanted.out), "there is something here already", "Choose an empty folder or a new one"
+        )
+    with written_beside(wanted.out) as folder:
+        if isinstance(wanted.session, LibrarySession):
+            with opened_library(wanted) as opened:
+                session_id, identified = wanted.session.id, wanted.identified
+                export_from_library(opened, session_id, formats, folder, DECODERS, report, is_identified=identified)
+        else:
+            session = read_session(session_of(wanted.session))
+            analysis = analyse(session, progress=report)
+            export_from_folder(session, analysis, formats, folder, is_identified=wanted.identified)
+        count = sum(path.is_file() for path in folder.rglob("*"))
+    whose = "with identity" if wanted.identified else "pseudonymised"
+    return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}."]
