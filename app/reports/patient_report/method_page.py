@@ -1,6 +1,7 @@
 """What did the clinician say, how was it measured, and where does every band come from?"""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from datetime import datetime
 
 from app.reports.patient_report.blocks import Block, bullets, heading, note
@@ -10,7 +11,7 @@ from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.plain_text import plain, plain_lines
 from app.reports.patient_report.request import ReportRequest
 from app.wording import sentence, tr
-from core.findings import Severity
+from core.findings import Finding, Severity
 from core.norms import KNEE_NEW_ATTACHMENT_DEG, SAME_ATTACHMENT_DEG
 from core.results import AxisSource
 
@@ -43,13 +44,25 @@ def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
 def _remarks(request: ReportRequest, facts: Facts) -> list[Block]:
     """Every finding that touches these walks and is more than information, and those of `TOLD`."""
     others = {r.name for r in request.visit.session.recordings if r.name not in request.walks}
-    said = [
-        plain(sentence(finding))
+    told = [
+        finding
         for finding in request.visit.analysis.findings
         if (finding.severity is not Severity.INFO or finding.key in TOLD)
         and not others.intersection(finding.where.split(", "))
     ]
+    said = [plain(sentence(finding)) for finding in _joined(told)]
     return [heading(tr("Remarks on this recording")), bullets(said)] if said else []
+
+
+def _joined(findings: Sequence[Finding]) -> list[Finding]:
+    """Tell what holds alike of several places once, of all of them."""
+    places: dict[tuple[object, ...], dict[str, None]] = {}
+    first: dict[tuple[object, ...], Finding] = {}
+    for finding in findings:
+        alike = finding.key, *finding.numbers.items()
+        first.setdefault(alike, finding)
+        places.setdefault(alike, {}).update(dict.fromkeys(finding.where.split(", ")))
+    return [replace(finding, where=", ".join(places[alike])) for alike, finding in first.items()]
 
 
 def _texts(parts: Sequence[tuple[str, str]]) -> list[list[str]]:

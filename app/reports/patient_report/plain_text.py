@@ -36,11 +36,12 @@ def plain(text: str) -> str:
             character, category = " ", "Zs"
         if category in UNSEEN:
             continue
-        is_mark = category.startswith("M")
-        marks = marks + 1 if is_mark else 0
-        if is_mark and (marks > MAX_MARKS or not shown or ord(character) not in coverage()):
-            continue
-        shown.append(character if ord(character) in coverage() else BOX)
+        if not category.startswith("M"):
+            shown.append(character if ord(character) in coverage() else BOX)
+            marks = 0
+        elif shown and marks < MAX_MARKS and _has_font(shown[-1] + character):
+            shown[-1] += character
+            marks += 1
     return " ".join("".join(shown).split())
 
 
@@ -67,8 +68,20 @@ def isolated(text: str) -> str:
 
 @cache
 def coverage() -> frozenset[int]:
-    """Code points that any of the bundled fonts has a glyph for."""
-    return frozenset().union(*(_covered(font) for font in font_data()))
+    """Code points that any of the bundled families has a glyph for."""
+    return frozenset().union(*_coverages())
+
+
+@cache
+def _coverages() -> tuple[frozenset[int], ...]:
+    """Of each family; Inter's weights differ by a few, and a text may be set in any of them."""
+    *inter, hebrew, arabic = (frozenset(_covered(font)) for font in font_data())
+    return inter[0].intersection(*inter[1:]), hebrew, arabic
+
+
+def _has_font(letter: str) -> bool:
+    """Whether one font has a letter together with its marks: two fonts cannot set it."""
+    return any(all(ord(part) in covered for part in letter) for covered in _coverages())
 
 
 @cache
