@@ -291,7 +291,8 @@ class SensorsPage(QWidget):
         self._column.addWidget(self._pages, 1)
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
-        whole.addWidget(_scrolling(content))
+        self._whole = _scrolling(content)
+        whole.addWidget(self._whole)
 
     def _connect(self) -> None:
         self.sources.activated.connect(self._on_source_activated)
@@ -302,6 +303,7 @@ class SensorsPage(QWidget):
         self.places.hovered.connect(self._on_hovered)
         self.places.pressed.connect(self._on_place_pressed)
         self.list.assigned.connect(self._assign)
+        self.list.selected.connect(self._on_selected)
         self.list.identify_pressed.connect(self.identify_pressed)
         self.list.reconnect_pressed.connect(self.reconnect_pressed)
         self._flash_end.timeout.connect(self._end_flash)
@@ -464,6 +466,14 @@ class SensorsPage(QWidget):
             self._refresh()
         elif self.list.selection:
             self._assign(self.list.selection, site)
+
+    def _on_selected(self, name: str) -> None:
+        """Bring the row into sight that keys mean now."""
+        row = self.list.rows.get(name)
+        if row is not None:
+            margin = self._look.theme.px(8)
+            self._rows.ensureWidgetVisible(row, 0, margin)
+            self._whole.ensureWidgetVisible(row, 0, margin)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

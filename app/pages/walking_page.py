@@ -126,7 +126,7 @@ class WalkingPage(QWidget):
 
     def focus(self) -> None:
         """Put the focus where reading starts, and on no button: Space is to start and stop the walk."""
-        (self.empty if self.empty.isVisibleTo(self) else self.charts).setFocus()
+        next((one for one in self._regions if one.isVisibleTo(self)), self.walks).setFocus()
 
     def show_view(self, live: LiveWalk) -> None:
         """Draw the present, up to thirty times a second."""
@@ -205,8 +205,13 @@ class WalkingPage(QWidget):
         focused = QApplication.focusWidget()
         return focused is not None and self.isAncestorOf(focused)
 
+    @property
+    def _regions(self) -> tuple[QWidget, ...]:
+        """What may have the focus and is no button; in a small window the walks stand in the place of the charts."""
+        return self.empty, self.charts, self.walks
+
     def _build(self) -> None:
-        for region in (self.charts, self.empty):
+        for region in self._regions:
             region.setFocusPolicy(Qt.FocusPolicy.TabFocus)
             region.setProperty(NO_RING, True)
         self.charts.setAccessibleName(tr("Live angles and gait phases"))
@@ -243,6 +248,7 @@ class WalkingPage(QWidget):
 
     def _arrange(self) -> None:
         """Show what belongs to this moment."""
+        was_on_region = QApplication.focusWidget() in self._regions
         is_recording, has_walks = self.is_recording, bool(self._rows)
         is_tabbed = self._is_compact and has_walks and not is_recording
         shows_curves = has_walks and (not self._is_compact or is_recording or self.tabs.choice == "curves")
@@ -261,6 +267,8 @@ class WalkingPage(QWidget):
         self._place(self.next, self._column, after_stopped if self._is_compact else -1)
         self._middle.setDirection(_DOWN if self._is_compact else _ACROSS)
         self._fit()
+        if was_on_region and QApplication.focusWidget() not in self._regions:
+            self.focus()  # else it is on the next button, which Space would press
 
     def _place(self, widget: QWidget, layout: QVBoxLayout, index: int) -> None:
         if layout.indexOf(widget) < 0 or widget is self.next:

@@ -15,6 +15,7 @@ from app.pages.sensor_places import DRAGGED
 from app.pages.sensors_page import SensorsPage, SourceOption, Way
 from app.theme import Look
 from core.body import Side, Site
+from tests.app.room import settle
 
 NAMES = ("0A09", "0A31", "0A2C", "0A17", "0A1B", "0A22")
 OPTIONS = (
@@ -130,6 +131,18 @@ def test_the_list_of_places_opens_by_keys_and_is_chosen_by_arrows(
     QTest.keyClick(menu, Qt.Key.Key_Down)
     QTest.keyClick(menu, Qt.Key.Key_Return)
     assert assigned == [("0A09", Site.LEFT_SHANK)]
+
+
+def test_the_row_that_keys_mean_comes_into_sight(page: SensorsPage) -> None:
+    page.resize(900, 480)
+    page.set_compact(True)
+    settle()
+    page.focus()
+    for name in NAMES:
+        row = page.list.rows[name]
+        assert row.hasFocus()
+        assert row.visibleRegion().boundingRect().height() == row.height()
+        QTest.keyClick(row, Qt.Key.Key_Down)
 
 
 def test_enter_on_a_row_is_left_to_the_primary_button(page: SensorsPage) -> None:

@@ -265,6 +265,29 @@ def test_no_word_is_cut_in_a_language_as_long_as_german(
     assert words_cut(page) == []
 
 
+def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot, look: Look) -> None:
+    window = QWidget()
+    page = WalkingPage(look)
+    column = QVBoxLayout(window)
+    column.addWidget(page)
+    column.addWidget(QPushButton("Back"))  # which Space would press
+    qtbot.addWidget(window)
+    page.set_compact(True)
+    page.show_labels(LABELS, "Shoes")
+    with qtbot.waitActive(window):
+        window.show()
+        window.activateWindow()
+    page.show_walks((RECORDING,))
+    page.focus()
+    assert QApplication.focusWidget() is page.charts
+    page.show_walks((ASKING,))
+    assert QApplication.focusWidget() is page.walks
+    page.show_walks((KEPT,))
+    assert QApplication.focusWidget() is page.walks
+    page.show_walks((KEPT, RECORDING))
+    assert not isinstance(QApplication.focusWidget(), QAbstractButton)
+
+
 def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot, look: Look) -> None:
     page = WalkingPage(look)
     window = QWidget()
