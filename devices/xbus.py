@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 PREAMBLE = b"\xfa\xff"  # and the address of a sensor that is the only one on its cable
+BEGIN = PREAMBLE + b"\x36"  # of what a sensor measured
 LONG = 0xFF  # in place of a length: the length follows
 MOST_DATA = 2048  # bytes; what tells of more is no message
 HEADER = struct.Struct(">HB")  # of an item: identifier and length
@@ -165,19 +166,35 @@ class Framer:
                 break
             self._pass_over(start - at)
             at = start
-            body, end = _body(held, start)
-            if end > len(held) and end - body <= MOST_DATA and not is_end:
+            one, end = self._message(held, start, is_end)
+            if one is not None and (inner := held.find(BEGIN, start + 1, end)) >= 0:
+                # bytes were lost, so that its end was found in the next one, and its checksum is right by chance
+                following, until = self._message(held, inner, is_end)
+                if until > len(held):
+                    break
+                if following is not None:
+                    one, end = None, start + 1
+            if end > len(held):
                 break  # its rest is on the way
-            one = _checked(held, start, body, end, self._others) if end <= len(held) else None
             if one is None:
                 self._pass_over(1)
-                at = start + 1
             else:
                 found.append(one)
                 self._is_lost = False
-                at = end
+            at = end
         self._held = held[at:]
         return found
+
+    def _message(self, held: bytes, start: int, is_end: bool) -> tuple[Message | None, int]:
+        """The message that begins at `start` and where it ends; or none, and where to look next.
+
+        That lies behind all bytes, where more of them have to be waited for.
+        """
+        body, end = _body(held, start)
+        if end > len(held):
+            return None, end if end - body <= MOST_DATA and not is_end else start + 1
+        one = _checked(held, start, body, end, self._others)
+        return one, end if one is not None else start + 1
 
     def _pass_over(self, count: int) -> None:
         if count > 0:

@@ -16,15 +16,33 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from devices.csv_serial import Columns, CsvFramer
+from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, GYR_CALIBRATION, Shimmer3Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import message
+from devices.emulators.xsens_mti import MtiVoice
+from devices.emulators.xsens_mti import sample as mti_sample
+from devices.shimmer3 import Shimmer3Framer
+from devices.source import SourceInfo
 from devices.stream import Framer, Row
 from devices.witmotion import WitFramer
 from devices.ximu3 import Ximu3Framer
+from devices.xsens_mti import MtiFramer
 
 DAMAGED_SHARE = 1 / 7
 LONGEST_PIECE = 300
 MOST_HELD = 4096 + LONGEST_PIECE
+SHIMMER3 = SourceInfo(
+    "shimmer3",
+    "1",
+    settings={
+        "period_ticks": 320,
+        "channels": list(CHANNELS),
+        "has_checksum": True,
+        "gyr_calibration": GYR_CALIBRATION.hex(),
+        "acc_calibration": ACC_CALIBRATION.hex(),
+    },
+)
+MTI = SourceInfo("xsens-mti", "1", settings={"rate_hz": 100.0})
 COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), count=7)
 
 
@@ -65,12 +83,22 @@ def line(number: int) -> bytes:
     return f"{number * 10},{','.join(f'{value:.3f}' for value in motion(number))}\r\n".encode()
 
 
+def raw(number: int) -> Sequence[int]:
+    chance = random.Random(number)
+    return [chance.randrange(-32768, 32768) for _ in range(6)]
+
+
 def drivers() -> dict[str, Fuzzed]:
+    mti = MtiVoice(motion=lambda number: [*motion(number), 1.0, 0.0, 0.0, 0.0])
+    shimmer3 = Shimmer3Voice(raw)
+    shimmer3.period, shimmer3.has_checksum = 320, True
     voice = WitVoice("1", motion, content=0b1111, now_ns=lambda: 0)
     return {
         "x-IMU3, binary": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), True), True),
         "x-IMU3, text": Fuzzed(Ximu3Framer, lambda k: message("I", k * 10_000, motion(k), False), True),
         "WitMotion": Fuzzed(WitFramer, voice.sample, False),
+        "Xsens MTi": Fuzzed(lambda: MtiFramer(MTI), lambda k: mti_sample(mti, k), False),
+        "Shimmer3, with checksums": Fuzzed(lambda: Shimmer3Framer(SHIMMER3), shimmer3.sample, False),
         "CSV": Fuzzed(lambda: CsvFramer(COLUMNS), line, True),
     }
 
@@ -109,13 +137,13 @@ def _feed(framer: Framer, piece: bytes, heard: dict[Row, int], outcome: Outcome)
         framer.feed(piece, 0.0)
     except Exception as error:  # which is what is looked for
         outcome.faults.append(repr(error))
-    held = getattr(framer, "_rest", b"")
+    held = getattr(getattr(framer, "_framer", framer), "_held", getattr(framer, "_rest", b""))
     outcome.most_held = max(outcome.most_held, len(held))
     _take(framer, heard)
 
 
 def _take(framer: Framer, heard: dict[Row, int]) -> None:
-    for row in framer.heard.rows:
+    for row in (row[1:] for row in framer.heard.rows):  # its time depends on those before
         heard[row] = heard.get(row, 0) + 1
     framer.heard.rows.clear()
     framer.heard.replies.clear()
@@ -126,7 +154,7 @@ def _row(driver: Fuzzed, sample: bytes) -> Row:
     framer.feed((b"\n" if driver.has_lines else b"") + sample, 0.0)
     framer.flush()
     (row,) = framer.heard.rows
-    return row
+    return row[1:]
 
 
 def _damaged(sample: bytes, chance: random.Random) -> bytes:
