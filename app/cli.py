@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, TextIO
 
 from app.compare_command import add_compare_arguments, compare
+from app.device_commands import EMULATED
 from app.export_command import add_export_arguments, export
 from app.library_commands import LibrarySession, add_key_arguments, default_folder
 from app.logs import log_folder, start_logging, version_of
@@ -37,7 +38,7 @@ METHODS = ("robust", "published")
 KINDS = ("standing", "free_motion", "walking")
 PAPERS = ("a4", "letter")  # as app.reports.patient_report.request has them
 FORMATS = ("xsens-mtmanager",)
-SUBCOMMANDS = ("analyse", "demo", "report", "compare", "export", "import", "recover", "audit")
+SUBCOMMANDS = ("analyse", "demo", "report", "compare", "export", "import", "recover", "audit", "devices")
 OF_LIBRARY = "the folder of the library (your own)"
 
 
@@ -123,6 +124,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
+    _add_devices(commands.add_parser("devices", help="list the sensors that are heard, and how drivers were proved"))
     return parser
 
 
@@ -242,6 +244,23 @@ def _add_audit(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(run=_verify_audit, out="The audit")
 
 
+def _add_devices(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "List the sensors that are heard at ports and announced on the network, and how each driver was proved."
+    )
+    parser.add_argument(
+        "--emulate",
+        type=_one_of(EMULATED),
+        metavar="{" + ",".join(EMULATED) + "}",
+        help="play sensors that are not there instead, and print their ports",
+    )
+    parser.add_argument("--count", type=int, default=6, metavar="N", help="how many are played (6)")
+    parser.add_argument(
+        "--seconds", type=_positive, default=math.inf, metavar="S", help="for how long they are played (until Ctrl C)"
+    )
+    parser.set_defaults(run=_devices, out="The port of an emulated sensor")
+
+
 def _analyse(wanted: argparse.Namespace) -> None:
     from app.reports.result_folder import OWN_SESSION, check_place, written_beside
 
@@ -283,6 +302,16 @@ def _verify_audit(wanted: argparse.Namespace) -> None:
     from app.library_commands import verify_audit
 
     for line in verify_audit(wanted):
+        print(line)
+
+
+def _devices(wanted: argparse.Namespace) -> None:
+    from app.device_commands import emulate, list_devices
+
+    if wanted.emulate:
+        emulate(wanted.emulate, wanted.count, wanted.seconds, lambda line: print(line, flush=True))
+        return
+    for line in list_devices():
         print(line)
 
 

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -23,14 +24,25 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
     from core.samples import Session
+    from devices.source import StreamDecoder
 
 PREFIX = "library:"
 WHO = "--operator"
 PASSPHRASE_FILE = "--passphrase-file"
-# of the drivers that record bytes; the walker, files and network inlets record samples, which need none
-DECODERS: "Decoders" = {}
+# as devices.catalogue has them, whose import would hold up the command line: they record bytes; the walker, files and
+# network inlets record samples, which need no decoder
+BYTE_DRIVERS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
 
 Report = Callable[[float, str], None]
+
+
+def _new_decoder(driver: str) -> "StreamDecoder":
+    from devices.catalogue import DRIVERS
+
+    return next(one for one in DRIVERS if one.key == driver).decoder()
+
+
+DECODERS: "Decoders" = {driver: partial(_new_decoder, driver) for driver in BYTE_DRIVERS}
 
 
 @dataclass(frozen=True, slots=True)

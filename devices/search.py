@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 from devices.catalogue import DRIVERS, Driver
 from devices.channels import Channel, TcpChannel, UdpChannel
@@ -130,6 +131,8 @@ def _making(driver: Driver, port: PortInfo, baud: int) -> Callable[[], LiveSourc
 
 def _announced(at_port: int) -> list[FoundSensor]:
     """The x-IMU3s that announce themselves within a second or so."""
+    if not _has_network():
+        return []
     found: dict[str, FoundSensor] = {}
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as listening:
         try:
@@ -146,6 +149,15 @@ def _announced(at_port: int) -> list[FoundSensor]:
             if (one := announcement(datagram, address)) is not None:
                 found[one.name] = one
     return list(found.values())
+
+
+def _has_network() -> bool:
+    """Whether anybody but this machine could be heard; where nobody could, no port is opened for them."""
+    try:
+        devices = Path("/proc/net/dev").read_text(encoding="ascii").splitlines()[2:]
+    except OSError:  # not Linux
+        return True
+    return any(line.partition(":")[0].strip() != "lo" for line in devices)
 
 
 def announcement(datagram: bytes, address: str) -> FoundSensor | None:

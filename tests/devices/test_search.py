@@ -6,6 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -38,10 +39,7 @@ def emulated(tmp_path: Path) -> Iterator[list[PortInfo]]:
         "c": WitVoice("000C", motion),
         "d": Silence(),
     }
-    emulations = [
-        Emulation(voice, lambda name=name: Terminal(tmp_path / name))  # type: ignore[misc]  # a default binds the name
-        for name, voice in voices.items()
-    ]
+    emulations = [Emulation(voice, partial(Terminal, tmp_path / name)) for name, voice in voices.items()]
     yield [PortInfo(emulation.place, is_told=True) for emulation in emulations]
     for emulation in emulations:
         emulation.close()
@@ -81,7 +79,8 @@ def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
     holding.close()
 
 
-def test_what_is_announced_on_the_network_is_found() -> None:
+def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("devices.search._has_network", lambda: True)
     at_port = free_port()
     told = {"name": "x-IMU3", "sn": "655782F7", "ip": "10.0.0.9", "port": 7000, "send": 8000, "receive": 9000}
     ends = threading.Event()
@@ -98,6 +97,12 @@ def test_what_is_announced_on_the_network_is_found() -> None:
     thread.join()
     (one,) = found.sensors
     assert (one.driver, one.name, one.place) == ("ximu3", "655782F7", "TCP 127.0.0.1:7000")
+
+
+def test_where_there_is_no_network_no_port_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("devices.search._has_network", lambda: False)
+    monkeypatch.setattr("devices.search.socket", None)
+    assert search([]).sensors == ()
 
 
 @pytest.mark.parametrize(

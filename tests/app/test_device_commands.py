@@ -1,0 +1,66 @@
+"""The command line lists sensors and plays some; every driver's journals are read; a port that vanishes comes back."""
+
+import os
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import main
+from app.device_commands import EMULATED, _walk, emulate, list_devices
+from app.library_commands import BYTE_DRIVERS, DECODERS
+from devices.catalogue import DRIVERS
+from devices.ports import MORE_PORTS
+from devices.source import SourceInfo
+from tests.safety.port_vanishes import vanish_often
+
+
+def test_every_driver_that_records_bytes_has_its_decoder() -> None:
+    assert set(BYTE_DRIVERS) == {driver.key for driver in DRIVERS}
+    for driver, make in DECODERS.items():
+        decoder = make()
+        assert decoder is not make(), "each journal has one of its own"
+        if driver != "csv":
+            decoder.begin(SourceInfo(driver, "1", sensors=("one",)))
+            assert len(decoder.finish()["one"].block) == 0
+
+
+@pytest.mark.parametrize("kind", EMULATED)
+def test_what_is_played_is_listed(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    told: list[str] = []
+    monkeypatch.setattr("app.device_commands._walk", lambda count: [np.ones((50, 6))] * count)
+    playing = threading.Thread(target=emulate, args=(kind, 2, 4.0, told.append))
+    playing.start()
+    while len(told) < 3:
+        time.sleep(0.05)
+    assert all(Path(place).exists() for place in told[:2])
+    monkeypatch.setenv(MORE_PORTS, os.pathsep.join(told[:2]))
+    lines = list(list_devices())
+    playing.join()
+    assert lines[0] == "Sensors that were heard:"
+    assert sum(line.startswith("- ") and line.endswith(", simulated") for line in lines) == 2
+    assert sum(driver.proof in line for driver in DRIVERS for line in lines) == len(DRIVERS)
+    assert not any(Path(place).exists() for place in told[:2])
+
+
+@pytest.mark.endurance
+def test_what_is_played_is_the_simulated_patient() -> None:
+    thigh, shank = _walk(2)
+    assert thigh.shape == shank.shape
+    assert 0.9 < np.median(np.linalg.norm(thigh[:, 3:], axis=1)) < 1.1
+    assert np.abs(shank[:, :3]).max() > 100.0
+
+
+def test_a_kind_that_is_not_known_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["devices", "--emulate", "toaster"])
+    assert "toaster is none of ximu3, witmotion" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("count", [4, pytest.param(20, marks=pytest.mark.endurance)])
+def test_a_port_vanishes_and_comes_back_while_the_others_lose_nothing(tmp_path: Path, count: int) -> None:
+    vanished = vanish_often(tmp_path, count, seed=3)
+    assert vanished.faults == []
+    assert len(vanished.back_ms) == count
