@@ -57,7 +57,7 @@ class Command:
 
 # wide-range accelerometer, angular rate, battery, as three bytes of switches
 SENSORS = bytes([0x40, 0x30, 0x00])
-ACC_RANGE = 3  # 16 g on boards of the first generations, 8 g on later ones: a heel strike needs more than 4 g
+ACC_RANGE = 3  # 16 g on boards of the first generations, 8 g on later ones: a landing foot brings more than 4 g
 GYR_RANGE = 3  # 2000 deg/s
 ACC_RATE = 7  # 400 Hz or more, on either board
 GYR_BASE_HZ = 8000

@@ -72,6 +72,9 @@ class Topic(StrEnum):
     REPORT = "report"
     MESSAGES = "messages"
     KEYS = "keys"
+    SENSORS_XSENS_MTI = "sensors-xsens-mti"
+    SENSORS_SHIMMER3 = "sensors-shimmer3"
+    SENSORS_LSL = "sensors-lsl"
 
 
 def topic_title(topic: Topic) -> str:
@@ -86,6 +89,9 @@ def topic_title(topic: Topic) -> str:
         Topic.REPORT: tr("Report"),
         Topic.MESSAGES: tr("What messages mean"),
         Topic.KEYS: tr("Keys"),
+        Topic.SENSORS_XSENS_MTI: "Xsens MTi",
+        Topic.SENSORS_SHIMMER3: "Shimmer3",
+        Topic.SENSORS_LSL: "Lab Streaming Layer",
     }[topic]
 
 
