@@ -1,6 +1,6 @@
 """Something that is on or off: a check mark stands before its word while it is on."""
 
-from PySide6.QtCore import QRectF
+from PySide6.QtCore import QRectF, QSignalBlocker
 from PySide6.QtGui import QColor, QPainter
 
 from app.theme import CONTROL_RADIUS, Look
@@ -16,6 +16,12 @@ class Toggle(Button):
         self.setCheckable(True)
         self.setChecked(is_on)
         self.toggled.connect(self._on_toggled)
+
+    def show_on(self, is_on: bool) -> None:
+        """Show what is so already, without telling anybody."""
+        with QSignalBlocker(self):
+            self.setChecked(is_on)
+        self._on_toggled(is_on)
 
     def _paint_frame(self, painter: QPainter) -> QColor:
         ink = super()._paint_frame(painter)

@@ -14,12 +14,13 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.logs import version_of
-from app.storage.stored import RecordingState, StoredPatient, StoredSession
+from app.storage.stored import RecordingState, StoredPatient, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
 from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
+from app.workers.background import Background
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -58,12 +59,14 @@ class Visit(QObject):
     ) -> None:
         super().__init__(parent)
         self._desk, self._now_s = desk, now_s
-        self._choices = tuple(choices)
+        self._choices = choices  # which may become more
         self.session: StoredSession | None = None
         self.patient = PatientRecord(desk, self, self._refuses_code)
         self.sensors = WornSensors(self)
         self.takes = Takes(desk, self)
         self.evaluation = Evaluation(self)
+        self.preview = Background(self)
+        """Sets the report's pages; of the visit, for its threads outlive a step."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
         self.has_skipped_standing = False
@@ -161,6 +164,41 @@ class Visit(QObject):
             zero[joint] = zero_rad
         self._change(replace(self.told, zero_rad=zero))
 
+    def set_turned(self, joint: Joint, sign: int | None) -> None:
+        """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `evaluation.done` follows."""
+        turned = {**self.told.turned_sign}
+        if sign is None:
+            turned.pop(joint, None)
+        else:
+            turned[joint] = sign
+        self._change(replace(self.told, turned_sign=turned))
+
+    def swap_sides(self) -> None:
+        """Say that left and right were worn the other way round in all recordings; they are read anew.
+
+        Done again, it is undone.
+        """
+        if self.session is None:
+            return
+        session_id, stored = self.session.id, [take.stored for take in self.takes.every]
+
+        def swap(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[Take, ...]]:
+            library = opened.library
+            worn: dict[UUID, list[StoredRecording]] = {}
+            for one in stored:
+                current = library.recordings.find(one.id)
+                if current is not None and current.placement is not None:
+                    worn.setdefault(current.placement.id, []).append(current)
+            for recordings in worn.values():
+                placement = recordings[0].placement
+                assert placement is not None  # only such were gathered
+                other = {_opposite(site): sensor for site, sensor in placement.sensors.items()}
+                library.sessions.correct_placement(recordings, other)
+            session = library.sessions.get(session_id)
+            return session, _read(opened, session)
+
+        self._desk.run(swap, self._on_read, self._on_refused, self)
+
     def place_sensors(self, only: Side | None = None) -> None:
         """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
         if self.session is None:
@@ -231,6 +269,7 @@ class Visit(QObject):
         """Wait for all threads: for the end of the program."""
         self.sensors.finish()
         self.evaluation.finish()
+        self.preview.finish()
 
     def _change(self, told: Session) -> None:
         self._wanted = told
@@ -241,7 +280,8 @@ class Visit(QObject):
 
         def save(opened: "OpenedLibrary") -> StoredSession:
             current = opened.library.sessions.get(session.id)
-            return opened.library.sessions.change(current, replace(current.told, zero_rad=told.zero_rad))
+            wanted = replace(current.told, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
+            return opened.library.sessions.change(current, wanted)
 
         self._desk.run(save, self._on_session_changed, self._on_refused, self)
 
@@ -249,10 +289,13 @@ class Visit(QObject):
         self._is_changing = False
         self.session = self.takes.session = session
         wanted = self._wanted
-        if wanted is not None and dict(wanted.zero_rad) != dict(session.told.zero_rad):
+        if wanted is not None and _by_hand(wanted) != _by_hand(session.told):
             self._change(wanted)  # typed on meanwhile
         else:
             self._wanted = None
+            evaluated = self.evaluation.session
+            if evaluated is not None and _by_hand(evaluated) != _by_hand(session.told):
+                self.evaluate()
         self.changed.emit()
 
     def _on_read(self, read: tuple[StoredSession, tuple[Take, ...]]) -> None:
@@ -309,6 +352,17 @@ class Visit(QObject):
         self._wanted = None
         self.refused.emit(what, remedy)
         self.changed.emit()
+
+
+def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
+    """What was said of the joints, zeros and signs."""
+    return dict(told.zero_rad), dict(told.turned_sign)
+
+
+def _opposite(site: Site) -> Site:
+    """The same place on the other leg."""
+    other = Side.RIGHT if site.side is Side.LEFT else Side.LEFT
+    return Site(f"{other}_{site.segment}")
 
 
 def _read(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:

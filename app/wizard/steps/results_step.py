@@ -1,5 +1,6 @@
-"""What came of the walks: curves, figures and findings of those that are kept."""
+"""What came of the walks: curves, figures and findings of those that are kept, and what is put right about them."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,12 +14,15 @@ from app.widgets.icons import Icon
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepState
 from app.wizard.steps.step import Step
-from app.wording import place, tr
+from app.wording import capitalised, name_of, place, tr
+from core.body import Joint
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from app.pages.correct_page import CorrectPage
     from app.pages.result_page import ResultPage
+    from app.wizard.takes import Take
     from app.wizard.visit import Visit
     from core.results import Analysis
     from core.samples import Recording
@@ -29,7 +33,10 @@ class ResultsStep(Step):
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
+        self._is_correcting = False
+        self._undo: Callable[[], object] | None = None
         visit.takes.changed.connect(self._on_takes_changed)
+        visit.changed.connect(self._on_visit_changed)
         visit.evaluation.done.connect(self._on_evaluated)
         visit.evaluation.progressed.connect(self._on_progressed)
 
@@ -64,25 +71,45 @@ class ResultsStep(Step):
     def enter(self) -> None:
         if self._kept_walks:
             self._visit.end_stopwatch()
-        evaluation = self._visit.evaluation
-        recordings = self._visit.takes.recordings()
-        is_stale = evaluation.session is None or not _are_same(evaluation.session.recordings, recordings)
-        if recordings and is_stale and not evaluation.is_busy:
-            self._visit.evaluate()
+        self._evaluate_if_stale()
         self._show()
 
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON))
+        quiet = () if self._is_correcting else (Verb(tr("Correct"), icon=Icon.REPEAT),)
+        return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
 
     def on_primary(self) -> None:
         if self.bar().primary is not None:
             self.done.emit()
 
+    def on_quiet(self, number: int) -> None:
+        if number == 0 and self.bar().quiet:
+            self._is_correcting = True
+            self._show()
+            self.page.correct().focus()
+
+    def undo(self) -> None:
+        if self._undo is not None:
+            self._undo()
+            self._undo = None
+
+    def leave(self) -> None:
+        self._is_correcting = False
+
+    def _evaluate_if_stale(self) -> None:
+        evaluation = self._visit.evaluation
+        recordings = self._visit.takes.recordings()
+        is_stale = evaluation.session is None or not _are_same(evaluation.session.recordings, recordings)
+        if recordings and is_stale and not evaluation.is_busy:
+            self._visit.evaluate()
+
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
-        if evaluation.is_busy:
+        if self._is_correcting:
+            self._show_corrections()
+        elif evaluation.is_busy:
             page.working.begin(tr("Analysing the walks"))
             page.setCurrentWidget(page.working)
         elif evaluation.analysis is None or not evaluation.analysis.recordings:
@@ -107,11 +134,112 @@ class ResultsStep(Step):
             is_prosthetic=bool(self._visit.prosthetic_sides),
         )
 
+    # what is put right
+
+    def _show_corrections(self) -> None:
+        from app.pages.correct_page import JointLine, WalkLine
+
+        page = self._correct_page()
+        visit = self._visit
+        walks = []
+        for take in visit.takes.walks:
+            strides = visit.evaluation.strides(take.told.name)
+            counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
+            told = tr("strides {counts}").format(counts=counted) if counted else tr("not evaluated")
+            walks.append(WalkLine(str(take.id), take.told.name, told, take.told.condition, take.told.is_kept))
+        page.show_walks(walks)
+        found = visit.evaluation.calibration
+        joints = []
+        for joint in (joint for joint in Joint if joint in found):
+            turned = visit.told.turned_sign.get(joint)
+            note = tr("turned by hand") if turned == -1 else tr("confirmed by hand") if turned == 1 else ""
+            if not note:
+                note = tr("as found") if found[joint].is_sign_certain else tr("as found, unsure")
+            joints.append(JointLine(joint, turned == -1, note))
+        page.show_joints(joints)
+        is_live = visit.sensors.acquisition is not None
+        page.show_sides(tr("While sensors are heard, sides are swapped on the page Sensors.") if is_live else "")
+        self.page.setCurrentWidget(page)
+
+    def _correct_page(self) -> "CorrectPage":
+        page, is_new = self.page.correct(), not self.page.has_correct
+        if is_new:
+            self.page.has_correct = True
+            page.condition_typed.connect(self._on_condition_typed)
+            page.kept_turned.connect(self._on_kept_turned)
+            page.sign_turned.connect(self._on_sign_turned)
+            page.sides_swapped.connect(self._on_sides_swapped)
+            page.closed.connect(self._on_corrected)
+        return page
+
+    def _take(self, key: str) -> "Take | None":
+        return next((take for take in self._visit.takes.walks if str(take.id) == key), None)
+
+    def _on_condition_typed(self, key: str, condition: str) -> None:
+        take = self._take(key)
+        if take is None or take.told.condition == condition:
+            return
+        before = take.told.condition
+        self._change_condition(key, condition)
+        self._offer(
+            tr("{walk} is {condition} now.").format(
+                walk=take.told.name, condition=condition or tr("without condition")
+            ),
+            lambda: self._change_condition(key, before),
+        )
+
+    def _change_condition(self, key: str, condition: str) -> None:
+        if (take := self._take(key)) is not None:
+            self._visit.takes.change(take, replace(take.told, condition=condition))
+
+    def _on_kept_turned(self, key: str, is_kept: bool) -> None:
+        take = self._take(key)
+        if take is None or take.told.is_kept == is_kept:
+            return
+        self._keep(key, is_kept)
+        said = tr("{walk} counts.") if is_kept else tr("{walk} is left out.")
+        self._offer(said.format(walk=capitalised(take.told.name)), lambda: self._keep(key, not is_kept))
+
+    def _keep(self, key: str, is_kept: bool) -> None:
+        if (take := self._take(key)) is not None:
+            self._visit.takes.keep(take, is_kept)
+
+    def _on_sign_turned(self, name: str, is_turned: bool) -> None:
+        joint = Joint(name)
+        before = self._visit.told.turned_sign.get(joint)
+        self._visit.set_turned(joint, -1 if is_turned else None)
+        said = tr("{joint}: the sign is turned.") if is_turned else tr("{joint}: the sign is as found.")
+        words = said.format(joint=capitalised(name_of(joint)))
+        self._offer(words, lambda: self._visit.set_turned(joint, before))
+
+    def _on_sides_swapped(self) -> None:
+        self._visit.swap_sides()
+        self._offer(tr("Left and right are swapped."), self._visit.swap_sides)
+
+    def _on_corrected(self) -> None:
+        self._is_correcting = False
+        self._show()
+
+    def _offer(self, words: str, undo: Callable[[], object]) -> None:
+        self._undo = undo
+        self.offered.emit(words)
+
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()
 
     def _on_takes_changed(self) -> None:
+        if self._is_in_sight():
+            was_busy = self._visit.evaluation.is_busy
+            self._evaluate_if_stale()
+            if self._is_correcting:
+                self._show_corrections()
+            elif self._visit.evaluation.is_busy and not was_busy:
+                self._show()
         self.changed.emit()
+
+    def _on_visit_changed(self) -> None:
+        if self._is_correcting and self._is_in_sight():
+            self._show_corrections()
 
     def _on_evaluated(self) -> None:
         if self._is_in_sight():
@@ -144,6 +272,8 @@ class _ResultsFrame(QStackedWidget):
         self.working = WorkingPage(look)
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to
         self._results: ResultPage | None = None
+        self._correct: CorrectPage | None = None
+        self.has_correct = False
         self._room = (0.0, 0.0)
         for page in (self.sentence, self.working):
             self.addWidget(page)
@@ -157,10 +287,21 @@ class _ResultsFrame(QStackedWidget):
             self.addWidget(self._results)
         return self._results
 
+    def correct(self) -> "CorrectPage":
+        if self._correct is None:
+            from app.pages.correct_page import CorrectPage
+
+            self._correct = CorrectPage(self._look)
+            self._correct.set_room(*self._room)
+            self.addWidget(self._correct)
+        return self._correct
+
     def set_room(self, width: float, height: float) -> None:
         self._room = width, height
         if self._results is not None:
             self._results.set_room(width, height)
+        if self._correct is not None:
+            self._correct.set_room(width, height)
 
     def focus(self) -> None:
         shown: QWidget | None = self.currentWidget()

@@ -1,0 +1,163 @@
+"""The step of results on a session of the library: shown quickly, put right after the fact, undone, and audited."""
+
+from collections.abc import Callable
+from time import process_time
+from uuid import UUID
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.storage.exchange import import_session
+from app.storage.opened import OpenedLibrary
+from app.theme import Look, load_fonts
+from app.wizard.steps.results_step import ResultsStep
+from app.wizard.visit import Visit
+from app.workers.library_desk import LibraryDesk
+from core.body import Joint, Side
+from core.results import RecordingAnalysis
+from core.samples import FloatArray, Session
+from devices.walker import DEMONSTRATION, simulate
+from tests.app.room import words_cut
+
+QUICK_S = 1.0  # of the processor, whatever else the machine does
+
+
+class Asker(QObject):
+    """Listens to one answer of the library."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.answers: list[object] = []
+
+    def on_done(self, answer: object) -> None:
+        self.answers.append(answer)
+
+
+def asked(qtbot: QtBot, desk: LibraryDesk, call: Callable[[OpenedLibrary], object]) -> object:
+    """What the library answers on its own thread."""
+    asker = Asker()
+    desk.run(call, asker.on_done, None, asker)
+    qtbot.waitUntil(lambda: bool(asker.answers), timeout=10_000)
+    return asker.answers[0]
+
+
+@pytest.fixture(scope="module")
+def one_walk() -> Session:
+    return simulate(DEMONSTRATION).session
+
+
+@pytest.fixture
+def session_id(qtbot: QtBot, desk: LibraryDesk, one_walk: Session) -> UUID:
+    def bring_in(opened: OpenedLibrary) -> UUID:
+        import_session(opened, one_walk, lambda _share, _what: None, "DEMO-1")
+        return opened.library.sessions.list()[0].id
+
+    found = asked(qtbot, desk, bring_in)
+    assert isinstance(found, UUID)
+    return found
+
+
+@pytest.fixture
+def step(qtbot: QtBot, qapp: QApplication, visit: Visit, session_id: UUID) -> ResultsStep:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    step = ResultsStep(look, visit)
+    with qtbot.waitSignals([visit.resumed, visit.evaluation.done], timeout=30_000):
+        visit.resume(session_id)
+    qtbot.addWidget(step.page)
+    step.page.set_room(1064, 672)
+    step.page.resize(1064, 672)
+    step.page.show()
+    step.enter()
+    return step
+
+
+def walk_of(visit: Visit) -> RecordingAnalysis:
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    return next(recording for recording in analysis.recordings if recording.gait)
+
+
+def angle_of(visit: Visit, joint: Joint) -> FloatArray:
+    return walk_of(visit).joints[joint].angle_rad
+
+
+def test_results_are_on_the_screen_quickly_once_they_are_known(visit: Visit, step: ResultsStep) -> None:
+    assert step.page.currentWidget() is step.page.results()
+    began = process_time()
+    other = ResultsStep(Look(), visit)
+    other.page.set_room(1064, 672)
+    other.enter()
+    assert process_time() - began < QUICK_S
+    assert other.page.currentWidget() is other.page.results()
+    other.page.deleteLater()
+
+
+def test_a_sign_is_turned_kept_in_the_history_and_undone(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: ResultsStep, session_id: UUID
+) -> None:
+    before = angle_of(visit, Joint.LEFT_KNEE)
+    step.on_quiet(0)
+    page = step.page.correct()
+    assert step.page.currentWidget() is page
+    with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        page._joints[Joint.LEFT_KNEE].turned.click()
+    np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), -before, atol=1e-9)
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    assert "sign_turned" in {finding.key for finding in analysis.findings}
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        step.undo()
+    np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), before)
+
+    def corrected(opened: OpenedLibrary) -> list[str]:
+        corrections = opened.library.corrections.of_session(session_id)
+        return [change.field for correction in corrections for change in correction.changes]
+
+    assert asked(qtbot, desk, corrected) == ["turned_sign", "turned_sign"]
+
+
+def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+    step.on_quiet(0)
+    (row,) = step.page.correct()._walks.values()
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        row.kept.click()
+    assert visit.evaluation.analysis is not None
+    assert not any(recording.gait for recording in visit.evaluation.analysis.recordings)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        step.undo()
+    assert walk_of(visit).gait
+    ((key, _),) = step.page.correct()._walks.items()
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        step.page.correct().condition_typed.emit(key, "AFO")
+    assert [take.told.condition for take in visit.takes.walks] == ["AFO"]
+    step.page.correct().closed.emit()
+    assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
+
+
+def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+    strides = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
+    left, right = angle_of(visit, Joint.LEFT_KNEE), angle_of(visit, Joint.RIGHT_KNEE)
+    step.on_quiet(0)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        step.page.correct().swap.click()
+    swapped = {side: len(gait.strides) for side, gait in walk_of(visit).gait.items()}
+    assert swapped == {Side.LEFT: strides[Side.RIGHT], Side.RIGHT: strides[Side.LEFT]}
+    np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(right), atol=0.02)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
+        step.undo()
+    np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(left), atol=0.02)
+
+
+def test_no_word_of_the_corrections_is_cut(step: ResultsStep) -> None:
+    step.on_quiet(0)
+    page = step.page.correct()
+    for room in ((1064, 672), (736, 432), (1680, 952)):
+        step.page.set_room(*room)
+        page.resize(room[0], max(room[1], page.minimumSizeHint().height()))
+        assert page.minimumSizeHint().width() <= room[0]
+        assert words_cut(page) == []
