@@ -95,9 +95,12 @@ def _words(face: GaugeFace) -> tuple[object, ...]:
     return face.state, face.note, [(one.wanted, one.is_met) if one is not None else None for one in measures]
 
 
-def two_digits(value: float) -> str:
-    """Write a certainty as it is told: 0.8, 2.4, 11."""
-    return f"{value:.1f}" if round(value, 1) < 10 else f"{value:.0f}"
+def two_digits(value: float, wanted: float = math.inf) -> str:
+    """Write a certainty as it is told: 0.8, 2.4, 11. What is not yet as wanted never reads as if it were."""
+    figure = f"{value:.1f}" if round(value, 1) < 10 else f"{value:.0f}"
+    if value > wanted >= float(figure):
+        return f"{wanted + 0.1:.1f}" if wanted < 9.9 else f"{wanted + 1:.0f}"
+    return figure
 
 
 def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> Measure:
@@ -105,7 +108,7 @@ def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: b
     share = math.log(begins / value) / math.log(begins / wanted) if 0 < value < math.inf else 0.0
     is_met = is_closed or value <= wanted
     share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)
-    figure = two_digits(value) if value < begins else UNKNOWN
+    figure = two_digits(value, math.inf if is_met else wanted) if value < begins else UNKNOWN
     return Measure(figure, unit, f"{wanted:g}{unit}" if unit == "°" else f"{wanted:g} {unit}", _steps(share), is_met)
 
 

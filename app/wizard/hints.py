@@ -189,9 +189,9 @@ def _figure(joint: Joint, state: ExcitationState, wanted: Wanted) -> str:
     axis_wanted, centre_wanted = math.degrees(wanted.axis_rad), 1000 * wanted.centre_m
     if joint.is_knee and axis / axis_wanted >= centre / centre_wanted:
         said = tr("{joint}: {figure}°, {wanted:g}° wanted.")
-        return said.format(joint=name, figure=two_digits(axis), wanted=axis_wanted)
+        return said.format(joint=name, figure=two_digits(axis, axis_wanted), wanted=axis_wanted)
     said = tr("{joint}: {figure} mm, {wanted:g} mm wanted.")
-    return said.format(joint=name, figure=two_digits(centre), wanted=centre_wanted)
+    return said.format(joint=name, figure=two_digits(centre, centre_wanted), wanted=centre_wanted)
 
 
 def _names(joints: list[Joint]) -> str:

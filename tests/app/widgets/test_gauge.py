@@ -44,6 +44,13 @@ def test_figures_have_two_digits(value: float, written: str) -> None:
     assert two_digits(value) == written
 
 
+@pytest.mark.parametrize(
+    ("value", "wanted", "written"), [(1.52, 1.5, "1.6"), (1.5, 1.5, "1.5"), (1.7, 1.5, "1.7"), (10.3, 10.0, "11")]
+)
+def test_what_is_not_yet_as_wanted_does_not_read_as_if_it_were(value: float, wanted: float, written: str) -> None:
+    assert two_digits(value, wanted) == written
+
+
 def test_a_knee_has_both_rings_and_shows_figures_without_floors() -> None:
     face = gauge_face(Joint.LEFT_KNEE, state(0.8, 6.2, floor_deg=4.0, is_closed=True), HUMAN, is_now=False)
     assert face.state is GaugeState.READY
