@@ -30,6 +30,11 @@ class SentencePage(QWidget):
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
+    def focus(self) -> None:
+        """Give the focus to the button; without one the bar has it."""
+        if self.button.isVisibleTo(self):
+            self.button.setFocus()
+
     def show_sentence(self, what: str, then: str = "", button: str = "") -> None:
         """Say what is not there, what follows or what to do, and what the button does; without words there is none."""
         self._what.setText(what)

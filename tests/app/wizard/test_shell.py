@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.free_motion_page import FreeMotionPage
+from app.pages.sentence_page import SentencePage
 from app.theme import Look, load_fonts
 from app.widgets.action_bar import BarState, RecordingNote, Verb
 from app.widgets.icons import Icon
@@ -159,6 +160,16 @@ def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell
     assert page.question.isVisible()
     assert page.height() <= shell._scroll.viewport().height()
     assert all(page.rect().contains(gauge.geometry()) for gauge in page.gauges.values())
+
+
+def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: Look) -> None:
+    page = SentencePage(look)
+    page.show_sentence("The results are saved.")
+    shell.show_page(7, page)
+    assert shell.focusWidget() is shell.bar.primary
+    page.show_sentence("No walk is kept yet.", button="Go to Walking")
+    shell.show_page(7, page)
+    assert shell.focusWidget() is page.button
 
 
 def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: WizardShell) -> None:
