@@ -1,20 +1,116 @@
-"""What can sensors be heard through? The simulated patient and stored sessions; ports come with their drivers."""
+"""What can sensors be heard through? What was found at ports and on the network, a simulated patient, old sessions.
 
+Sensors are looked for beside the screen: ports take a second or two, and some never answer.
+"""
+
+import logging
+import threading
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, overload
 
 from app.wizard.worn_sensors import SourceChoice
-from app.wording import tr
+from app.wording import tr, tr_n
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
+    from devices.search import Found, FoundSensor
 
 DEMONSTRATION = "demonstration"
+SEARCH = "search"
+SEARCH_ENDS_S = 10.0
+
+_log = logging.getLogger(__name__)
 
 
-def choices() -> tuple[SourceChoice, ...]:
-    """All sources of this machine."""
-    return (SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True),)
+def choices() -> Sequence[SourceChoice]:
+    """All sources of this machine: they become more while the search that begins now goes on."""
+    sources = Sources(_search)
+    sources.look()
+    return sources
+
+
+class Sources(Sequence[SourceChoice]):
+    """The simulated patient, what was found of each driver, and a search that opens whatever it finds.
+
+    Read it from the screen's thread: that never waits for the search.
+    """
+
+    def __init__(self, search: "Callable[[], Found]") -> None:
+        self._search = search
+        self._searching = threading.Lock()  # two searches would take each other's ports
+        self._found: Found | None = None
+        self._is_over = threading.Event()
+        self._is_over.set()
+
+    @overload
+    def __getitem__(self, place: int) -> SourceChoice: ...
+    @overload
+    def __getitem__(self, place: slice) -> tuple[SourceChoice, ...]: ...
+    def __getitem__(self, place: int | slice) -> SourceChoice | tuple[SourceChoice, ...]:
+        return self._every()[place]
+
+    def __len__(self) -> int:
+        return len(self._every())
+
+    def look(self) -> None:
+        """Begin a search in a thread of its own, unless one goes on."""
+        if self._is_over.is_set():
+            self._is_over.clear()
+            threading.Thread(target=self._look, name="looking for sensors", daemon=True).start()
+
+    def wait(self) -> None:
+        """Wait for the search that goes on; not on the screen's thread."""
+        self._is_over.wait(SEARCH_ENDS_S)
+
+    def _look(self) -> None:
+        try:
+            self._found = self._looked()
+        except Exception:  # the thread's edge: the simulated patient and another search are still there
+            _log.exception("sensors could not be looked for")
+        finally:
+            self._is_over.set()
+
+    def _looked(self) -> "Found":
+        with self._searching:
+            return self._search()
+
+    def _every(self) -> tuple[SourceChoice, ...]:
+        demonstration = SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True)
+        anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
+        return (demonstration, *self._of_drivers(), anew)
+
+    def _of_drivers(self) -> list[SourceChoice]:
+        found = self._found
+        if found is None or not found.sensors:
+            return []
+        from devices.catalogue import DRIVERS
+
+        by_driver = {driver: found.of(driver.key) for driver in DRIVERS}
+        return [self._choice(driver.key, driver.name, sensors) for driver, sensors in by_driver.items() if sensors]
+
+    def _choice(self, key: str, name: str, sensors: "Sequence[FoundSensor]") -> SourceChoice:
+        words = tr_n("{name}, {count} sensor", "{name}, {count} sensors", len(sensors))
+
+        def make() -> "Acquisition":
+            self.wait()  # a search that goes on holds the ports
+            return _opening(sensors)
+
+        is_simulated = all(sensor.is_simulated for sensor in sensors)
+        return SourceChoice(key, words.format(name=name, count=len(sensors)), make, is_simulated)
+
+    def _open_all(self) -> "Acquisition":
+        """Search anew, and take all sensors that are heard."""
+        from devices.live import SourceRefusedError
+
+        self._found = found = self._looked()
+        if found.sensors:
+            return _opening(found.sensors)
+        if len(found.passed) == 1:  # then it is this one that is meant
+            raise SourceRefusedError(found.passed[0].what, found.passed[0].remedy)
+        raise SourceRefusedError(
+            tr("No sensor was found"), tr("Plug in the receiver or switch the sensors on, then search again")
+        )
 
 
 def replay_of(folder: Path) -> SourceChoice:
@@ -35,3 +131,15 @@ def _demonstration() -> "Acquisition":
     from devices.replay import demonstration
 
     return Acquisition([demonstration()])
+
+
+def _opening(sensors: "Sequence[FoundSensor]") -> "Acquisition":
+    from app.acquisition.acquisition import Acquisition
+
+    return Acquisition([sensor.make() for sensor in sensors])
+
+
+def _search() -> "Found":
+    from devices.search import search
+
+    return search()

@@ -1,0 +1,109 @@
+"""What is found is listed by its driver and opened, and the screen never waits for a search."""
+
+import threading
+import time
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.wizard import sources as sources_module
+from app.wizard.sources import DEMONSTRATION, SEARCH, Sources, choices
+from devices.live import LiveSource, SourceRefusedError
+from devices.ports import PortInfo
+from devices.replay import ReplaySource
+from devices.search import Found, FoundSensor, Passed
+from tests.safety.live_material import numbered_session
+
+REFUSED = Passed(PortInfo("COM7"), "COM7 is used by another program", "Close that program, then search again")
+
+
+def sensor(name: str, driver: str = "ximu3", is_simulated: bool = False) -> FoundSensor:
+    def make() -> LiveSource:
+        return ReplaySource(numbered_session(name, 1), name=name)
+
+    return FoundSensor(driver, name, "here", make, is_simulated)
+
+
+def found_by(found: Found) -> Sources:
+    sources = Sources(lambda: found)
+    sources.look()
+    sources.wait()
+    return sources
+
+
+def test_the_list_is_there_at_once_and_grows(qtbot: QtBot) -> None:
+    may_end = threading.Event()
+
+    def search() -> Found:
+        may_end.wait(10)
+        assert threading.current_thread() is not threading.main_thread()
+        return Found((sensor("A"), sensor("B"), sensor("C", "witmotion", is_simulated=True)))
+
+    sources = Sources(search)
+    begin_s = time.monotonic()
+    sources.look()
+    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH]
+    assert time.monotonic() - begin_s < 0.5
+    may_end.set()
+    qtbot.waitUntil(lambda: len(sources) == 4, timeout=5000)
+    assert [one.key for one in sources] == [DEMONSTRATION, "ximu3", "witmotion", SEARCH]
+    assert [one.name for one in sources][1:3] == [
+        "x-io x-IMU3, 2 sensors",
+        "WitMotion, standard protocol, 1 sensor",
+    ]
+    assert [one.is_simulated for one in sources] == [True, False, True, False]
+
+
+def test_a_choice_opens_all_sensors_of_its_driver() -> None:
+    sources = found_by(Found((sensor("A"), sensor("B"), sensor("C", "witmotion"))))
+    acquisition = sources[1].make()
+    try:
+        acquisition.start()
+        assert acquisition.sensors == ("A-left_thigh", "B-left_thigh")
+    finally:
+        acquisition.close()
+
+
+def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
+    every = [Found(), Found((sensor("A"), sensor("C", "witmotion")))]
+    sources = Sources(lambda: every.pop(0))
+    sources.look()
+    sources.wait()
+    assert len(sources) == 2
+    acquisition = sources[-1].make()
+    try:
+        acquisition.start()
+        assert len(acquisition.sensors) == 2
+    finally:
+        acquisition.close()
+    assert len(sources) == 4
+
+
+@pytest.mark.parametrize(
+    ("found", "what"),
+    [
+        (Found(), "No sensor was found"),
+        (Found((), (REFUSED,)), "COM7 is used"),
+        (Found((), (REFUSED,) * 2), "No sensor"),
+    ],
+)
+def test_where_nothing_is_found_it_says_why(found: Found, what: str) -> None:
+    with pytest.raises(SourceRefusedError, match=what):
+        found_by(found)[-1].make()
+
+
+def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -> None:
+    def search() -> Found:
+        raise OSError("the port library does not load")
+
+    sources = Sources(search)
+    sources.look()
+    sources.wait()
+    assert "could not be looked for" in caplog.text
+    assert [one.key for one in sources] == [DEMONSTRATION, SEARCH]
+
+
+def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.MonkeyPatch, qtbot: QtBot) -> None:
+    monkeypatch.setattr(sources_module, "_search", lambda: Found((sensor("A"),)))
+    listed = choices()
+    qtbot.waitUntil(lambda: len(listed) == 3, timeout=5000)
