@@ -27,7 +27,8 @@ Value = str | float | int | None
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 NO_TIME = datetime.datetime(1980, 1, 1)  # the first that a ZIP can hold: the same analysis gives the same bytes
 PROPERTIES, MODIFIED = "docProps/core.xml", re.compile(rb"(<dcterms:modified[^>]*>)[^<]*")
-WIDEST = 42
+NARROWEST, WIDEST = 10, 42  # letters
+SHOWN = "0.00###"  # of the digits that a cell holds
 
 
 def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
@@ -113,14 +114,26 @@ def _value(cell: str) -> Value:
 def _sheet(book: Workbook, title: str, header: Sequence[str], rows: Iterable[Sequence[Value]]) -> None:
     sheet = book.create_sheet(title)
     sheet.freeze_panes = "A2"
+    table = list(rows)  # strides and events: thousands of rows, where angles are millions and stay in CSV
     for number, name in enumerate(header):
-        sheet.column_dimensions[_letters(number)].width = min(max(len(name) + 2, 12), WIDEST)
+        longest = max((len(text) for row in table if isinstance(text := row[number], str)), default=0)
+        sheet.column_dimensions[_letters(number)].width = min(max(len(name), longest, NARROWEST) + 2, WIDEST)
     headings = [_text(sheet, name) for name in header]
     for heading in headings:
-        heading.font = Font(bold=True)
+        heading.font = Font(name="Calibri", size=11, bold=True)
     sheet.append(headings)
-    for row in rows:
-        sheet.append([_text(sheet, value) if isinstance(value, str) else value for value in row])
+    for row in table:
+        sheet.append([_cell(sheet, value) for value in row])
+
+
+def _cell(sheet: WriteOnlyWorksheet, value: Value) -> Cell | int | None:
+    if isinstance(value, str):
+        return _text(sheet, value)
+    if not isinstance(value, float):
+        return value
+    cell = WriteOnlyCell(sheet, value)
+    cell.number_format = SHOWN
+    return cell
 
 
 def _text(sheet: WriteOnlyWorksheet, value: str) -> Cell:
