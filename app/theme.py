@@ -176,6 +176,9 @@ def _style_sheet(theme: Theme) -> str:
     QTableView {{ background: transparent; border: none; color: {c.ink}; outline: none; }}
     QTableView QTableCornerButton::section, QTableView QHeaderView {{ background: transparent; border: none; }}
     QTableView::item:selected {{ background: {c.sunken}; color: {c.ink}; }}
+    QPlainTextEdit {{ background: {c.surface}; color: {c.ink}; border: {px(1.25)}px solid {c.control};
+        border-radius: {px(8)}px; padding: {px(8)}px;
+        selection-background-color: {c.inv}; selection-color: {c.inv_ink}; }}
     QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border: none; }}
     QComboBox QAbstractItemView {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control};
         selection-background-color: {c.inv}; selection-color: {c.inv_ink}; outline: none; }}

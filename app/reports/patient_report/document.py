@@ -53,6 +53,20 @@ def make_report(request: ReportRequest) -> bytes:
     return pdf
 
 
+def report_pages(request: ReportRequest, ppi: float) -> list[bytes]:
+    """Give the report's pages as PNG, as they will print, for a look before; errors as in `make_report`."""
+    pages: Any = typst.compile(  # said to be bytes; of PNG, it is a list with one for each page
+        TEMPLATE.read_bytes(),
+        format="png",
+        ppi=ppi,
+        font_paths=_fonts(),
+        ignore_system_fonts=True,
+        sys_inputs={"data": json.dumps(report_data(request), ensure_ascii=False)},
+        timestamp=_whole_seconds(request.made_at),
+    )
+    return list(pages)
+
+
 def _whole_seconds(moment: datetime) -> datetime:
     """As a document's properties hold it, with a fixed offset."""
     return moment.replace(microsecond=0).astimezone(timezone(moment.utcoffset() or timedelta(0)))

@@ -1,13 +1,17 @@
-"""What goes into the patient's file: the results as files that other programs read."""
+"""What goes into the patient's file: the report as it will print, and the results as other programs read them."""
 
 import logging
+from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFileDialog
+from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
+from app.logs import version_of
+from app.pages.report_page import ReportPage
 from app.pages.sentence_page import SentencePage
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
@@ -16,33 +20,41 @@ from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
 from app.wording import tr
-from app.workers.background import Report
+from app.workers.background import Report, Work
 from app.workers.library_desk import LibraryDesk
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
+    from app.reports.patient_report.request import ReportRequest
     from app.storage.opened import OpenedLibrary
     from app.wizard.visit import Visit
 
 _log = logging.getLogger(__name__)
+
+PREVIEW_PPI = 110.0
+OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
 class ReportStep(Step):
     def __init__(self, look: Look, visit: "Visit", desk: LibraryDesk, parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._desk = desk
-        self._page: SentencePage | None = None
+        self._frame: _ReportFrame | None = None
         self._dialog: QFileDialog | None = None
         self._saved: Path | None = None
         self._is_saving = False
+        self._comment: str | None = None  # typed here, not yet known to the session's row
+        visit.preview.done.connect(self._on_previewed)
+        visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
 
     @property
-    def page(self) -> SentencePage:
-        if self._page is None:
-            self._page = SentencePage(self._look)
-            self._page.pressed.connect(self._on_open_pressed)
-        return self._page
+    def page(self) -> "_ReportFrame":
+        if self._frame is None:
+            self._frame = _ReportFrame(self._look)
+            self._frame.report.comment_edited.connect(self._on_comment_edited)
+            self._frame.report.options_changed.connect(self._on_options_changed)
+        return self._frame
 
     @property
     def title(self) -> str:
@@ -60,23 +72,43 @@ class ReportStep(Step):
     def topic(self) -> str:
         return "report"
 
+    @property
+    def comment(self) -> str:
+        if self._comment is not None:
+            return self._comment
+        return self._visit.session.comment if self._visit.session is not None else ""
+
     def enter(self) -> None:
+        self.page.report.show_comment(self.comment)
         self._show()
 
+    def leave(self) -> None:
+        self.page.report.flush()
+        self._visit.preview.stop()
+
     def bar(self) -> BarState:
-        verb = Verb(tr("Save the results"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._has_results())
-        return BarState(primary=verb, note=tr("Without the patient's code and name."))
+        save = Verb(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._has_results())
+        if self._saved is None:
+            return BarState(primary=save, note=tr("Only the code stands in it, no name."))
+        note = tr("Saved as {folder}. Saving again asks where.").format(folder=self._saved.name)
+        show = Verb(tr("Open the folder"), is_wished=False)
+        return BarState(primary=replace(save, is_wished=False), others=(show,), note=note)
 
     def on_primary(self) -> None:
         if not self._has_results() or self._is_saving:
             return
-        self._dialog = QFileDialog(self.page, tr("Save the results into a new folder"))
+        self.page.report.flush()
+        self._dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
         self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
         self._dialog.selectFile("gaitwright-results")
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._dialog.fileSelected.connect(self._on_folder_selected)
         self._dialog.open()
+
+    def on_other(self, number: int) -> None:
+        if self._saved is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._saved)))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is Action.SAVE:
@@ -89,40 +121,98 @@ class ReportStep(Step):
         return evaluation.analysis is not None and not evaluation.is_busy and bool(evaluation.analysis.recordings)
 
     def _show(self) -> None:
-        if self._page is None:
+        if self._frame is None or not self._frame.isVisible():
             return
-        if self._saved is not None:
-            words = tr("The results are saved."), str(self._saved), tr("Open the folder")
-        elif self._has_results():
-            words = (
-                tr("Curves, events, strides and figures, for the patient's file."),
-                tr("CSV and JSON that any spreadsheet reads, and a recording that plays back in Rerun."),
-                "",
-            )
+        if self._has_results():
+            self._frame.setCurrentWidget(self._frame.report)
+            self._draw()
         else:
-            words = tr("There are no results yet."), tr("Record a walk first."), ""
-        self._page.show_sentence(*words)
+            self._frame.sentence.show_sentence(tr("There are no results yet."), tr("Record a walk first."))
+            self._frame.setCurrentWidget(self._frame.sentence)
         self.changed.emit()
+
+    def _request(self) -> "ReportRequest | None":
+        from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+
+        evaluation = self._visit.evaluation
+        if evaluation.session is None or evaluation.analysis is None:
+            return None
+        visit = Visit(evaluation.session, evaluation.analysis)
+        walks = default_walks(visit)
+        if not walks:
+            return None
+        return ReportRequest(
+            visit=visit,
+            walks=walks,
+            made_at=datetime.now().astimezone(),
+            software_version=version_of("gaitwright"),
+            comment=self.comment,
+            operator=evaluation.session.operator,
+            paper=self.page.report.paper.choice,
+        )
+
+    def _draw(self) -> None:
+        """Set the pages anew, beside the screen."""
+        request = self._request()
+        if request is not None:
+            self._visit.preview.start(_previewing(request))
+
+    def _on_previewed(self, pages: list[bytes]) -> None:
+        self.page.report.show_pages(pages)
+
+    def _on_preview_failed(self, error: Exception) -> None:
+        _log.error("the report could not be set", exc_info=error)
+        self.told.emit(tr("The report cannot be shown."), tr("The results can be saved all the same."))
+
+    def _on_comment_edited(self, comment: str) -> None:
+        self._comment = comment
+        self._draw()
+        session = self._visit.session
+        if session is None:
+            return
+        session_id = session.id
+
+        def save(opened: "OpenedLibrary") -> None:
+            current = opened.library.sessions.get(session_id)
+            if current.comment != comment:
+                opened.library.sessions.change(current, current.told, comment)
+
+        self._desk.run(save, None, self._on_refused, self)
+
+    def _on_options_changed(self) -> None:
+        self._draw()
 
     def _on_folder_selected(self, folder: str) -> None:
         session, analysis = self._visit.evaluation.session, self._visit.evaluation.analysis
-        stored = self._visit.session
+        stored, request = self._visit.session, self._request()
         if session is None or analysis is None or stored is None:
             return
         out, session_id = Path(folder), stored.id
+        chosen = self.page.report.formats.chosen
         self._is_saving = True
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:
-            from app.reports.result_folder import check_place, write_results, written_beside
+            from app.exports.exports import Format, export_from_library
+            from app.library_commands import DECODERS
+            from app.reports.patient_report.document import make_report
+            from app.reports.result_folder import REPORT, check_place, write_results, written_beside
             from app.storage.audit import about
             from app.storage.stored import Action, LibraryError
 
             report(0.0, tr("writing"))
             try:
                 check_place(out, opened.folder)
-                opened.library.audit.note(Action.EXPORT, about("session", session_id), format="results")
+                opened.library.audit.note(Action.EXPORT, about("session", session_id), format="report")
                 with written_beside(out) as beside:
-                    write_results(session, analysis, beside, has_log=True)
+                    if "csv" in chosen or "rrd" in chosen:
+                        write_results(session, analysis, beside, has_log="rrd" in chosen)
+                    if request is not None:
+                        (beside / REPORT).write_bytes(make_report(request))
+                    formats = [Format(name) for name in OTHERS if name in chosen]
+                    if formats:
+                        export_from_library(
+                            opened, session_id, formats, beside, DECODERS, report, analysed=lambda _session: analysis
+                        )
             except FileRefusedError as refusal:
                 raise LibraryError(refusal.what[:1].upper() + refusal.what[1:], refusal.remedy) from refusal
             except OSError as problem:
@@ -134,12 +224,36 @@ class ReportStep(Step):
 
     def _on_saved(self, folder: Path) -> None:
         self._is_saving, self._saved = False, folder
-        self._show()
+        self.told.emit("", "")
+        self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_saving = False
         self.told.emit(what, remedy)
 
-    def _on_open_pressed(self) -> None:
-        if self._saved is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._saved)))
+
+class _ReportFrame(QStackedWidget):
+    """The report, or what stands in its place."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self.sentence = SentencePage(look)
+        self.report = ReportPage(look)
+        for page in (self.sentence, self.report):
+            self.addWidget(page)
+
+    def set_room(self, width: float, height: float) -> None:
+        self.report.set_room(width, height)
+
+    def focus(self) -> None:
+        if self.currentWidget() is self.report:
+            self.report.focus()
+
+
+def _previewing(request: "ReportRequest") -> Work:
+    def work(_report: Report) -> object:
+        from app.reports.patient_report.document import report_pages
+
+        return report_pages(request, PREVIEW_PPI)
+
+    return work

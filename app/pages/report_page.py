@@ -1,0 +1,195 @@
+"""The report as it will print, the clinician's words, and what is saved beside it."""
+
+from collections.abc import Sequence
+
+from PySide6.QtCore import QEvent, QObject, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QImage, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QBoxLayout, QFrame, QPlainTextEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.card import Card
+from app.widgets.chips import Chips
+from app.widgets.segmented import Segmented
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
+
+WORDS_WIDTH = 320
+WORDS_HEIGHT = 176
+PAGE_WIDTH = 560  # a page of A4 that can be read
+REBUILT_AFTER_MS = 300  # without a key pressed
+NARROW_BELOW = 900
+FIRST_CHOICE = ("csv", "rrd")
+
+
+class ReportPage(QWidget):
+    """Shown pages as pictures.
+
+    Signals
+    -------
+    comment_edited
+        The words, once the typing pauses.
+    options_changed
+        Another paper, or other files beside the report.
+    """
+
+    comment_edited = Signal(str)
+    options_changed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.sheets = _Sheets(look)
+        self._scroll = QScrollArea()
+        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self._scroll.setWidgetResizable(True)
+        self._scroll.setWidget(self.sheets)
+        self._scroll.setAccessibleName(tr("The report's pages"))
+        self.comment = QPlainTextEdit()
+        self.comment.setAccessibleName(tr("Your words, optional, printed"))
+        self.comment.setTabChangesFocus(True)
+        self.comment.setPlaceholderText(tr("Printed on the last page, above the signature."))
+        self.comment.installEventFilter(self)
+        self.formats = Chips(
+            look,
+            tr("Also save"),
+            [
+                ("csv", tr("CSV")),
+                ("xlsx", tr("XLSX")),
+                ("c3d", tr("C3D")),
+                ("mot", tr("OpenSim")),
+                ("fhir", tr("FHIR")),
+                ("rrd", tr("Rerun")),
+            ],
+        )
+        self.formats.choose(FIRST_CHOICE)
+        self.paper = Segmented(look, tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
+        self._title = Text(look, tr("Your words"), size=20, weight=SEMIBOLD)
+        self._also = Text(look, tr("Also save"), size=16, weight=SEMIBOLD)
+        self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
+        self._note = Text(
+            look, tr("Only the code stands on the report: no name, no clinic number."), tone="ink2", wraps=True
+        )
+        self._card = Card(look, padding=20, spacing=12)
+        for part in (self._title, self.comment, self._also, self.formats, self._sheet, self.paper, self._note):
+            self._card.column.addWidget(part)
+        self._card.column.addStretch(1)
+        self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._row.addWidget(self._scroll, 1)
+        self._row.addWidget(self._card)
+        self._pause = QTimer(self)
+        self._pause.setSingleShot(True)
+        self._pause.setInterval(REBUILT_AFTER_MS)
+        self._pause.timeout.connect(self._on_paused)
+        self.comment.textChanged.connect(self._pause.start)
+        self.formats.turned.connect(self.options_changed)
+        self.paper.chosen.connect(self.options_changed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self._scroll, self.comment, *self.formats.buttons, *self.paper.segments]
+
+    def focus(self) -> None:
+        """Give the focus to the pages: the words are optional, and Enter belongs to the report."""
+        self._scroll.setFocus()
+
+    def set_room(self, width: float, _height: float) -> None:
+        """Put the words under the pages where both do not stand side by side."""
+        is_narrow = width < NARROW_BELOW
+        way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
+        self._row.setDirection(way)
+        self._scroll.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
+
+    def show_comment(self, comment: str) -> None:
+        """Show what was said earlier; the typing goes on where it was if it is the same."""
+        if comment != self.comment.toPlainText():
+            with QSignalBlocker(self.comment):
+                self.comment.setPlainText(comment)
+
+    def show_pages(self, pages: Sequence[bytes]) -> None:
+        """Show pages, each a PNG."""
+        self.sheets.show_pages(pages)
+
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        """Let Esc and Ctrl Enter leave the words: Enter then saves the report."""
+        if watched is self.comment and isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
+            is_enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+            if event.key() == Qt.Key.Key_Escape or (
+                is_enter and event.modifiers() & Qt.KeyboardModifier.ControlModifier
+            ):
+                self.focus()
+                return True
+        return super().eventFilter(watched, event)
+
+    def flush(self) -> None:
+        """Tell of words that are still being typed."""
+        if self._pause.isActive():
+            self._pause.stop()
+            self._on_paused()
+
+    def _on_paused(self) -> None:
+        self.comment_edited.emit(self.comment.toPlainText())
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(24), px(16), px(24), px(16))
+        self._row.setSpacing(px(16))
+        self._card.setFixedWidth(px(WORDS_WIDTH))
+        self.comment.setFixedHeight(px(WORDS_HEIGHT))
+        self.comment.setFont(self._look.theme.font(14))
+
+
+class _Sheets(QWidget):
+    """The pages under each other, as wide as there is room for."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._pages: list[QImage] = []
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.MinimumExpanding)
+        self.setAccessibleName(tr("No pages yet"))
+        column = QVBoxLayout(self)
+        column.setContentsMargins(0, 0, 0, 0)
+        look.changed.connect(self.updateGeometry)
+
+    @property
+    def count(self) -> int:
+        return len(self._pages)
+
+    def show_pages(self, pages: Sequence[bytes]) -> None:
+        self._pages = [QImage.fromData(page) for page in pages]
+        self.setAccessibleName(tr("The report, {count} pages").format(count=len(pages)))
+        self._fit()
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(PAGE_WIDTH), self._height())
+
+    def resizeEvent(self, _event: object) -> None:
+        self._fit()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
+        top, width = 0.0, self._width()
+        left = (self.width() - width) / 2
+        for page in self._pages:
+            place = QRectF(left, top, width, width * page.height() / max(page.width(), 1))
+            if place.intersects(QRectF(self.visibleRegion().boundingRect())):
+                painter.drawImage(place, page)
+                painter.setPen(theme.pen(theme.colours.control, 1))
+                painter.setBrush(Qt.BrushStyle.NoBrush)
+                painter.drawRect(place.adjusted(0.5, 0.5, -0.5, -0.5))
+            top += place.height() + theme.px(16)
+
+    def _width(self) -> float:
+        return min(float(self.width()), 1.5 * self._look.theme.px(PAGE_WIDTH))
+
+    def _height(self) -> int:
+        heights = (self._width() * page.height() / max(page.width(), 1) for page in self._pages)
+        return round(sum(height + self._look.theme.px(16) for height in heights))
+
+    def _fit(self) -> None:
+        self.setMinimumHeight(self._height())
