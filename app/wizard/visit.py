@@ -67,8 +67,6 @@ class Visit(QObject):
         self.evaluation = Evaluation(self)
         self.preview = Background(self)
         """Sets the report's pages; of the visit, for its threads outlive a step."""
-        self.preview = Background(self)
-        """Sets the report's pages; of the visit, for its threads outlive a step."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
         self.has_skipped_standing = False
@@ -271,7 +269,6 @@ class Visit(QObject):
         """Wait for all threads: for the end of the program."""
         self.sensors.finish()
         self.evaluation.finish()
-        self.preview.finish()
         self.preview.finish()
 
     def _change(self, told: Session) -> None:
