@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look
 from app.widgets.step_rail import StepState
+from app.wizard.keys import Action, Intent
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
@@ -58,9 +59,7 @@ def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: Report
     qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.", timeout=WAIT_MS)
 
 
-def test_the_chosen_files_are_saved(
-    qtbot: QtBot, step: ReportStep, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, tmp_path: Path) -> None:
     out = tmp_path / "results"
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step._on_folder_selected
@@ -69,3 +68,16 @@ def test_the_chosen_files_are_saved(
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
+
+
+def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
+    step = ReportStep(Look(), visit, visit.desk)
+    qtbot.addWidget(step.page)
+    primary = step.bar().primary
+    assert primary is not None
+    assert primary.key == "Ctrl S"
+    pressed = []
+    monkeypatch.setattr(step, "on_primary", lambda: pressed.append("save"))
+    assert step.on_intent(Intent(Action.SAVE))
+    assert pressed == ["save"]
+    assert not step.on_intent(Intent(Action.RUN))
