@@ -72,6 +72,9 @@ class Topic(StrEnum):
     REPORT = "report"
     MESSAGES = "messages"
     KEYS = "keys"
+    SENSORS_XIMU3 = "sensors-ximu3"
+    SENSORS_WITMOTION = "sensors-witmotion"
+    SENSORS_CSV = "sensors-csv"
     SENSORS_XSENS_MTI = "sensors-xsens-mti"
     SENSORS_SHIMMER3 = "sensors-shimmer3"
     SENSORS_LSL = "sensors-lsl"
@@ -89,6 +92,9 @@ def topic_title(topic: Topic) -> str:
         Topic.REPORT: tr("Report"),
         Topic.MESSAGES: tr("What messages mean"),
         Topic.KEYS: tr("Keys"),
+        Topic.SENSORS_XIMU3: "x-IMU3",
+        Topic.SENSORS_WITMOTION: "WitMotion",
+        Topic.SENSORS_CSV: tr("Lines of numbers"),
         Topic.SENSORS_XSENS_MTI: "Xsens MTi",
         Topic.SENSORS_SHIMMER3: "Shimmer3",
         Topic.SENSORS_LSL: "Lab Streaming Layer",
