@@ -1,6 +1,5 @@
 """The window: who logs in, home, a session with a patient, or a folder's; and the cover when nobody is there."""
 
-import gc
 import signal
 import sys
 import time
@@ -34,6 +33,7 @@ from app.storage.idle_lock import IdleLock
 from app.theme import Look, load_fonts
 from app.widgets.focus_ring import FocusRing
 from app.workers.background import Background
+from app.workers.garbage import GarbageCollector
 from app.workers.library_desk import LibraryDesk, OpenedState
 from app.workers.preload import preload
 
@@ -431,7 +431,6 @@ def open_window(argv: list[str]) -> int:
     """
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it; Python would wait for the event loop
     sys.setswitchinterval(SWITCH_S)
-    gc.disable()  # until all is imported
     QGuiApplication.setHighDpiScaleFactorRoundingPolicy(Qt.HighDpiScaleFactorRoundingPolicy.PassThrough)
     log_qt_messages()
     app = QApplication([sys.argv[0], *argv])
@@ -440,8 +439,8 @@ def open_window(argv: list[str]) -> int:
     load_fonts()
     window = MainWindow(Look(app), Settings(own_settings()), default_folder())
     window.show()
-    window.preparing.done.connect(_collect_garbage_again)
-    window.preparing.failed.connect(_collect_garbage_again)
+    garbage = GarbageCollector(window)
+    window.preparing.done.connect(garbage.pass_over_imported)
     QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]
     if folders:
@@ -449,12 +448,6 @@ def open_window(argv: list[str]) -> int:
     code = app.exec()
     window.finish()
     return code
-
-
-def _collect_garbage_again() -> None:
-    """Look no more through what was imported: each time that would hold all threads up for a tenth of a second."""
-    gc.freeze()
-    gc.enable()
 
 
 def own_settings() -> QSettings:

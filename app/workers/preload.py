@@ -1,5 +1,6 @@
 """What the first session would wait for is imported beside the screen, once the window is there: two seconds' worth."""
 
+import gc
 from importlib import import_module
 
 from app.workers.background import Report
@@ -29,7 +30,16 @@ MODULES = (
 
 
 def preload(report: Report) -> None:
-    """Work for a `Background`. A module is imported whole or not at all; between two it may be stopped."""
-    for number, name in enumerate(MODULES):
-        report(number / len(MODULES), name)
-        import_module(name)
+    """Work for a `Background`. A module is imported whole or not at all; between two it may be stopped.
+
+    No garbage is collected meanwhile: this is not the thread on which widgets may end.
+    """
+    was_collecting = gc.isenabled()
+    gc.disable()
+    try:
+        for number, name in enumerate(MODULES):
+            report(number / len(MODULES), name)
+            import_module(name)
+    finally:
+        if was_collecting:
+            gc.enable()
