@@ -38,6 +38,11 @@ class Evaluation(QObject):
         return self._background.is_busy
 
     @property
+    def is_idle(self) -> bool:
+        """Whether no thread is left, not even one that nobody waits for."""
+        return self._background.is_idle
+
+    @property
     def calibration(self) -> "Mapping[Joint, JointCalibration]":
         """The latest of each joint."""
         return {} if self.analysis is None else calibration_of(self.analysis)

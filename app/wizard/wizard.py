@@ -57,7 +57,7 @@ class Wizard(QWidget):
         super().__init__()
         self._look, self._desk, self._settings = look, desk, settings
         self._visit: Visit | None = None
-        self._closing: list[Visit] = []  # a few objects each; their threads end by themselves
+        self._closing: list[Visit] = []  # their threads end by themselves
         self._steps: list[Step] = []
         self._current = PATIENT
         self._ticks = 0
@@ -102,6 +102,7 @@ class Wizard(QWidget):
     def close_visit(self) -> None:
         """Let go of sensors and visit; what was recorded is in the library."""
         self._timer.stop()
+        self._forget_closed()
         if self._visit is not None:
             if self._steps:
                 self._steps[self._current].leave()
@@ -112,6 +113,13 @@ class Wizard(QWidget):
             step.deleteLater()
         self._visit, self._steps = None, []
         self.shell.clear_pages()
+
+    def _forget_closed(self) -> None:
+        """Let go of earlier visits, with their samples, as far as nothing of them runs any more."""
+        for visit in tuple(self._closing):
+            if visit.sensors.is_idle and visit.evaluation.is_idle and not visit.takes.is_recording:
+                self._closing.remove(visit)
+                visit.deleteLater()
 
     def finish(self) -> None:
         """Close the visit and wait for its threads: for the end of the program."""

@@ -59,6 +59,11 @@ class WornSensors(QObject):
         return self._background.is_busy
 
     @property
+    def is_idle(self) -> bool:
+        """Whether no thread is left that opens or closes sensors."""
+        return self._background.is_idle and not any(thread.is_alive() for thread in self._closing)
+
+    @property
     def sensor_at(self) -> dict[Site, str]:
         return {site: sensor for sensor, site in self.site_of.items()}
 
