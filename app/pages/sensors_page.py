@@ -137,6 +137,7 @@ class SensorsPage(QWidget):
     def focus(self) -> None:
         if self._pages.currentWidget() is self.nothing and self.nothing.buttons:
             self.nothing.buttons[0].setFocus()
+            self._whole.ensureWidgetVisible(self.nothing.buttons[0])
         elif self._pages.currentWidget() is self.searching:
             self.searching.stop.setFocus()
         elif row := self.list.rows.get(self.list.selection):

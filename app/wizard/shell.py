@@ -247,7 +247,8 @@ class WizardShell(QWidget):
             return
         focus()
         focused = self.window().focusWidget()
-        if focused is None or not (focused is page or page.isAncestorOf(focused)):
+        is_left = focused is page and page.focusPolicy() is Qt.FocusPolicy.NoFocus  # where Qt put it for want of better
+        if focused is None or is_left or not page.isAncestorOf(focused):
             self.bar.focus()  # nothing on this page waits for keys
 
     def _show_strip(self) -> None:
