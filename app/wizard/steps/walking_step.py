@@ -316,6 +316,7 @@ class WalkingStep(Step):
         sensors = self._visit.sensors
         acquisition = sensors.acquisition
         if acquisition is None:
+            self.page.show_message(*self._message(0.0))
             return
         status = sensors.status
         silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}

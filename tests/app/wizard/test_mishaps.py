@@ -15,7 +15,7 @@ from app.acquisition.recorder import Recorder
 from app.settings import Settings
 from app.storage.journal.disk import Trouble
 from app.storage.recordings import Recordings
-from app.storage.stored import LibraryBusyError, LibraryError
+from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import Look, load_fonts
 from app.wizard import takes as takes_module
 from app.wizard import wizard as wizard_module
@@ -206,7 +206,11 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looke
     step.enter()
     assert not step.bar().others[0].is_enabled
     assert step.bar().note == "Choose the source of the sensors first."
-    step._on_discard_pressed(str(again.takes.walks[0].id))
+    (walk,) = again.takes.walks
+    again.takes.every = (replace(walk, stored=replace(walk.stored, state=RecordingState.RECOVERED)),)
+    step.tick()
+    assert "was recovered up to the last 0.1 s" in step.page.notice.text
+    step._on_discard_pressed(str(walk.id))
     qtbot.waitUntil(lambda: not again.takes.walks[0].told.is_kept, timeout=WAIT_MS)
     step.leave()
     again.finish()
