@@ -7,7 +7,9 @@ cable.
 """
 
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -91,13 +93,18 @@ class ClockRuns:
     """Tells which samples share one run of the sensor's clock, and which carry a time that cannot be.
 
     A sensor that was switched off begins anew. A single wild stamp, of a message without a checksum, is damage; five
-    that agree are a new run, whose first four are given up.
+    that agree are a new run, whose first four are given up: but for one that begins after a loss that is known.
     """
 
     def __init__(self) -> None:
         self.run = -1
         self._last: deque[Arrival] = deque(maxlen=REMEMBERED)
         self._doubtful: list[Arrival] = []
+        self._may_begin = True
+
+    def begin(self) -> None:
+        """What follows was sent after a loss or a start: a time that does not follow is a new run at once."""
+        self._may_begin = True
 
     def take(self, device_s: FloatArray, host_s: FloatArray) -> IntArray:
         """Number the run of each arrival (n,), in the order in which they arrived; -1 for what cannot be."""
@@ -108,6 +115,7 @@ class ClockRuns:
             if is_meant.all():
                 newest = zip(device_s[-REMEMBERED:].tolist(), host_s[-REMEMBERED:].tolist(), strict=True)
                 self._last.extend(newest)
+                self._may_begin = False
                 return np.full(len(device_s), self.run, dtype=np.int64)
         arrivals = zip(device_s.tolist(), host_s.tolist(), strict=True)
         return np.fromiter((self._one(arrival) for arrival in arrivals), np.int64, len(device_s))
@@ -119,10 +127,11 @@ class ClockRuns:
             if self._doubtful and not _follows(self._doubtful[-1], arrival):
                 self._doubtful.clear()
             self._doubtful.append(arrival)
-            if len(self._doubtful) < AGREEING:
+            if len(self._doubtful) < AGREEING and not self._may_begin:
                 return -1
             self.run += 1
             self._last.clear()
+        self._may_begin = False
         self._doubtful.clear()
         self._last.append(arrival)
         return self.run
@@ -169,6 +178,10 @@ class LiveClock:
         self._fit: ClockFit | None = None
         self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
         self._run = -1
+
+    def begin(self) -> None:
+        """What follows was sent after a loss, and the sensor's clock may have begun anew."""
+        self._runs.begin()
 
     @property
     def residual_s(self) -> float:
@@ -228,15 +241,21 @@ class Ordered:
     residual_s: float
 
 
-def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None) -> Ordered:
+def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None, begins: Sequence[int] = ()) -> Ordered:
     """Order arrivals (n,) by the sensor's clock, each once, and stamp them by the host's.
 
     Parameters
     ----------
     step_s
         Between two samples, where it is known; else the usual one.
+    begins
+        Ascending indexes of arrivals before which something was lost, so that the sensor may have begun anew.
     """
-    run = ClockRuns().take(device_s, host_s)
+    runs, pieces = ClockRuns(), []
+    for begin, end in pairwise([0, *begins, len(device_s)]):
+        pieces.append(runs.take(device_s[begin:end], host_s[begin:end]))
+        runs.begin()
+    run = np.concatenate(pieces)
     rows: list[IntArray] = []
     times: list[FloatArray] = []
     residuals: list[float] = []

@@ -92,10 +92,12 @@ class Dialect(Protocol):
         """What lights the sensor's LED; empty where nothing does."""
 
 
-def decoded(sensor: str, heard: Heard, host_s: Sequence[float], step_s: float | None = None) -> DecodedSensor:
-    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,)."""
+def decoded(
+    sensor: str, heard: Heard, host_s: Sequence[float], step_s: float | None = None, begins: Sequence[int] = ()
+) -> DecodedSensor:
+    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`."""
     rows = np.array(heard.rows, dtype=float).reshape(-1, COLUMNS)
-    ordered = put_in_order(rows[:, 0], np.array(host_s, dtype=float), step_s)
+    ordered = put_in_order(rows[:, 0], np.array(host_s, dtype=float), step_s, begins)
     block = ImuBlock(
         sensor=sensor,
         time_s=ordered.time_s,
@@ -115,9 +117,11 @@ class Decoder:
         self._info = SourceInfo(dialect.driver, dialect.version)
         self._heard = Heard()
         self._host_s: list[float] = []
+        self._begins: list[int] = []
 
     def begin(self, source: SourceInfo) -> None:
         self._end()
+        self._begins.append(len(self._host_s))
         self._info, self._framer = source, self._dialect.framer(source)
 
     def feed(self, data: bytes, host_time_s: float) -> None:
@@ -129,7 +133,7 @@ class Decoder:
         self._end()
         if not self._info.sensors:
             return {}
-        one = decoded(self._info.sensors[0], self._heard, self._host_s, _step_s(self._info))
+        one = decoded(self._info.sensors[0], self._heard, self._host_s, _step_s(self._info), self._begins)
         return {one.block.sensor: one}
 
     def _take(self, host_time_s: float) -> None:
@@ -187,6 +191,7 @@ class ByteSource:
             info = replace(info, sensors=self._info.sensors)
         self._info, self._told = info, told
         self._framer, self._is_open = self._dialect.framer(info), True
+        self._clock.begin()
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
         data = self._channel.read()

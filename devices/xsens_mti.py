@@ -32,6 +32,7 @@ DRIVER, VERSION = "xsens-mti", "1"
 EMULATED = "emulated MTi"  # what our own emulator calls itself
 RATE_HZ = 100.0  # with orientation 7.4 kB/s, of the 11.5 that 115200 baud carry
 FINE_HZ, FINE_BITS, COUNTER_BITS = 10_000.0, 32, 16
+FINE_TURN_S = 2**FINE_BITS / FINE_HZ
 ANSWERS_S = 0.5
 TRIES = 4  # a sensor that is measuring hears the first request late
 ALWAYS = 0xFFFF  # in place of a frequency: with every message
@@ -51,6 +52,7 @@ class MtiFramer:
         rate_hz = info.settings.get("rate_hz")
         self._rate_hz = float(rate_hz) if isinstance(rate_hz, int | float) else 0.0
         self._fine = Unwrapping(FINE_BITS, FINE_HZ)
+        self._turns_s: float | None = None
         self._counter = Unwrapping(COUNTER_BITS, self._rate_hz)
         self._layouts: dict[tuple[int, ...], _Where] = {}
 
@@ -79,6 +81,9 @@ class MtiFramer:
             return
         if fine := _told(items, here.fine):
             device_s = self._fine.ticks(int(fine[0]), self._host_s) / FINE_HZ
+            if self._turns_s is None:  # so that the clock goes on after a cut, although it may have begun anew
+                self._turns_s = round((self._host_s - device_s) / FINE_TURN_S) * FINE_TURN_S
+            device_s += self._turns_s
         elif (counter := _told(items, here.counter)) and self._rate_hz:
             device_s = self._counter.ticks(int(counter[0]), self._host_s) / self._rate_hz
         else:

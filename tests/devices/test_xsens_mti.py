@@ -242,6 +242,18 @@ def test_noise_alone_gives_nothing_and_holds_little() -> None:
     assert framer.heard.damaged > 0
 
 
+@pytest.mark.parametrize("is_restarted", [True, False])
+def test_a_gap_is_right_to_a_sample_whether_the_sensors_clock_went_on_or_began_anew(is_restarted: bool) -> None:
+    voice, one = MtiVoice("0123"), Decoder(XsensMti())
+    for begin, first in ((0, 0), (1300, 0 if is_restarted else 1300)):
+        one.begin(INFO)
+        for number in range(1000):
+            one.feed(sample(voice, first + number), 50.0 + (begin + number) / 100.0)
+    sensor = one.finish()[INFO.sensors[0]]
+    assert (sensor.counts.received, sensor.counts.lost, sensor.counts.damaged) == (2000, 300, 0)
+    assert np.diff(sensor.block.time_s).max() == pytest.approx(3.01, abs=1e-6)
+
+
 # through a real port
 
 
