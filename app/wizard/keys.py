@@ -142,6 +142,8 @@ class Keys(QObject):
     def _on_focus_changed(self, _before: QWidget | None, focused: QWidget | None) -> None:
         """Listen where keys go and where unwanted ones end: to hear all events of all widgets takes a third of the
         time that a page takes to be made."""
+        if not isValid(self._root):
+            return  # at the program's end
         for left in filter(isValid, self._heard):
             left.removeEventFilter(self)
         self._heard = [self._root.window()]

@@ -177,7 +177,10 @@ class WalkingStep(Step):
         if any(take.told.is_kept for take in takes.walks):
             again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
             return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
-        return BarState(primary=start, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
+        note = tr("Next: {label}").format(label=self._label)
+        if not takes.has_moved:
+            note = tr("Without a free motion, angles are poor or missing.")
+        return BarState(primary=start, note=self._cannot_start or note)
 
     def on_primary(self) -> None:
         takes = self._visit.takes

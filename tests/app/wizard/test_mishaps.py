@@ -194,6 +194,13 @@ def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: Q
     assert [recording.is_restrapped_before for recording in takes.recordings()] == [False, True]
 
 
+def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
+    step = WalkingStep(Look(), looked_at)
+    assert step.bar().note == "Without a free motion, angles are poor or missing."
+    record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
+    assert step.bar().note.startswith("Next:")
+
+
 def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looked_at: Visit) -> None:
     record(qtbot, looked_at, RecordingKind.WALKING, 1.0)
     assert looked_at.session is not None
