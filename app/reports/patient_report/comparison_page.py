@@ -5,37 +5,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
+from app.reports import comparison as walks
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
 from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed, in_a_sentence, in_words, signed, spread
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.reports.walk_figures import is_spread_enough
 from app.wording import capitalised, joined, side_name, tr
 from core.body import Side
-from core.gait.spatiotemporal import MeanAndSd
-from core.norms import (
-    MIN_STRIDES_FOR_SD,
-    Difference,
-    Verdict,
-    compare_new_attachment,
-    compare_same_attachment,
-)
-from core.results import ZeroKind
+from core.norms import Difference, Verdict
 from core.samples import FloatArray
 
-# Until the product's own repeat trials exist; no published figure is known for a share of the stride.
-STANCE_SAME_ATTACHMENT_PERCENT = 1.0
-ROWS = (
-    "knee_loading_peak_deg",
-    "knee_swing_peak_deg",
-    "knee_range_deg",
-    "ankle_stance_dorsiflexion_deg",
-    "ankle_push_off_plantarflexion_deg",
-    "ankle_range_deg",
-    "stance_percent",
-)
+ROWS = tuple(measure.column for measure in walks.MEASURES)
 PLOT_WIDTHS = {2: 75.5 * MM, 3: 67 * MM}
 
 
@@ -47,6 +32,13 @@ class Compared:
     name: str
     facts: Facts
 
+    @cached_property
+    def told(self) -> walks.Part:
+        walk, recordings = self.facts.walk, self.facts.visit.session.recordings
+        names = [recording.name for recording in recordings]
+        attachment = sum(r.is_restrapped_before for r in recordings[: names.index(walk.name) + 1])
+        return walks.Part(self.letter, self.name, (walk,), self.facts.calibrated, attachment)
+
 
 @dataclass(frozen=True)
 class Comparison:
@@ -56,43 +48,31 @@ class Comparison:
     is_visits: bool
 
     @cached_property
+    def told(self) -> walks.Comparison:
+        """The same comparison as the window and the files have it."""
+        kind = walks.Kind.VISITS if self.is_visits else walks.Kind.CONDITIONS
+        return walks.Comparison(kind, tuple(part.told for part in self.parts))
+
+    @property
     def is_same_attachment(self) -> bool:
-        """Whether the sensors stayed on: no strapping anew between the first and the last walk."""
-        if self.is_visits:
-            return False
-        recordings = self.parts[0].facts.visit.session.recordings
-        names = [recording.name for recording in recordings]
-        at = sorted(names.index(part.facts.walk.name) for part in self.parts)
-        return not any(recording.is_restrapped_before for recording in recordings[at[0] + 1 : at[-1] + 1])
+        """Whether the sensors stayed on from the first walk to the last."""
+        return all(self.told.is_same_attachment(part) for part in self.told.others)
 
     @cached_property
     def has_one_zero(self) -> bool:
-        """Whether heights can be compared: the same kind of zero at each, and one at all."""
-        kinds = {found.zero for part in self.parts for found in part.facts.calibrated.values()}
-        return len(kinds) == 1 and ZeroKind.NONE not in kinds
+        """Whether the heights of all joints can be compared."""
+        return all(self.told.has_one_zero(joint) for part in self.told.parts for joint in part.joints)
+
+    def compare(self, part: Compared, side: Side, column: str) -> walks.Compared:
+        """One part less the first."""
+        return self.told.compare(_measured(column), side, part.told)
 
     def difference(self, part: Compared, side: Side, column: str) -> Difference:
-        """One part less the first."""
-        one, other = part.facts.value(side, column), self.parts[0].facts.value(side, column)
-        if column == "stance_percent":
-            return self._stance_difference(one, other)
-        if self.is_same_attachment:
-            return compare_same_attachment(one, other)
-        return compare_new_attachment(joint_of(column.split("_")[0], side), one, other)
-
-    def _stance_difference(self, one: MeanAndSd, other: MeanAndSd) -> Difference:
-        difference = one.mean - other.mean
-        if not self.is_same_attachment:
-            return Difference(difference, math.nan, Verdict.NO_PUBLISHED_FIGURE)
-        if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
-            return Difference(difference, math.nan, Verdict.TOO_FEW_STRIDES)
-        chance = 1.96 * math.sqrt(one.sd**2 / one.n + other.sd**2 / other.n)
-        error = max(STANCE_SAME_ATTACHMENT_PERCENT, chance)
-        verdict = Verdict.EXCEEDS_ERROR if abs(difference) > error else Verdict.INSIDE_ERROR
-        return Difference(difference, error, verdict)
+        """One part less the first, for any angle of strides.csv and for stance."""
+        return self.compare(part, side, column).difference
 
     def is_comparable(self, column: str) -> bool:
-        return self.has_one_zero or column.endswith("_range_deg") or column == "stance_percent"
+        return self.has_one_zero or not _measured(column).needs_height
 
     def sentences(self) -> list[str]:
         """What the first page says: the knee's swing peak and range of the first side, last part against the first."""
@@ -103,11 +83,10 @@ class Comparison:
             ("knee_swing_peak_deg", tr("{side} knee in swing")),
             ("knee_range_deg", tr("{side} knee range over the stride")),
         ):
-            value, found = shown.facts.value(side, column), self.difference(shown, side, column)
-            if not self.is_comparable(column) or not math.isfinite(found.difference_deg):
+            compared = self.compare(shown, side, column)
+            if not compared.is_told:
                 continue
-            if not is_mean_enough(value.n):
-                continue
+            value, found = compared.value, compared.difference
             since = (
                 tr("since the earlier visit {change}°") if self.is_visits else tr("{this} against {first} {change}°")
             )
@@ -125,6 +104,10 @@ class Comparison:
                 )
             )
         return said
+
+
+def _measured(column: str) -> walks.Measure:
+    return walks.Measure(column, "", column.split("_")[0] if column.endswith("_deg") else "")
 
 
 def comparison_page(comparison: Comparison) -> list[Block]:
@@ -152,6 +135,7 @@ def _legend_entry(comparison: Comparison, k: int, sides: Sequence[Side]) -> tupl
 
 
 def _panel(comparison: Comparison, side: Side, kind: str) -> Picture:
+    is_about_mean = not comparison.has_one_zero  # heights from different zeros are no comparison
     lines = []
     for k, part in enumerate(comparison.parts):
         if not part.facts.is_measured(joint_of(kind, side)):
@@ -159,13 +143,22 @@ def _panel(comparison: Comparison, side: Side, kind: str) -> Picture:
         colour, width = panels.condition_look(k, len(comparison.parts), side)
         own = panels.line_of(part.facts, side, kind, width=width, has_peaks=False)
         lines.append(
-            replace(own, letter=part.letter, colour=colour, casing=0.9, toe_off_sd=math.nan, toe_off_label=part.letter)
+            replace(
+                own,
+                letter=part.letter,
+                colour=colour,
+                casing=0.9,
+                angle_deg=own.angle_deg - np.mean(own.angle_deg) if is_about_mean else own.angle_deg,
+                toe_off_sd=math.nan,
+                toe_off_label=part.letter,
+                strides_deg=np.empty((0, len(own.angle_deg))),
+            )
         )
     shown = comparison.parts[-1].facts
     alts = [f"{part.letter}: {panels.curve_alt(part.facts, kind, [side])}" for part in comparison.parts]
     chart = Chart(
-        title=panels.title_with_side(shown, kind, side),
-        axis=panels.axis_of(shown, kind),
+        title=panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean),
+        axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
         lines=tuple(lines),
         band=_band(comparison, kind),
         plot_width=PLOT_WIDTHS[len(comparison.parts)],
@@ -176,7 +169,7 @@ def _panel(comparison: Comparison, side: Side, kind: str) -> Picture:
 
 
 def _band(comparison: Comparison, kind: str) -> tuple[FloatArray, FloatArray] | None:
-    return panels.band_of(comparison.parts[-1].facts, kind)
+    return panels.band_of(comparison.parts[-1].facts, kind) if comparison.has_one_zero else None
 
 
 def _table(comparison: Comparison, sides: Sequence[Side]) -> Block:
@@ -211,8 +204,8 @@ def _row(comparison: Comparison, side: Side, column: str) -> list[Cell | str]:
         shown = tr("no peak") if part.facts.is_no_peak(side, column) else spread(value, 1)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     for part in comparison.parts[1:]:
-        found = comparison.difference(part, side, column)
-        is_told = comparison.is_comparable(column) and math.isfinite(found.difference_deg)
+        compared = comparison.compare(part, side, column)
+        found, is_told = compared.difference, compared.is_told
         words = Cell(in_words(found.verdict), is_bold=found.verdict is Verdict.EXCEEDS_ERROR) if is_told else NOTHING
         error = [fixed(found.error_deg, 1) if is_told else NOTHING] if comparison.is_visits else []
         cells += [signed(found.difference_deg, 1) if is_told else NOTHING, *error, words]
@@ -258,7 +251,7 @@ def _how_judged(comparison: Comparison) -> str:
         said = tr(
             "Measurement error here: 1.96 × standard error of the difference, plus 1°; for stance the larger of "
             "that standard error's part and {stance} %, a placeholder until repeat trials exist."
-        ).format(stance=fixed(STANCE_SAME_ATTACHMENT_PERCENT, 1))
+        ).format(stance=fixed(walks.STANCE_SAME_ATTACHMENT_PERCENT, 1))
     else:
         said = tr(
             "Measurement error with sensors put on anew: 9.2° for the knee; not known, so not judged, for the rest."

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 
+from app.reports.comparison import STANCE_SAME_ATTACHMENT_PERCENT
 from app.reports.patient_report.blocks import Block, bullets, heading, note
-from app.reports.patient_report.comparison_page import STANCE_SAME_ATTACHMENT_PERCENT
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.plain_text import plain, plain_lines

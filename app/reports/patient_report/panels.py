@@ -38,10 +38,10 @@ PEAK_COLUMNS = {
 }
 
 
-def axis_of(facts: Facts, kind: str) -> Axis:
+def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
     """The same in every report; without a zero, about the mean of the stride."""
     if kind == "knee":
-        low, high = (-40, 50) if facts.has_no_zero(kind) else (-10, 80)
+        low, high = (-40, 50) if is_about_mean or facts.has_no_zero(kind) else (-10, 80)
         return Axis(low, high, 20, 10, tr("bent"), tr("straight"))
     return Axis(-30, 30, 10, 10, tr("toes up"), tr("toes down"))
 
@@ -60,14 +60,14 @@ def title_of(facts: Facts, kind: str) -> str:
     )
 
 
-def title_with_side(facts: Facts, kind: str, side: Side) -> str:
+def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool = False) -> str:
     said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
     short = {
         "knee": tr("knee, degrees from the mean (flexion +)"),
         "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
     }
     title = title_of(facts, kind)
-    return said.format(title=short[kind] if facts.has_no_zero(kind) else title[:1].lower() + title[1:])
+    return said.format(title=short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:])
 
 
 def band_of(facts: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:

@@ -152,6 +152,21 @@ def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: Repo
     assert "No band was used" in pages[4]
 
 
+def test_visits_with_different_zeros_are_compared_in_shape_and_range_only(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    visit = request_of_demonstration.visit
+    unset = without_zero(request_of_demonstration).visit
+    pages = shown(replace(request_of_demonstration, earlier=(unset, "walk 1")))
+    page = pages[3]
+    assert "Zero is missing or differs in kind: only range and timing are compared." in page
+    assert "Left: knee, degrees from the mean (flexion +)" in page
+    assert "Band mean" not in page
+    assert "Knee: most flexed, swing – 58.8 ± 0.9 – – –" in page
+    assert "Knee: range over the stride 61.7 ± 0.8 61.7 ± 0.8 0.0 9.2 inside error" in page
+    assert "degrees (flexion +" in shown(replace(request_of_demonstration, earlier=(visit, "walk 1")))[3]
+
+
 def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> None:
     analysis = request_of_demonstration.visit.analysis
     gaps = {"missing_percent": 4.2, "count": 3, "longest_s": 0.31}
