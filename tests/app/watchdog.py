@@ -121,6 +121,7 @@ class Watchdog:
                 if self._is_watching and not self._stack and _is_late(*self._spent().since(self._beat)):
                     frame = sys._current_frames().get(self._thread_id)
                     self._stack = "".join(traceback.format_stack(frame)) if frame is not None else ""
+                    del frame  # it would keep a painter alive that the thread has long done with
 
     def _spent(self) -> Spent:
         wall_s = time.monotonic()

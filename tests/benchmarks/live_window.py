@@ -1,0 +1,327 @@
+"""What does the whole window cost while a patient walks, how old is what it paints, and is its thread ever held up?
+
+    python -m tests.benchmarks.live_window [--rate 100] [--size 1280 800] [--seconds 60] [--curves 18]
+
+The application itself on a display of its own (Xvfb) leads a whole session with the simulated patient, from home to the
+results, and records a walk of so many seconds; readers, journal, estimator and frames are all in its process. Told are:
+CPU of the walk as a share of one core, by thread; frames a second and how far apart; age: from an angle's stamp until
+the frame that shows it was sent to the display, the estimator's wait for the samples around it included; what held
+the screen's thread up for more than 100 ms in the whole session, and where. With `--curves 18` frames are those of a
+page that draws the rates of six sensors about three axes, instead of the walking page, for as long.
+"""
+
+import argparse
+import gc
+import json
+import subprocess
+import sys
+import threading
+import time
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tests.benchmarks.own_display import own_display, own_environment
+
+if TYPE_CHECKING:
+    from app.main_window import MainWindow
+    from app.wizard.wizard import Wizard
+    from app.wizard.worn_sensors import SourceChoice
+
+STRIDE_S = 1.1
+POLL_MS = 50
+PATIENCE_S = 180.0
+PAUSE_S = 0.7  # at each stop, for what is drawn after it
+DUE_S = 1 / 30
+
+
+def lead(wanted: argparse.Namespace) -> dict[str, Any]:
+    """Open the window, lead the session, and give what was measured. Runs in a process of its own."""
+    from PySide6.QtCore import QTimer
+
+    from app import main_window
+    from app.wizard import sources
+    from tests.app.watchdog import Watchdog
+
+    sources.choices = lambda: (_source(wanted.rate, wanted.seconds),)  # before the wizard takes it from there
+    measured: dict[str, Any] = {}
+    init = main_window.MainWindow.__init__
+    timer = QTimer()
+
+    def begun(window: "MainWindow", *arguments: Any, **named: Any) -> None:
+        init(window, *arguments, **named)
+        dog = Watchdog()
+        script = _session(window, wanted, measured)
+        state: dict[str, Any] = {"until": lambda: True, "since_s": time.monotonic()}
+
+        def poll() -> None:
+            try:
+                if state["until"]():
+                    state["until"], state["since_s"] = next(script), time.monotonic()
+                elif time.monotonic() - state["since_s"] > PATIENCE_S:
+                    raise TimeoutError("the session does not go on")
+            except StopIteration:
+                dog.stop()
+                measured["late"] = [str(late) for late in dog.late]
+                window.close()
+            except Exception:
+                window.close()
+                raise
+
+        timer.timeout.connect(poll)
+        timer.start(POLL_MS)
+        dog.start()
+        gc.unfreeze()  # the application is measured as it is
+
+    main_window.MainWindow.__init__ = begun  # type: ignore[assignment,method-assign]  # only to measure
+    collected = _collections()
+    main_window.open_window([])
+    measured["collections_ms"] = collected
+    return measured
+
+
+def _source(rate_hz: float, seconds: float) -> "SourceChoice":
+    from app.acquisition.acquisition import Acquisition
+    from app.wizard.sources import DEMONSTRATION
+    from app.wizard.worn_sensors import SourceChoice
+    from devices.replay import DEMONSTRATION_SESSION, demonstration
+    from devices.walker import Walk
+
+    walk = Walk(strides=round((seconds + 10.0) / STRIDE_S), standing_before_s=2.0)
+    recordings = (*(one for one in DEMONSTRATION_SESSION.recordings if not isinstance(one, Walk)), walk)
+    settings = replace(DEMONSTRATION_SESSION, rate_hz=rate_hz, recordings=recordings)
+    return SourceChoice(
+        DEMONSTRATION, "Simulated patient", lambda: Acquisition([demonstration(settings)]), is_simulated=True
+    )
+
+
+def _session(
+    window: "MainWindow", wanted: argparse.Namespace, measured: dict[str, Any]
+) -> Iterator[Callable[[], bool]]:
+    """The session: each stop is reached when what it yields is true."""
+    window.resize(*wanted.size)
+    window.move(20, 20)
+    yield _after(PAUSE_S)
+    window.open_demonstration()
+    yield lambda: window.home is not None and window.home.isVisible()
+    yield _after(2 * PAUSE_S)
+    yield lambda: window.preparing.is_idle  # who types a passphrase takes longer
+    from app.pages.sensors_page import Way
+    from app.wizard.steps.free_motion_step import FreeMotionStep
+    from app.wizard.steps.results_step import ResultsStep
+
+    window._on_session_wished(window.home._patient if window.home is not None else None)
+    wizard = window._wizard
+    assert wizard is not None
+    yield _after(PAUSE_S)
+    yield lambda: wizard.visit is not None and wizard.visit.patient.stored is not None
+    wizard.go_to(1)
+    yield _after(PAUSE_S)
+    visit = wizard.visit
+    assert visit is not None
+    visit.sensors.search(visit.choices[0])
+    yield lambda: visit.sensors.acquisition is not None
+    yield _after(4.0)
+    _Watch.listen()
+    wizard._steps[1].page.way_chosen.emit(Way.MOTION)  # type: ignore[attr-defined]  # it is the sensors page
+    yield _after(PAUSE_S)
+    wizard.go_to(2)
+    yield _after(PAUSE_S)
+    wizard._on_primary()
+    yield lambda: wizard._current == 3
+    free = wizard._steps[3]
+    assert isinstance(free, FreeMotionStep)
+    yield lambda: wizard._current == 4 or free._is_side_asked
+    if wizard._current == 3:
+        yield _after(PAUSE_S)
+        free._on_answered(0)
+    yield lambda: wizard._current == 4
+    yield lambda: not visit.evaluation.is_busy
+    yield _after(PAUSE_S)
+    wizard._on_primary()
+    yield lambda: wizard.is_recording
+    yield _after(8.0)  # until every joint has its angle
+    bench = _bench_page(window, wizard) if wanted.curves else None
+    watch = _Watch(wizard)
+    yield _after(wanted.seconds)
+    measured |= watch.end()
+    if bench is not None:
+        window.screens.setCurrentWidget(wizard)
+        yield _after(PAUSE_S)
+    wizard._on_primary()
+    yield lambda: not visit.takes.is_recording and not visit.takes.is_stopping
+    yield _after(PAUSE_S)
+    visit.takes.keep(visit.takes.walks[-1], True)
+    wizard.go_to(5)
+    results = wizard._steps[5]
+    assert isinstance(results, ResultsStep)
+    yield lambda: results._shown is not None and not visit.evaluation.is_busy
+    yield _after(2 * PAUSE_S)
+    wizard.go_to(6)
+    yield _after(PAUSE_S)
+    wizard.leave()
+    yield _after(2 * PAUSE_S)
+
+
+def _after(seconds: float) -> Callable[[], bool]:
+    until_s = time.monotonic() + seconds
+    return lambda: time.monotonic() >= until_s
+
+
+class _Watch:
+    """What is measured while the patient walks."""
+
+    current: "_Watch | None" = None
+
+    @classmethod
+    def listen(cls) -> None:
+        """Hear of every curve that is painted from now on; before any is, since Qt asks Python only once."""
+        from PySide6.QtCore import QTimer
+
+        from app.plots.live_strip import _HistoryItem
+
+        paint = _HistoryItem.paint
+
+        def heard(item: Any, *arguments: Any) -> None:
+            paint(item, *arguments)
+            if cls.current is not None:
+                QTimer.singleShot(0, partial(cls.current.on_sent, item))  # once the frame is on the display
+
+        _HistoryItem.paint = heard  # type: ignore[assignment,method-assign]  # only to measure
+
+    def __init__(self, wizard: "Wizard") -> None:
+        visit = wizard.visit
+        assert visit is not None
+        assert visit.sensors.acquisition is not None
+        self._acquisition = visit.sensors.acquisition
+        self._painted_s: list[float] = []
+        self._age_s: list[float] = []
+        self._shown_to_s: dict[int, float] = {}
+        self._first: Any = None
+        self._cpu, self._threads = time.process_time(), _by_thread()
+        self._begin_s = time.perf_counter()
+        _Watch.current = self
+
+    def on_sent(self, item: Any) -> None:
+        if _Watch.current is not self:
+            return
+        now_s = self._acquisition.now_s
+        if self._first is None:
+            self._first = item
+        if item is self._first:
+            self._painted_s.append(time.perf_counter())
+        for trace in item._traces.values():
+            shown_to_s = self._shown_to_s.get(id(trace), trace.last_s)
+            new = trace.time_s[(trace.time_s > shown_to_s) & np.isfinite(trace.angle_deg)]
+            self._age_s += (now_s - new).tolist()
+            self._shown_to_s[id(trace)] = trace.last_s
+
+    def end(self) -> dict[str, Any]:
+        _Watch.current = None
+        elapsed_s = time.perf_counter() - self._begin_s
+        cpu_s = time.process_time() - self._cpu
+        threads = {
+            name: 100 * (spent_s - self._threads.get(name, 0.0)) / elapsed_s for name, spent_s in _by_thread().items()
+        }
+        between_s = np.diff(self._painted_s)
+        return {
+            "cpu": 100 * cpu_s / elapsed_s,
+            "threads": {name: share for name, share in threads.items() if share >= 0.2},
+            "frames": len(self._painted_s) / elapsed_s,
+            "between_ms": _quantiles(between_s, (0.5, 0.95, 0.99, 1.0)),
+            "age_ms": _quantiles(np.array(self._age_s), (0.5, 0.95, 1.0)),
+            "behind": self._acquisition.dropped_from_preview,
+            "lost": sum(status.counts.lost for status in self._acquisition.status().values()),
+        }
+
+
+def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
+    """Eighteen curves: what every sensor's rates about its three axes are, two curves in each of nine strips."""
+    from PySide6.QtCore import QTimer
+    from PySide6.QtWidgets import QVBoxLayout, QWidget
+
+    from app.plots.live_strip import LiveStrip, LiveTrace
+    from core.body import Side
+
+    acquisition = wizard.visit.sensors.acquisition if wizard.visit is not None else None
+    assert acquisition is not None
+    page = QWidget()
+    column = QVBoxLayout(page)
+    strips = [LiveStrip(window._look, (-400.0, 400.0), 400) for _ in range(9)]
+    for strip in strips:
+        column.addWidget(strip, 1)
+
+    def show() -> None:
+        curves = []
+        for sensor in acquisition.sensors:
+            block = acquisition.latest(sensor, 0.5)
+            curves += [LiveTrace(block.time_s, block.gyr_rad_s[:, axis]) for axis in range(3)]
+        for k, strip in enumerate(strips):
+            left, right = curves[2 * k : 2 * k + 2]
+            strip.show_traces(float(left.time_s[-1]), {Side.LEFT: left, Side.RIGHT: right})
+
+    timer = QTimer(page)
+    timer.timeout.connect(show)
+    timer.start(round(1000 * DUE_S))
+    window.screens.addWidget(page)
+    window.screens.setCurrentWidget(page)
+    return page
+
+
+def _by_thread() -> dict[str, float]:
+    """Processor time of each thread so far, s, by its name; of the display's and Qt's own, all together."""
+    names = {thread.native_id: thread.name for thread in threading.enumerate()}
+    spent: defaultdict[str, float] = defaultdict(float)
+    for folder in Path("/proc/self/task").iterdir():
+        name = names.get(int(folder.name), "others")
+        spent[name] += int((folder / "schedstat").read_text().split()[0]) / 1e9
+    return spent
+
+
+def _collections() -> list[float]:
+    """How long each full garbage collection takes, ms, from now on."""
+    took_ms: list[float] = []
+    begun: list[float] = []
+
+    def note(phase: str, told: dict[str, int]) -> None:
+        if told["generation"] == 2:
+            if phase == "start":
+                begun.append(time.perf_counter())
+            elif begun:
+                took_ms.append(round(1000 * (time.perf_counter() - begun.pop()), 1))
+
+    gc.callbacks.append(note)
+    return took_ms
+
+
+def _quantiles(values_s: "np.ndarray[Any, Any]", which: tuple[float, ...]) -> list[float]:
+    return [round(1000 * value, 1) for value in np.quantile(values_s, which)] if len(values_s) else []
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--rate", type=float, default=100.0, help="of each sensor, Hz")
+    parser.add_argument("--size", type=int, nargs=2, default=(1280, 800), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--seconds", type=float, default=60.0, help="of the walk")
+    parser.add_argument("--curves", type=int, choices=[0, 18], default=0)
+    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)
+    wanted = parser.parse_args()
+    if wanted.inside:
+        print(json.dumps(lead(wanted)))
+        return
+    with own_display() as display, own_environment(display) as environment:
+        command = [sys.executable, "-m", "tests.benchmarks.live_window", "--inside", *sys.argv[1:]]
+        told = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+    measured = json.loads(told.splitlines()[-1])
+    for late in measured.pop("late", []):
+        print(late)
+    print(json.dumps(measured, indent=1))
+
+
+if __name__ == "__main__":
+    main()
