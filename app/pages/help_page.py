@@ -498,7 +498,8 @@ class _Reader(QTextBrowser):
             (QPalette.ColorRole.Text, theme.colours.ink),
         ):
             palette.setColor(role, QColor(colour))
-        self.setPalette(palette)
+        for one in (self, self.viewport()):  # under a style sheet the viewport keeps the colours it was made with
+            one.setPalette(palette)
         at = self.verticalScrollBar().value()
         self._wrap()
         self._set_text()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
@@ -171,3 +172,12 @@ def test_searching_holds_up_nobody(page: HelpPage, watchdog: Watchdog, qtbot: Qt
         page.show_topic(topic)
         search(page, "sensor")
         qtbot.wait(10)
+
+
+def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: Look) -> None:
+    page.show_topic(Topic.REPORT)
+    page.show()
+    for is_dark in (False, True, False):
+        look.set_dark(is_dark)
+        corner = page.text.grab().toImage().pixelColor(5, 5)
+        assert corner.name() == QColor(look.theme.colours.surface).name()
