@@ -483,9 +483,9 @@ def _doubt(verdict: Verdict) -> str:
     return tr("not judged") if verdict is Verdict.NO_PUBLISHED_FIGURE else ""
 
 
-def _weight(row: Compared) -> tuple[str, float]:
+def _weight(row: Compared) -> tuple[int, float]:
     """What is said first: of the latest part what lies furthest beyond the error."""
-    return chr(ord("Z") - ord(row.part.letter)), -abs(row.difference.difference_deg) / row.difference.error_deg
+    return -ord(row.part.letter), -abs(row.difference.difference_deg) / row.difference.error_deg
 
 
 def _sentence(row: Compared) -> str:

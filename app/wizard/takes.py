@@ -1,6 +1,6 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING
@@ -211,14 +211,7 @@ class Takes(QObject):
 
         That sensors were strapped anew before one that does not count is told of the next.
         """
-        counted = []
-        is_restrapped = False
-        for take in self.every:
-            is_restrapped |= take.told.is_restrapped_before
-            if take.told.is_kept and take.recording is not None:
-                counted.append(replace(take.told, imu=take.recording.imu, is_restrapped_before=is_restrapped))
-                is_restrapped = False
-        return tuple(counted)
+        return counted(self.every)
 
     def _of(self, kind: RecordingKind) -> tuple[Take, ...]:
         return tuple(take for take in self.every if take.told.kind is kind)
@@ -287,3 +280,15 @@ class Takes(QObject):
         self.ongoing, self._stopped, self._is_stopping = None, None, False
         self.changed.emit()
         self.refused.emit(what, tr("The recording is safe on the disk; it is found when Gaitwright starts again."))
+
+
+def counted(takes: Sequence[Take]) -> tuple[Recording, ...]:
+    """Those of one session's recordings that count, with their samples, as `Takes.recordings` tells them."""
+    found = []
+    is_restrapped = False
+    for take in takes:
+        is_restrapped |= take.told.is_restrapped_before
+        if take.told.is_kept and take.recording is not None:
+            found.append(replace(take.told, imu=take.recording.imu, is_restrapped_before=is_restrapped))
+            is_restrapped = False
+    return tuple(found)

@@ -17,10 +17,11 @@ from app.logs import version_of
 from app.storage.stored import RecordingState, StoredPatient, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
-from app.wizard.takes import Take, Takes
+from app.wizard.reviewing import Reviewing
+from app.wizard.takes import Take, Takes, counted
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
-from app.workers.background import Background
+from app.workers.background import Background, Report
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -29,7 +30,9 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
     from core.live.sensors import LiveSensor
+    from core.results import Analysis
 
+MOST_EARLIER = 4  # visits; more are too many lines on one axis
 DEMO = "DEMO"  # how the codes of patients begin that simulated recordings are kept for, as the library has it
 
 
@@ -42,12 +45,15 @@ class Visit(QObject):
         The session's row, or what is known of zero and standing.
     resumed
         A session of the library has been read, with its recordings.
+    earlier_read
+        The patient's visits before this one, each as when it began and its analysis, in the order of time.
     refused
         What the library or a source refused, and what to do.
     """
 
     changed = Signal()
     resumed = Signal()
+    earlier_read = Signal(object)
     refused = Signal(str, str)
 
     def __init__(
@@ -65,6 +71,7 @@ class Visit(QObject):
         self.sensors = WornSensors(self)
         self.takes = Takes(desk, self)
         self.evaluation = Evaluation(self)
+        self.reviewing = Reviewing(self)
         self.preview = Background(self)
         """Sets the report's pages; of the visit, for its threads outlive a step."""
         self.rests: dict[str, Rest] = {}
@@ -82,6 +89,7 @@ class Visit(QObject):
         self.sensors.opened.connect(self._on_sensors_opened)
         self.takes.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
+        self.reviewing.refused.connect(self.refused)
         self.takes.ended.connect(self._on_take_ended)
         self.takes.changed.connect(self._on_takes_changed)
 
@@ -252,6 +260,26 @@ class Visit(QObject):
             told = replace(self.told, sensors=sensors, is_simulated=self.is_simulated)
             self.evaluation.ask(replace(told, recordings=recordings))
 
+    def read_earlier(self) -> None:
+        """Evaluate the patient's latest visits before this one; `earlier_read` follows."""
+        if self.session is None:
+            return
+        session = self.session
+
+        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[str, Analysis]]":
+            from core.analysis import analyse
+
+            lines = opened.library.sessions.list(session.patient_id)  # latest first
+            before = [line for line in lines if line.id != session.id and line.started < session.told.started]
+            found = []
+            for line in reversed(before[:MOST_EARLIER]):
+                stored = opened.library.sessions.get(line.id)
+                told = replace(stored.told, recordings=counted(_read(opened, stored)))
+                found.append((stored.told.started, analyse(told, progress=report)))
+            return found
+
+        self._desk.run_long(work, self._on_earlier_read, self._on_refused, None, self)
+
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
@@ -269,6 +297,7 @@ class Visit(QObject):
         """Wait for all threads: for the end of the program."""
         self.sensors.finish()
         self.evaluation.finish()
+        self.reviewing.finish()
         self.preview.finish()
 
     def _change(self, told: Session) -> None:
@@ -306,6 +335,9 @@ class Visit(QObject):
         self.takes.take_over(session, tuple(kept))
         self.changed.emit()
         self.evaluate()
+
+    def _on_earlier_read(self, found: "list[tuple[str, Analysis]]") -> None:
+        self.earlier_read.emit(found)
 
     def _on_resumed(self, read: tuple[StoredPatient, StoredSession, tuple[Take, ...]]) -> None:
         patient, self.session, takes = read

@@ -39,6 +39,7 @@ class ResultsStep(Step):
         visit.changed.connect(self._on_visit_changed)
         visit.evaluation.done.connect(self._on_evaluated)
         visit.evaluation.progressed.connect(self._on_progressed)
+        visit.earlier_read.connect(self._on_earlier_read)
 
     @property
     def page(self) -> "_ResultsFrame":
@@ -77,7 +78,9 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        quiet = () if self._is_correcting else (Verb(tr("Correct"), icon=Icon.REPEAT),)
+        quiet: tuple[Verb, ...] = ()
+        if not self._is_correcting:
+            quiet = (Verb(tr("Correct"), icon=Icon.REPEAT), Verb(tr("Review in Rerun"), icon=Icon.PLAY))
         return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
 
     def on_primary(self) -> None:
@@ -89,6 +92,10 @@ class ResultsStep(Step):
             self._is_correcting = True
             self._show()
             self.page.correct().focus()
+        elif number == 1 and self.bar().quiet:
+            evaluation = self._visit.evaluation
+            if evaluation.session is not None and evaluation.analysis is not None:
+                self._visit.reviewing.show(evaluation.session, evaluation.analysis)
 
     def undo(self) -> None:
         if self._undo is not None:
@@ -118,7 +125,11 @@ class ResultsStep(Step):
             )
             page.setCurrentWidget(page.sentence)
         else:
+            is_new = not page.has_results
             results = page.results()
+            if is_new:
+                results.compare.set_has_visits(True)
+                results.compare.visits_wished.connect(self._visit.read_earlier)
             if self._shown is not evaluation.analysis:
                 self._shown = evaluation.analysis
                 self._show_analysis(results, evaluation.analysis)
@@ -224,6 +235,19 @@ class ResultsStep(Step):
         self._undo = undo
         self.offered.emit(words)
 
+    # earlier visits
+
+    def _on_earlier_read(self, found: "list[tuple[str, Analysis]]") -> None:
+        """Show the visits in the order of time, this one last."""
+        if self._shown is None or self._frame is None:
+            return
+        from app.reports.comparison import visit_of
+
+        visits = [*found, (self._visit.told.started, self._shown)]
+        named = [(started[:10], analysis) for started, analysis in visits]
+        parts = [visit_of(str(k + 1), day, analysis) for k, (day, analysis) in enumerate(named)]
+        self.page.results().compare.show_visits([part for part in parts if part is not None])
+
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()
 
@@ -277,6 +301,10 @@ class _ResultsFrame(QStackedWidget):
         self._room = (0.0, 0.0)
         for page in (self.sentence, self.working):
             self.addWidget(page)
+
+    @property
+    def has_results(self) -> bool:
+        return self._results is not None
 
     def results(self) -> "ResultPage":
         if self._results is None:

@@ -1,6 +1,7 @@
 """The step of results on a session of the library: shown quickly, put right after the fact, undone, and audited."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from time import process_time
 from uuid import UUID
 
@@ -10,6 +11,8 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.reports.comparison import Kind
+from app.review import viewer
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
@@ -52,7 +55,8 @@ def one_walk() -> Session:
 @pytest.fixture
 def session_id(qtbot: QtBot, desk: LibraryDesk, one_walk: Session) -> UUID:
     def bring_in(opened: OpenedLibrary) -> UUID:
-        import_session(opened, one_walk, lambda _share, _what: None, "DEMO-1")
+        for started in ("2026-09-01T10:00:00", "2026-10-01T10:00:00"):
+            import_session(opened, replace(one_walk, started=started), lambda _share, _what: None, "DEMO-1")
         return opened.library.sessions.list()[0].id
 
     found = asked(qtbot, desk, bring_in)
@@ -137,6 +141,27 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     assert [take.told.condition for take in visit.takes.walks] == ["AFO"]
     step.page.correct().closed.emit()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
+
+
+def test_an_earlier_visit_is_compared_as_worn_anew(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
+    compare = step.page.results().compare
+    with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
+        compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    found = compare.comparison
+    assert found is not None
+    assert [(part.letter, part.name) for part in found.parts] == [("1", "2026-09-01"), ("2", "2026-10-01")]
+    knees = [row.difference for row in found.rows if row.measure.column == "knee_range_deg"]
+    assert [(knee.difference_deg, knee.error_deg) for knee in knees] == [(0.0, 9.2), (0.0, 9.2)]
+
+
+def test_rerun_that_is_missing_is_told(
+    qtbot: QtBot, visit: Visit, step: ResultsStep, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(viewer, "viewer_program", lambda: None)
+    with qtbot.waitSignal(visit.refused) as told:
+        step.on_quiet(1)
+    assert told.args is not None
+    assert "Rerun is not installed here" in told.args[0]
 
 
 def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:

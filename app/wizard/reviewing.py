@@ -1,0 +1,60 @@
+"""How is the session looked at in Rerun? Its log is written beside the screen, and shown in a window of its own."""
+
+import logging
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QObject, Signal
+
+from app.wording import tr
+from app.workers.background import Background, Report
+
+if TYPE_CHECKING:
+    from app.review.viewer import Viewer
+    from core.results import Analysis
+    from core.samples import Session
+
+_log = logging.getLogger(__name__)
+
+
+class Reviewing(QObject):
+    """One viewer for a visit; its windows end with the program."""
+
+    refused = Signal(str, str)
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._viewer: Viewer | None = None
+        self._background = Background(self)
+        self._background.failed.connect(self._on_failed)
+
+    def show(self, session: "Session", analysis: "Analysis") -> None:
+        """Open a window on the session; one at a time is made ready."""
+        from app.review.viewer import Viewer, default_root, viewer_program, why_not
+
+        program = viewer_program()
+        if why := why_not(program):
+            self.refused.emit(why, "")
+            return
+        if self._background.is_busy:
+            return
+        viewer = self._viewer = self._viewer or Viewer(default_root(), program)
+
+        def work(_report: Report) -> None:
+            viewer.open(session, analysis)
+
+        self._background.start(work)
+
+    def finish(self) -> None:
+        """Wait for what is being made ready, and close all windows."""
+        self._background.finish()
+        if self._viewer is not None:
+            self._viewer.close()
+
+    def _on_failed(self, error: Exception) -> None:
+        from app.review.viewer import ViewerRefusedError
+
+        if isinstance(error, ViewerRefusedError):
+            self.refused.emit(str(error), "")
+            return
+        _log.error("Rerun was not shown", exc_info=error)
+        self.refused.emit(tr("Rerun could not be started."), tr("The log holds the details."))
