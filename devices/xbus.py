@@ -167,15 +167,16 @@ class Framer:
             self._pass_over(start - at)
             at = start
             one, end = self._message(held, start, is_end)
-            if one is not None and (inner := held.find(BEGIN, start + 1, end)) >= 0:
+            if one is not None and (inner := held.find(BEGIN, start + 1, end + 2)) >= 0:
                 # bytes were lost, so that its end was found in the next one, and its checksum is right by chance
                 following, until = self._message(held, inner, is_end)
                 if until > len(held):
                     break
                 if following is not None:
                     one, end = None, start + 1
-            if end > len(held):
-                break  # its rest is on the way
+            is_doubtful = held.endswith((PREAMBLE, PREAMBLE[:1])) and end <= len(held) < end + 2 and not is_end
+            if end > len(held) or is_doubtful:
+                break  # its rest is on the way, or what tells whether the next one begins within it
             if one is None:
                 self._pass_over(1)
             else:
