@@ -95,9 +95,9 @@ def topic_title(topic: Topic) -> str:
         Topic.SENSORS_XIMU3: "x-IMU3",
         Topic.SENSORS_WITMOTION: "WitMotion",
         Topic.SENSORS_CSV: tr("Lines of numbers"),
-        Topic.SENSORS_XSENS_MTI: "Xsens MTi",
+        Topic.SENSORS_XSENS_MTI: tr("Xsens MTi"),
         Topic.SENSORS_SHIMMER3: "Shimmer3",
-        Topic.SENSORS_LSL: "Lab Streaming Layer",
+        Topic.SENSORS_LSL: tr("Lab Streaming Layer"),
     }[topic]
 
 

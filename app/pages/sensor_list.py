@@ -359,7 +359,7 @@ class SensorRowView(QAbstractButton):
         share = veil.alphaF()
         mixed = [
             round((1 - share) * under + share * over)
-            for under, over in zip(ground.getRgb()[:3], veil.getRgb()[:3], strict=True)  # type: ignore[index]
+            for under, over in zip(ground.getRgb()[:3], veil.getRgb()[:3], strict=True)  # type: ignore[index]  # Qt gives four numbers; its stubs say object
         ]
         return QColor(*mixed)
 

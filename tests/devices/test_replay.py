@@ -41,8 +41,8 @@ Make = Callable[..., ReplaySource]
 
 @pytest.fixture
 def make(session: Session, clock: Clock) -> Make:
-    def make(faults: ReplayFaults = ReplayFaults(), **settings: float) -> ReplaySource:  # noqa: B008  frozen
-        return ReplaySource(session, faults=faults, now_ns=clock, sleep=clock.sleep, **settings)  # type: ignore[arg-type]
+    def make(faults: ReplayFaults = ReplayFaults(), **settings: float) -> ReplaySource:  # noqa: B008  # the default is frozen
+        return ReplaySource(session, faults=faults, now_ns=clock, sleep=clock.sleep, **settings)  # type: ignore[arg-type]  # speed alone is given here
 
     return make
 

@@ -51,7 +51,7 @@ def numbered_session(name: str, sensors: int = 6, rate_hz: float = RATE_HZ) -> S
 
 
 def open_journal(folder: Path, recording_id: UUID, **settings: object) -> JournalWriter:
-    return JournalWriter.create(folder, recording_id, KEY, room=NO_ROOM_ASKED, **settings)  # type: ignore[arg-type]
+    return JournalWriter.create(folder, recording_id, KEY, room=NO_ROOM_ASKED, **settings)  # type: ignore[arg-type]  # each caller names its own
 
 
 def read_back(paths: Sequence[Path]) -> DecodedJournal:

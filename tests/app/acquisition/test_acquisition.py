@@ -40,7 +40,7 @@ def wait_for(is_so: Callable[[], bool]) -> None:
 
 
 def played(name: str = "a", sensors: int = 2, **settings: object) -> ReplaySource:
-    return ReplaySource(numbered_session(name, sensors), name=name, **settings)  # type: ignore[arg-type]
+    return ReplaySource(numbered_session(name, sensors), name=name, **settings)  # type: ignore[arg-type]  # each test names its own
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def start() -> Iterator[Start]:
     started: list[Acquisition] = []
 
     def start(*sources: object, **settings: object) -> Acquisition:
-        acquisition = Acquisition(sources, **settings)  # type: ignore[arg-type]
+        acquisition = Acquisition(sources, **settings)  # type: ignore[arg-type]  # each test names its own
         started.append(acquisition)
         acquisition.start()
         return acquisition
@@ -213,7 +213,7 @@ class Scripted:
 
 def block(clock: Clock, sensor: str, first: int, count: int = 5, **more: object) -> ImuBlock:
     time_s = clock() / 1e9 + np.arange(first, first + count) / 100
-    return ImuBlock(sensor, time_s, np.ones((count, 3)), np.ones((count, 3)), **more)  # type: ignore[arg-type]
+    return ImuBlock(sensor, time_s, np.ones((count, 3)), np.ones((count, 3)), **more)  # type: ignore[arg-type]  # orientation or field, as the test wants
 
 
 def test_two_sensors_of_one_name_are_refused_and_all_is_closed() -> None:

@@ -135,7 +135,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
         recorder.mark("go")
         acquisition.ask(played.kind)
         until_s = acquisition.now_s + length_s
-        wait_for(lambda until_s=until_s: acquisition.now_s > until_s)  # type: ignore[misc]
+        wait_for(lambda until_s=until_s: acquisition.now_s > until_s)  # type: ignore[misc]  # the default binds the loop's value
         stored, recording = recorder.stop(opened)
         assert stored.state is RecordingState.CLOSED
         assert [journal.sha256 for journal in stored.journals] == [recorder.summary.sha256 if recorder.summary else ""]

@@ -110,7 +110,7 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
             for row in delegate._rows(line, view.room):  # type: ignore[attr-defined]  # the delegate is our own
                 spans = []
                 for word in row:
-                    wide = delegate._width(word)  # type: ignore[attr-defined]  # as above
+                    wide = delegate._width(word)  # type: ignore[attr-defined]  # of our delegate, which Qt hands out as its own kind
                     left = view.room - wide - 2 * look.theme.px(24) if word.is_right else word.left
                     spans.append((left, left + wide))
                 spans.sort()

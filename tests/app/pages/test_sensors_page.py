@@ -32,7 +32,7 @@ def rows(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, 
     made = []
     for name, site in zip(NAMES, worn, strict=True):
         facts: dict[str, object] = {"rate_hz": 100.0, "battery": 0.8, "can_identify": True, "site": site}
-        made.append(SensorRow(name, "x-IMU3", **(facts | changes.get(f"s{name}", {}))))  # type: ignore[arg-type]  # test
+        made.append(SensorRow(name, "x-IMU3", **(facts | changes.get(f"s{name}", {}))))  # type: ignore[arg-type]  # facts of many types, by name
     return tuple(made)
 
 

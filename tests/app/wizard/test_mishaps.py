@@ -145,7 +145,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         beginnings.append(arguments)
         if len(beginnings) == 1:
             raise LibraryError("A recording needs 620 MB of free disk", "Delete files")
-        return begin_for_real(*arguments)  # type: ignore[arg-type]
+        return begin_for_real(*arguments)  # type: ignore[arg-type]  # whatever the caller gave
 
     monkeypatch.setattr(Recorder, "begin", refused_once)
     step = FreeMotionStep(Look(), looked_at)

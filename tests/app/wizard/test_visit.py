@@ -1,3 +1,5 @@
+"""A visit is begun, recorded, evaluated and taken up again, and loses nothing on the way."""
+
 from dataclasses import replace
 
 import numpy as np
