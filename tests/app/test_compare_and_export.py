@@ -20,6 +20,8 @@ from core.samples import Session
 from devices.files.session_folder import write_session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 CONDITIONS = {"walk 1": "barefoot", "walk 2": "AFO"}
 
 

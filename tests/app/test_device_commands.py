@@ -16,6 +16,8 @@ from devices.ports import MORE_PORTS
 from devices.source import SourceInfo
 from tests.safety.port_vanishes import vanish_often
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 
 def test_every_driver_that_records_bytes_has_its_decoder() -> None:
     assert set(BYTE_DRIVERS) == {driver.key for driver in DRIVERS}

@@ -366,6 +366,7 @@ def is_cut(widget: QWidget) -> bool:
 @pytest.mark.parametrize(
     ("size", "scale"), [((1280, 800), 1.0), ((1280, 800), 2.0), ((800, 560), 1.0), ((800, 560), 0.8)]
 )
+@pytest.mark.endurance
 def test_every_word_fits(
     qtbot: QtBot,
     qapp: QApplication,

@@ -15,6 +15,8 @@ from pytestqt.qtbot import QtBot
 
 from tests.app.watchdog import Watchdog
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 
 @pytest.fixture
 def dog(qapp: QApplication) -> Iterator[Watchdog]:

@@ -182,6 +182,7 @@ def test_turning_the_sensors_turns_what_lies_in_them_and_nothing_else(
 
 @settings(max_examples=4)
 @given(shift_s=st.floats(-1e6, 1e6))
+@pytest.mark.endurance
 def test_shifting_all_clocks_shifts_the_stamps_and_nothing_else(person: "Person", shift_s: float) -> None:
     plain, shifted = (analyse(person.visit(duration_s=6.0, start_s=start_s)) for start_s in (0.0, shift_s))
     for one, other in zip(plain.recordings, shifted.recordings, strict=True):

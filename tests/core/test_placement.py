@@ -32,6 +32,8 @@ from tests.benchmarks.placement import (
     unlabelled,
 )
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 FindData = Callable[[str], Path]
 T, S, F = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT
 RT, RS, RF = Site.RIGHT_THIGH, Site.RIGHT_SHANK, Site.RIGHT_FOOT

@@ -16,6 +16,8 @@ from core.sensors import SensorTracks
 from core.strap import Slip, Turns, slips, turns_over
 from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 WALK = "walk 1"
 SLIP_S = 22.0
 

@@ -11,6 +11,8 @@ from core.results import Analysis
 from core.samples import FloatArray, RateKind, SensorInfo, Session
 from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 LEFT = tuple(site for site in Site if site.side is Side.LEFT)
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SHORT = (Standing(), FreeMotion(), Walk(strides=5))

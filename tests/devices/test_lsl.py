@@ -16,6 +16,8 @@ from devices.host_clock import host_time_ns
 from devices.live import SourceLostError, SourceRefusedError
 from devices.lsl import LslSensor, LslSource, LslStream, find_streams, sensors_of
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 AXES = ("x", "y", "z")
 SHIMMER = tuple(
     f"Shimmer_{number}_{quantity}_{axis.upper()}_CAL"

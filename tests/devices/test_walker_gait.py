@@ -11,6 +11,8 @@ from devices.walker import NO_ERRORS, Manner, SimulatedSession, Walk, WalkerSett
 from devices.walker_body import HEEL_M, TOE_M, make_leg
 from devices.walker_gait import plan_walk, walk_leg
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 SPEEDS = [0.3, 0.6, 1.19, 1.6, 2.0]
 
 

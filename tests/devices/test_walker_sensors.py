@@ -24,6 +24,8 @@ from devices.walker_sensors import (
     sensor_poses,
 )
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 GYRO_NOISE = SensorErrors().gyro_noise_rad_s * np.sqrt(50.0)  # at 100 Hz
 ACC_NOISE = SensorErrors().acc_noise_m_s2 * np.sqrt(50.0)
 DENSE = WalkerSettings(seed=3, rate_hz=1000.0, errors=NO_ERRORS, tissue=Tissue.SOFT)

@@ -4,6 +4,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+import pytest
 
 from app.acquisition.walking_work import WalkingWork
 from app.wizard.evaluation import calibration_of
@@ -14,6 +15,8 @@ from core.live.sensors import LiveSensor
 from core.samples import ImuBlock, RateKind, Recording
 from devices.replay import DEMONSTRATION_SESSION
 from devices.walker import FreeMotion, Standing, Walk, simulate
+
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 PIECE_S = 0.5
 PAUSE_S = 3.0

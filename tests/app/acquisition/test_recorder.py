@@ -28,6 +28,8 @@ from devices.replay import ReplayFaults, ReplaySource
 from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
 from tests.safety.live_material import Clock, numbered_session
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 ANY_ROOM = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
 PATIENCE_S = 20.0
 LEFT_THIGH, LEFT_SHANK, LEFT_FOOT = Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT

@@ -455,6 +455,7 @@ def walked() -> Opened:
         ((1920, 1080), 2.0),
     ],
 )
+@pytest.mark.endurance
 def test_every_word_fits(
     qtbot: QtBot,
     window: SessionScreen,

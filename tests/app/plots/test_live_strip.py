@@ -13,6 +13,8 @@ from app.theme import Look, load_fonts
 from core.body import Side
 from core.samples import FloatArray, IntArray
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 RATE_HZ, FRAME_S = 100.0, 1 / 30
 KEPT_S = 15.0
 PERIOD_S = 1.1

@@ -117,6 +117,7 @@ def test_no_planted_name_is_found_after_a_kill_amid_a_write(
         assert found(folder, names) == set()
 
 
+@pytest.mark.endurance
 def test_the_same_names_are_found_where_nothing_is_encrypted(tmp_path: Path, names: list[str]) -> None:
     written_and_killed(tmp_path, "", names, 0, 1.0)
     assert len(found(tmp_path, names)) > 2

@@ -20,6 +20,8 @@ from core.samples import RecordingKind
 from tests.app.wizard.test_hints import state
 from tests.app.wizard.test_visit import begin, record
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 SPACE = Intent(Action.RUN)
 
 

@@ -25,6 +25,8 @@ from core.samples import FloatArray, Session
 from devices.walker import DEMONSTRATION, simulate
 from tests.app.room import words_cut
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 QUICK_S = 1.0  # of the processor, whatever else the machine does
 
 

@@ -18,6 +18,8 @@ from core.samples import Patient, RecordingKind
 from devices.replay import ReplaySource
 from tests.app.wizard.conftest import SPEED
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 TICK_MS = 10
 RUN = Intent(Action.RUN)
 
@@ -111,7 +113,6 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
-@pytest.mark.endurance
 def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: WalkingStep, visit: Visit) -> None:
     calibrate(qtbot, visit)
     with qtbot.waitSignal(visit.takes.begun, timeout=10_000):

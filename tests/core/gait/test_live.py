@@ -20,6 +20,8 @@ from core.samples import FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 SITES = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
 MAX_DIFFERENCE_S = 0.030
 ROLLING = (FootEvent.TOE_OFF, FootEvent.INITIAL_CONTACT)

@@ -6,6 +6,8 @@ import pytest
 from devices.walker import Tissue, Walk, WalkerSettings
 from tests.benchmarks.gait_simulated import Score, score_walks
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 SUPPORT = "double_support_percent"
 MAX_SUPPORT_PERCENT = 3.0  # of itself: contact or toe-off are 2 ms off
 

@@ -27,6 +27,8 @@ from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKin
 from core.tracks import Track
 from devices.walker import FreeMotion, JointTruth, Standing, Tissue, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 TestData = Callable[[str], Path]
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SITES = tuple(site for site in Site if site.side is Side.LEFT)

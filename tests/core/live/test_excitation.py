@@ -18,6 +18,8 @@ from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray
 from tests.benchmarks.excitation import QUANTITIES, stopped_calibrations
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 KNEE, ANKLE = Joint.LEFT_KNEE, Joint.LEFT_ANKLE
 SITES = {
     Site.LEFT_THIGH: np.array([0.03, 0.08, -0.22]),

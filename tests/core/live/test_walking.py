@@ -18,6 +18,8 @@ from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock, Recording
 from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 WALK = "walk 1"
 
 

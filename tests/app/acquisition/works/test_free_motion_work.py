@@ -9,6 +9,8 @@ from core.live.free_motion import FreeMotionState
 from core.samples import ImuBlock
 from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 LEFT_MOVES_S, RIGHT_MOVES_S = BEGIN_S, BEGIN_S + 11.0
 
 

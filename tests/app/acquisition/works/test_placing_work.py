@@ -11,6 +11,8 @@ from core.body import Side
 from core.samples import ImuBlock
 from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 NAMES = tuple("ABCDEF")
 RATE_HZ = 100.0
 

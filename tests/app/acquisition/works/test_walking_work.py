@@ -13,6 +13,8 @@ from core.results import AxisSource
 from core.samples import ImuBlock
 from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks, without
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 ORDER = (Phase.LOADING, Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING)
 
 

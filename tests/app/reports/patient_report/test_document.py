@@ -13,6 +13,8 @@ import pytest
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 
 def texts(pdf: bytes) -> list[str]:
     return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]

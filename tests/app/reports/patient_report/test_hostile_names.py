@@ -11,6 +11,8 @@ from app.reports.patient_report.document import make_report
 from app.reports.patient_report.plain_text import BOX, MAX_MARKS, breakable, isolated, plain, plain_lines
 from app.reports.patient_report.request import ReportRequest, Visit
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 HOSTILE = (
     '#image("/etc/passwd") $x^2$ *bold* _it_ @ref <label> // comment \\ #eval("1")',
     "<script>alert(1)</script>&amp;<svg/>",

@@ -15,6 +15,8 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 
+pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
+
 
 def shown(request: ReportRequest) -> list[str]:
     """Give the text of every page, in lines of one space."""

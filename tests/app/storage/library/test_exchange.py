@@ -197,6 +197,7 @@ def sessions(draw: st.DrawFn) -> Session:
 
 @settings(max_examples=12, suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow])
 @given(session=sessions())
+@pytest.mark.endurance
 def test_whatever_a_session_holds_the_library_gives_back(opened: OpenedLibrary, session: Session) -> None:
     assert_same(session, in_and_out(opened, session))
 
