@@ -14,6 +14,8 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
+COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
+
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
 settings.register_profile("here", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)
@@ -34,6 +36,14 @@ def test_data() -> Callable[[str], Path]:
         return found
 
     return find
+
+
+@pytest.fixture(autouse=True)
+def _garbage_on_one_thread() -> Iterator[None]:
+    """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash."""
+    gc.disable()
+    yield
+    gc.collect() if gc.get_count()[2] > COLLECTIONS else gc.collect(1)
 
 
 @pytest.fixture(autouse=True)

@@ -17,6 +17,7 @@ from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryE
 OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
 BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
 TRY_S = 5.0  # how long one attempt waits
+WAL_AGAIN_S = 0.02
 PG_WRITE_LOCK = 0x6761_6974  # any number, the same at all stations
 PG_LOCKED = "55P03"  # lock_not_available
 AS_WRITER = {"takes_write_lock": True}
@@ -173,8 +174,21 @@ def _prepare(connection: sqlite.Connection, data_key: bytes | None) -> None:
     connection.create_function("lower", 1, _lower, deterministic=True)
     connection.execute("PRAGMA temp_store = MEMORY")
     connection.execute("PRAGMA secure_delete = ON")
-    connection.execute("PRAGMA journal_mode = WAL")
+    _go_over_to_wal(connection)
     connection.execute("PRAGMA synchronous = FULL")
+
+
+def _go_over_to_wal(connection: sqlite.Connection) -> None:
+    """Keep a write-ahead log. Of two who go over to it at once SQLite refuses one, without waiting as elsewhere."""
+    deadline = time.monotonic() + TRY_S
+    while True:
+        try:
+            connection.execute("PRAGMA journal_mode = WAL")
+            return
+        except sqlite.OperationalError as error:
+            if not _is_locked(error) or time.monotonic() >= deadline:
+                raise
+            time.sleep(WAL_AGAIN_S)
 
 
 def _lower(value: object) -> object:
