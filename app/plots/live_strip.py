@@ -186,7 +186,9 @@ class _Trace:
         return count
 
     def measure(self, first: int, px_per_s: float, px_per_deg: float) -> None:
-        """Measure the line from row `first` on; the rows before keep what they have."""
+        """Measure the line from row `first` on; the rows before keep what they have. A leg may have no row yet."""
+        if not len(self.time_s):
+            return
         begin = max(first - 1, 0)
         steps = np.hypot(np.diff(self.time_s[begin:]) * px_per_s, np.diff(self.angle_deg[begin:]) * px_per_deg)
         self.length_px[begin + 1 :] = self.length_px[begin] + np.cumsum(np.nan_to_num(steps))

@@ -190,3 +190,12 @@ def test_the_filters_get_time_for_their_first_angle(strip: LiveStrip) -> None:
     assert rounded(strip) == []
     strip.show_traces(16.0, {Side.LEFT: nothing})
     assert rounded(strip) == [(Side.LEFT, 10.0, None)]
+
+
+def test_a_leg_of_which_nothing_has_come_yet_is_painted_as_nothing(strip: LiveStrip) -> None:
+    nothing = LiveTrace(np.zeros(0), np.zeros(0), is_provisional=True)
+    strip.show_traces(1.0, {Side.LEFT: trace(1.0), Side.RIGHT: nothing})
+    with_nothing = picture(strip)
+    strip.clear()
+    strip.show_traces(1.0, {Side.LEFT: trace(1.0)})
+    assert np.array_equal(with_nothing, picture(strip))
