@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
-from app.plots.live_strip import LiveStrip, LiveTrace
+from app.plots.live_strip import LiveStrip, LiveTrace, _Trace
 from app.theme import Look, load_fonts
 from core.body import Side
 from core.samples import FloatArray, IntArray
@@ -199,3 +199,10 @@ def test_a_leg_of_which_nothing_has_come_yet_is_painted_as_nothing(strip: LiveSt
     strip.clear()
     strip.show_traces(1.0, {Side.LEFT: trace(1.0)})
     assert np.array_equal(with_nothing, picture(strip))
+
+
+def test_a_line_without_a_row_is_measured_without_one() -> None:
+    # an exception while it is painted ends the program
+    line = _Trace()
+    line.measure(0, 100.0, 2.0)
+    assert len(line.length_px) == 0
