@@ -18,6 +18,7 @@ WORDS_HEIGHT = 176
 PAGE_WIDTH = 560  # a page of A4 that can be read
 REBUILT_AFTER_MS = 300  # without a key pressed
 NARROW_BELOW = 900
+QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 FIRST_CHOICE = ("csv", "rrd")
 
 
@@ -37,7 +38,7 @@ class ReportPage(QWidget):
 
     def __init__(self, look: Look) -> None:
         super().__init__()
-        self._look = look
+        self._look, self._is_narrow = look, False
         self.sheets = _Sheets(look)
         self._scroll = QScrollArea()
         self._scroll.setFrameShape(QFrame.Shape.NoFrame)
@@ -96,10 +97,16 @@ class ReportPage(QWidget):
 
     def set_room(self, width: float, _height: float) -> None:
         """Put the words under the pages where both do not stand side by side."""
-        is_narrow = width < NARROW_BELOW
+        self._is_narrow = is_narrow = width < NARROW_BELOW
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
         self._scroll.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
+        self._fit_card()
+
+    def _fit_card(self) -> None:
+        words = self._look.theme.px(WORDS_WIDTH)
+        self._card.setMinimumWidth(words)
+        self._card.setMaximumWidth(QWIDGETSIZE_MAX if self._is_narrow else words)
 
     def show_comment(self, comment: str) -> None:
         """Show what was said earlier; the typing goes on where it was if it is the same."""
@@ -135,7 +142,7 @@ class ReportPage(QWidget):
         px = self._look.theme.px
         self._row.setContentsMargins(px(24), px(16), px(24), px(16))
         self._row.setSpacing(px(16))
-        self._card.setFixedWidth(px(WORDS_WIDTH))
+        self._fit_card()
         self.comment.setFixedHeight(px(WORDS_HEIGHT))
         self.comment.setFont(self._look.theme.font(14))
 
