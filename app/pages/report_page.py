@@ -67,9 +67,7 @@ class ReportPage(QWidget):
         self._title = Text(look, tr("Your words"), size=20, weight=SEMIBOLD)
         self._also = Text(look, tr("Also save"), size=16, weight=SEMIBOLD)
         self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
-        self._note = Text(
-            look, tr("Only the code stands on the report: no name, no clinic number."), tone="ink2", wraps=True
-        )
+        self._note = Text(look, tr("Only the code stands on the report, no name."), tone="ink2", wraps=True)
         self._card = Card(look, padding=20, spacing=12)
         for part in (self._title, self.comment, self._also, self.formats, self._sheet, self.paper, self._note):
             self._card.column.addWidget(part)
