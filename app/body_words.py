@@ -1,7 +1,7 @@
 """What are parts of the body called where they stand on their own, and as the patient is spoken to?"""
 
 from app.wording import tr
-from core.body import Joint, Segment, Side
+from core.body import Joint, Segment
 
 
 def segment_name(segment: Segment) -> str:
@@ -12,8 +12,3 @@ def segment_name(segment: Segment) -> str:
 def joint_name(joint: Joint) -> str:
     """Name a joint beside the chip of its side: "Knee"."""
     return tr("Knee") if joint.is_knee else tr("Ankle")
-
-
-def leg_name(side: Side) -> str:
-    """Name a leg inside a sentence: "the left leg"."""
-    return tr("the left leg") if side is Side.LEFT else tr("the right leg")

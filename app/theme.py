@@ -4,7 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QObject, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette, QPen
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette, QPen
 from PySide6.QtWidgets import QApplication
 
 from app.colours import DARK as DARK
@@ -96,12 +96,6 @@ class Look(QObject):
         super().__init__(parent)
         self.theme = Theme()
 
-    def follow_system(self) -> None:
-        """Take light or dark from the desktop, now and whenever it changes."""
-        hints = QGuiApplication.styleHints()
-        hints.colorSchemeChanged.connect(self._on_color_scheme_changed)
-        self._on_color_scheme_changed(hints.colorScheme())
-
     def set_dark(self, is_dark: bool) -> None:
         self._apply(replace(self.theme, colours=DARK if is_dark else LIGHT))
 
@@ -116,9 +110,6 @@ class Look(QObject):
             return
         nearest = min(range(len(SCALES)), key=lambda i: abs(SCALES[i] - self.theme.scale))
         self.set_scale(SCALES[min(max(nearest + steps, 0), len(SCALES) - 1)])
-
-    def _on_color_scheme_changed(self, scheme: Qt.ColorScheme) -> None:
-        self.set_dark(scheme is Qt.ColorScheme.Dark)
 
     def _apply(self, theme: Theme) -> None:
         self.theme = theme

@@ -4,7 +4,7 @@ The screen and the files take their figures from here, so that no number is draw
 """
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
@@ -284,12 +284,6 @@ def visit_of(letter: str, name: str, analysis: Analysis) -> Part | None:
     """All walks of one visit that have strides; None without any."""
     walks = tuple(_walks(analysis))
     return Part(letter, name, walks, calibrated_for(analysis, walks[0])) if walks else None
-
-
-def reach_of(rows: Iterable[Difference]) -> float:
-    """The largest difference or error among `rows`, for an axis that shows them all; 0 without any."""
-    finite = [abs(value) for row in rows for value in (row.difference_deg, row.error_deg) if math.isfinite(value)]
-    return max(finite, default=0.0)
 
 
 def _walks(analysis: Analysis) -> list[RecordingAnalysis]:

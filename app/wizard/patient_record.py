@@ -42,10 +42,6 @@ class PatientRecord(QObject):
     def is_saved(self) -> bool:
         return self.stored is not None and self.stored.told == self.told
 
-    @property
-    def is_saving(self) -> bool:
-        return self._is_saving
-
     def choose(self, stored: StoredPatient) -> None:
         self.stored, self.told = stored, stored.told
         self.changed.emit()

@@ -102,10 +102,6 @@ class LibraryDesk(QObject):
         """The library that is open, as it was when it was opened; None while there is none."""
         return self._state
 
-    @property
-    def is_long_busy(self) -> bool:
-        return self._long.is_busy
-
     def run(
         self,
         call: Callable[["OpenedLibrary"], T],
