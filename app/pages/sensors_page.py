@@ -1,7 +1,6 @@
 """Are six sensors on, and which is where? Dragged onto the figure, shaken in turn, or left to the motion."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import pairwise
 
@@ -11,25 +10,26 @@ from PySide6.QtWidgets import (
     QBoxLayout,
     QFrame,
     QHBoxLayout,
-    QProgressBar,
     QScrollArea,
     QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
 
-from app.pages.sensor_list import SensorList, SensorRow
+from app.pages.sensor_list import SensorList
 from app.pages.sensor_places import PlaceShown, SensorPlaces
+from app.pages.sensor_row import SensorRow
+from app.pages.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
+from app.pages.source_pages import NoSource, Searching, SourceOption
 from app.theme import Look
 from app.widgets.body_figure import SensorMark
-from app.widgets.button import Button, Kind
 from app.widgets.choice import Choice
 from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
-from app.wording import name_of, tr
-from core.body import Segment, Side, Site
+from app.wording import tr
+from core.body import Site
 from core.samples import FloatArray
 
 FLASH_MS = 700
@@ -44,15 +44,6 @@ class Way(StrEnum):
     DRAG = "drag"
     SHAKE = "shake"
     MOTION = "motion"
-
-
-@dataclass(frozen=True, slots=True)
-class SourceOption:
-    """Something that sensors can be heard through; `note` is what was found there: "6 found"."""
-
-    key: str
-    name: str
-    note: str = ""
 
 
 class SensorsPage(QWidget):
@@ -111,8 +102,8 @@ class SensorsPage(QWidget):
         )
         self.list = SensorList(look)
         self.notice = Notice(look, size=16)
-        self.nothing = _NoSource(look)
-        self.searching = _Searching(look)
+        self.nothing = NoSource(look)
+        self.searching = Searching(look)
         self._build()
         self._connect()
         self.show_no_source()
@@ -363,62 +354,16 @@ class SensorsPage(QWidget):
             return PlaceShown(sensor.name, tr("losses"), SensorMark.LOOK, is_next, is_flashing)
         return PlaceShown(sensor.name, "", SensorMark.WORN, is_next, is_flashing)
 
-    def _sentence(self, worn: Mapping[Site, SensorRow]) -> tuple[Icon | None, str, str, bool]:
-        """Icon, what is so, what to do, and whether it wants a look; the most urgent of all that could be said."""
+    def _sentence(self, worn: Mapping[Site, SensorRow]) -> Said:
+        """What is so and what to do: the most urgent of all that could be said."""
         if self._told[0]:
             return Icon.WARNING, *self._told, True
         if self._hovered is not None:
-            sensor, site = self._hovered
-            other = worn.get(site)
-            if other is not None and other.name != sensor:
-                what = tr("{site} is already worn by {sensor}.").format(site=name_of(site), sensor=other.name)
-                return Icon.INFO, what, tr("Drop here to swap the two."), False
-            return Icon.INFO, name_of(site), tr("Drop {sensor} here.").format(sensor=sensor), False
+            return said_of_dragged(*self._hovered, worn)
         if self._shaken_together:
-            first, *_, last = self._shaken_together
-            what = (
-                tr("Both {first} and {last} were shaken.").format(first=first, last=last)
-                if len(self._shaken_together) == 2
-                else tr("{count} sensors were shaken.").format(count=len(self._shaken_together))
-            )
-            return Icon.WARNING, what, tr("Shake one at a time."), True
-        return self._state_of_sensors(worn)
-
-    def _state_of_sensors(self, worn: Mapping[Site, SensorRow]) -> tuple[Icon | None, str, str, bool]:
-        if silent := [sensor for sensor in self._sensors if sensor.silent_s > 0]:
-            return Icon.WARNING, *_said_of_silent(silent[0]), True
-        if (foot := self._missing_foot(worn)) is not None:
-            return Icon.WARNING, *_said_of_missing_foot(foot), True
-        if low := [sensor for sensor in self._sensors if sensor.is_low]:
-            what = tr("{name} has {charge} battery.").format(name=_called(low[0]), charge=low[0].charge)
-            return Icon.WARNING, what, tr("Charge it after this patient."), True
-        if lossy := [sensor for sensor in self._sensors if sensor.is_lossy]:
-            what = tr("{name}: {share} % of the samples were lost.").format(
-                name=_called(lossy[0]), share=f"{100 * lossy[0].lost_share:.1f}"
-            )
-            return Icon.WARNING, what, tr("Bring the receiver nearer to the patient."), True
-        if self.way is Way.MOTION and not worn:
-            what = tr("The free motion tells which sensor is where.")
-            return Icon.INFO, what, tr("Strap one on each thigh, shank and foot, in any order."), False
-        if len(worn) == len(Site):
-            return Icon.CHECK, tr("All six are worn and heard."), "", False
-        if self._sensors and len(worn) == len(self._sensors):
-            return Icon.INFO, tr("All sensors have their place."), "", False
-        if self.way is Way.SHAKE and (place := self.next_place) is not None:
-            what = tr("Shake the sensor of the {site}.").format(site=_in_sentence(place))
-            return Icon.NEXT, what, tr("Its place goes dark when it is known."), False
-        return Icon.NEXT, tr("Drag each sensor to its place."), tr("Or choose one and press 1 to 6."), False
-
-    def _missing_foot(self, worn: Mapping[Site, SensorRow]) -> Site | None:
-        """A foot that goes without a sensor: it was taken off, or none is left for it, while its shank has one."""
-        if self.way is Way.MOTION and not worn:
-            return None
-        is_any_left = any(sensor.site is None for sensor in self._sensors)
-        for side in Side:
-            foot, shank = Site(f"{side}_{Segment.FOOT}"), Site(f"{side}_{Segment.SHANK}")
-            if foot not in worn and shank in worn and (foot in self._bared or not is_any_left):
-                return foot
-        return None
+            return said_of_shaken_together(self._shaken_together)
+        next_place = self.next_place if self.way is Way.SHAKE else None
+        return said_of_sensors(self._sensors, worn, self._bared, next_place, self.way is Way.MOTION)
 
     def _fit(self) -> None:
         """Lay figure and list side by side while both have room."""
@@ -486,92 +431,6 @@ class SensorsPage(QWidget):
         self._fit()
 
 
-class _NoSource(QWidget):
-    """One sentence, and the sources that can be opened."""
-
-    chosen = Signal(str)
-
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look = look
-        self.buttons: list[Button] = []
-        self._keys: list[str] = []
-        self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
-        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._notice = Notice(look, size=16)
-        self._row = QVBoxLayout()
-        self._column = QVBoxLayout(self)
-        self._column.addWidget(self._notice)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence)
-        self._column.addLayout(self._row)
-        self._column.addStretch(2)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
-
-    def tell(self, what: str, then: str) -> None:
-        """Say why nothing is connected, above the sources that may be tried instead."""
-        self._notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
-
-    def show_options(self, options: Sequence[SourceOption]) -> None:
-        if [option.key for option in options] == self._keys:
-            return
-        for button in self.buttons:
-            button.setParent(None)
-            button.deleteLater()
-        self.buttons, self._keys = [], [option.key for option in options]
-        for number, option in enumerate(options):
-            button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
-            button.clicked.connect(self._on_clicked)
-            self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
-            button.show()  # at once: what is not in sight yet takes no focus
-            self.buttons.append(button)
-        self._on_look_changed()
-
-    def _on_clicked(self) -> None:
-        button = self.sender()
-        assert isinstance(button, Button)
-        self.chosen.emit(self._keys[self.buttons.index(button)])
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._column.setSpacing(px(24))
-        self._row.setSpacing(px(12))
-        for button in self.buttons:
-            button.setMinimumWidth(px(320))
-
-
-class _Searching(QWidget):
-    """What is looked for, and the way out."""
-
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look = look
-        self._sentence = Text(look, size=20, weight=SEMIBOLD, wraps=True)
-        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self._line = QProgressBar()
-        self._line.setTextVisible(False)
-        self._line.setRange(0, 0)
-        self._line.setAccessibleName(tr("Looking for sensors"))
-        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence)
-        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(2)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
-
-    def begin(self, source: str) -> None:
-        self._sentence.setText(tr("Looking for sensors: {source}").format(source=source))
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._column.setSpacing(px(20))
-        self._line.setFixedSize(px(320), px(8))
-
-
 class _Scroll(QScrollArea):
     """Takes the room that is left and asks for none."""
 
@@ -587,43 +446,3 @@ def _scrolling(content: QWidget) -> QScrollArea:
     area.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
     area.setWidget(content)
     return area
-
-
-def _called(sensor: SensorRow) -> str:
-    """A sensor by its place, or by its name while it has none."""
-    return name_of(sensor.site) if sensor.site is not None else sensor.name
-
-
-def _in_sentence(site: Site) -> str:
-    return {
-        Site.LEFT_THIGH: tr("left thigh"),
-        Site.LEFT_SHANK: tr("left shank"),
-        Site.LEFT_FOOT: tr("left foot"),
-        Site.RIGHT_THIGH: tr("right thigh"),
-        Site.RIGHT_SHANK: tr("right shank"),
-        Site.RIGHT_FOOT: tr("right foot"),
-    }[site]
-
-
-def _said_of_silent(sensor: SensorRow) -> tuple[str, str]:
-    seconds = max(round(sensor.silent_s), 1)
-    what = tr("{name} has been silent for {seconds} s.").format(name=_called(sensor), seconds=seconds)
-    if sensor.site is None:
-        return what, tr("Switch it off and on.")
-    lost = {
-        Site.LEFT_THIGH: tr("left knee angles"),
-        Site.LEFT_SHANK: tr("left knee and ankle angles"),
-        Site.LEFT_FOOT: tr("left ankle angles"),
-        Site.RIGHT_THIGH: tr("right knee angles"),
-        Site.RIGHT_SHANK: tr("right knee and ankle angles"),
-        Site.RIGHT_FOOT: tr("right ankle angles"),
-    }[sensor.site]
-    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost)
-
-
-def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
-    if foot.side is Side.LEFT:
-        what = tr("No left foot sensor: no left ankle angles.")
-    else:
-        what = tr("No right foot sensor: no right ankle angles.")
-    return what, tr("Steps come from the shank. It will be printed.")

@@ -19,7 +19,7 @@ from core.samples import FloatArray, ImuBlock
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
     from app.acquisition.placing_work import PlacingWork
-    from app.pages.sensor_list import SensorRow
+    from app.pages.sensor_row import SensorRow
     from app.pages.sensors_page import SensorsPage
     from app.wizard.visit import Visit
 
@@ -180,7 +180,8 @@ class SensorsStep(Step):
         acquisition.set_work(self._work)
 
     def _show(self) -> None:
-        from app.pages.sensors_page import SourceOption, Way
+        from app.pages.sensors_page import Way
+        from app.pages.source_pages import SourceOption
 
         sensors, page = self._visit.sensors, self.page
         chosen = sensors.choice.key if sensors.choice is not None else ""
@@ -222,7 +223,7 @@ class SensorsStep(Step):
             self.changed.emit()
 
     def _row(self, status: "SensorStatus") -> "SensorRow":
-        from app.pages.sensor_list import SensorRow
+        from app.pages.sensor_row import SensorRow
 
         is_silent = status.silent_s >= SILENT_FROM_S
         return SensorRow(

@@ -16,9 +16,10 @@ from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
-from app.pages.sensor_list import SensorRow
-from app.pages.sensors_page import SensorsPage, SourceOption, Way
+from app.pages.sensor_row import SensorRow
+from app.pages.sensors_page import SensorsPage, Way
 from app.pages.settings_page import OperatorLine, SettingsPage
+from app.pages.source_pages import SourceOption
 from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
 from app.pages.walk_list import WalkRow, WalkState
 from app.pages.walking_page import LiveWalk, WalkingPage

@@ -10,9 +10,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.pages.sensor_list import SensorRow, _lines
 from app.pages.sensor_places import DRAGGED
-from app.pages.sensors_page import SensorsPage, SourceOption, Way
+from app.pages.sensor_row import SensorRow
+from app.pages.sensor_trace import _lines
+from app.pages.sensors_page import SensorsPage, Way
+from app.pages.source_pages import SourceOption
 from app.theme import Look
 from core.body import Side, Site
 from tests.app.room import settle
@@ -95,7 +97,7 @@ def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
 
 def test_the_mouse_carries_a_sensor_by_its_name(page: SensorsPage, monkeypatch: pytest.MonkeyPatch) -> None:
     carried: list[str] = []
-    monkeypatch.setattr("app.pages.sensor_list.drag_sensor", lambda _source, _look, sensor: carried.append(sensor))
+    monkeypatch.setattr("app.pages.sensor_row.drag_sensor", lambda _source, _look, sensor: carried.append(sensor))
     row = page.list.rows["0A2C"]
     QTest.mousePress(row, Qt.MouseButton.LeftButton, pos=QPoint(60, 20))
     QTest.mouseMove(row, QPoint(62, 20))

@@ -1,0 +1,386 @@
+"""How is one sensor now? Its row in the list, which is dragged, selected, and asks where the sensor is worn."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import (
+    QAction,
+    QActionGroup,
+    QColor,
+    QFocusEvent,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPaintEvent,
+    QResizeEvent,
+)
+from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QWidget
+
+from app.pages.sensor_places import drag_sensor, is_dragged, number_of, segment_name
+from app.pages.sensor_trace import Trace
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.battery import HEIGHT as CELL_HEIGHT
+from app.widgets.battery import LOW, paint_battery
+from app.widgets.battery import WIDTH as CELL_WIDTH
+from app.widgets.chip import paint_chip
+from app.widgets.icons import Icon, paint_icon
+from app.widgets.painted_text import PaintedText
+from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
+from app.wording import name_of, tr
+from core.body import Site
+
+if TYPE_CHECKING:
+    from app.pages.sensor_list import SensorList
+
+ROW = 58
+CHIP = 20
+CHEVRON = 14
+LOST = 0.01  # of the samples; above it the radio wants a look
+
+
+@dataclass(frozen=True, slots=True)
+class SensorRow:
+    """One sensor as it is now. `battery` 0 to 1, None: it does not tell; `silent_s` 0 while it is heard."""
+
+    name: str
+    model: str = ""
+    rate_hz: float | None = None
+    battery: float | None = None
+    site: Site | None = None
+    silent_s: float = 0.0
+    lost_share: float = 0.0
+    can_identify: bool = False
+
+    @property
+    def is_low(self) -> bool:
+        return self.battery is not None and self.battery < LOW
+
+    @property
+    def is_lossy(self) -> bool:
+        return self.lost_share > LOST
+
+    @property
+    def wants_look(self) -> bool:
+        return self.silent_s > 0 or self.is_low or self.is_lossy
+
+    @property
+    def second_line(self) -> str:
+        """What is the matter with it, or else its model."""
+        if self.silent_s > 0:
+            return tr("not heard")
+        if self.is_low:
+            return tr("charge soon")
+        if self.is_lossy:
+            return tr("{share} % lost").format(share=f"{100 * self.lost_share:.1f}")
+        return self.model
+
+    @property
+    def rate(self) -> str:
+        return tr("{rate} Hz").format(rate=round(self.rate_hz or 0)) if self.silent_s <= 0 else tr("0 Hz")
+
+    @property
+    def charge(self) -> str:
+        if self.battery is None or self.silent_s > 0:
+            return tr("unknown")
+        return tr("{percent} %").format(percent=round(100 * self.battery))
+
+
+class SensorRowView(QAbstractButton):
+    """One sensor. It can be dragged onto the figure; Space asks where it is worn, Up and Down go on.
+
+    Enter goes past it, to the primary button.
+    """
+
+    def __init__(self, look: Look, name: str, sensors: "SensorList") -> None:
+        super().__init__()
+        self._look, self._list = look, sensors
+        self.name = name
+        self.sensor = SensorRow(name)
+        self._pressed_at: QPoint | None = None
+        self.trace = Trace(look)
+        self.trace.setParent(self)
+        self.worn = _WornOn(look, self)
+        self.identify = _Identify(look, self)
+        self.worn.clicked.connect(self.ask)
+        self.identify.clicked.connect(self._on_identify_clicked)
+        self.clicked.connect(self._on_clicked)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        self.setAccessibleDescription(tr("1 to 6 say where it is worn, Space opens a list of the places"))
+
+    def takes_other_room(self, sensor: SensorRow) -> bool:
+        """Whether a column may have to be wider for `sensor` as it is now."""
+        one, other = self._list.second_line(sensor), self._list.second_line(self.sensor)
+        return not self.accessibleName() or len(one) > len(other)
+
+    def show_sensor(self, sensor: SensorRow) -> None:
+        if sensor == self.sensor and self.accessibleName():
+            return
+        self.sensor = sensor
+        worn = tr("worn on {site}").format(site=name_of(sensor.site)) if sensor.site else tr("worn nowhere")
+        battery = tr("battery {charge}").format(charge=sensor.charge)
+        self.setAccessibleName(", ".join([sensor.name, sensor.second_line, sensor.rate, battery, worn]))
+        self.trace.show_silence(sensor.silent_s)
+        self.worn.show_site(sensor.site)
+        self.worn.setAccessibleName(", ".join([sensor.name, worn]))
+        self.identify.show_sensor(sensor)
+        self.trace.show_ground(self._ground)
+        self.update()
+
+    @property
+    def _ground(self) -> QColor:
+        """What the row is filled with, the thin layer under the mouse included."""
+        theme = self._look.theme
+        ground = QColor(theme.colours.caution if self.sensor.wants_look else theme.colours.surface)
+        if not (self.underMouse() or self.isDown()):
+            return ground
+        veil = theme.veil(self.isDown())
+        share = veil.alphaF()
+        mixed = [
+            round((1 - share) * under + share * over)
+            for under, over in zip(ground.getRgb()[:3], veil.getRgb()[:3], strict=True)  # type: ignore[index]  # Qt gives four numbers; its stubs say object
+        ]
+        return QColor(*mixed)
+
+    def set_reached(self, is_reached: bool) -> None:
+        policy = Qt.FocusPolicy.StrongFocus if is_reached else Qt.FocusPolicy.ClickFocus
+        for one in (self, self.worn, self.identify):
+            one.setFocusPolicy(policy)
+
+    def ask(self) -> None:
+        """Open the list of places under the button that says the present one."""
+        self._list.select(self.name)
+        menu = _PlaceMenu(self._look, self.sensor.site, self)
+        menu.chosen.connect(self._on_place_chosen)
+        menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
+
+    def arrange(self) -> None:
+        places = self._list.columns(self.width())
+        inset = self._look.theme.px(8)
+        self.trace.setGeometry(places["trace"].adjusted(0, inset, 0, -inset))
+        height = self._look.theme.px(44)
+        for child, key in ((self.worn, "worn"), (self.identify, "identify")):
+            child.setGeometry(QRect(places[key].x(), (self.height() - height) // 2, places[key].width(), height))
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        return QSize(0, self._look.theme.px(ROW))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.arrange()
+
+    def focusInEvent(self, event: QFocusEvent) -> None:
+        super().focusInEvent(event)
+        self._list.select(self.name)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        has_alt = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
+        match event.key():
+            case Qt.Key.Key_Return | Qt.Key.Key_Enter:
+                event.ignore()
+            case Qt.Key.Key_Space:
+                self.ask()
+            case Qt.Key.Key_Down if has_alt:
+                self.ask()
+            case Qt.Key.Key_Up:
+                self._list.step(self, -1)
+            case Qt.Key.Key_Down:
+                self._list.step(self, 1)
+            case _:
+                super().keyPressEvent(event)
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._pressed_at = event.position().toPoint()
+        super().mousePressEvent(event)
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        if is_dragged(self._pressed_at, event):
+            self._pressed_at = None
+            self.setDown(False)
+            drag_sensor(self, self._look, self.name)
+            return
+        super().mouseMoveEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        sensor = self.sensor
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        is_caution, is_selected = sensor.wants_look, self._list.selection == self.name
+        ink, second = (c.caution_ink, c.caution_ink) if is_caution else (c.ink, c.ink2)
+        edge = c.caution_edge if is_caution else c.control if is_selected else c.line
+        painter.setPen(theme.pen(edge, 1.75 if is_selected else 1.25))
+        ground = self._ground
+        self.trace.show_ground(ground)
+        painter.setBrush(ground)
+        radius = CONTROL_RADIUS * theme.scale
+        painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
+        places = self._list.columns(self.width())
+        grip = px(20)
+        middle = QRectF((places["name"].x() - grip) / 2, (self.height() - grip) / 2, grip, grip)
+        paint_icon(painter, Icon.GRIP, middle, second)
+        if places["battery"].width() and sensor.battery is not None and sensor.silent_s <= 0:
+            x, y = places["battery"].x(), (self.height() - px(CELL_HEIGHT)) / 2
+            paint_battery(painter, QRectF(x, y, px(CELL_WIDTH), px(CELL_HEIGHT)), sensor.battery, theme, ink)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme, sensor = self._look.theme, self.sensor
+        px = theme.px
+        places = self._list.columns(self.width())
+        name, is_caution = places["name"], sensor.wants_look
+        tone, second = ("caution_ink", "caution_ink") if is_caution else ("ink", "ink2")
+        small = theme.font(12, MEDIUM if is_caution else REGULAR)
+        texts = [
+            PaintedText(
+                sensor.name,
+                QRectF(name.x(), px(9), name.width(), px(22)),
+                theme.font(16, SEMIBOLD, is_code=True),
+                tone,
+            ),
+            PaintedText(self._list.second_line(sensor), QRectF(name.x(), px(31), name.width(), px(18)), small, second),
+        ]
+        if places["rate"].width():
+            font, battery = theme.font(14, MEDIUM), QRectF(places["battery"])
+            if sensor.battery is not None and sensor.silent_s <= 0:
+                battery.setLeft(battery.left() + px(CELL_WIDTH + 6))
+            texts.append(PaintedText(sensor.rate, QRectF(places["rate"]), font, tone))
+            texts.append(PaintedText(sensor.charge, battery, font, tone))
+        return texts
+
+    def _on_clicked(self) -> None:
+        self._list.select(self.name)
+        self.setFocus(Qt.FocusReason.MouseFocusReason)
+
+    def _on_identify_clicked(self) -> None:
+        if self.sensor.silent_s > 0:
+            self._list.reconnect_pressed.emit(self.name)
+        else:
+            self._list.identify_pressed.emit(self.name)
+
+    def _on_place_chosen(self, site: Site | None) -> None:
+        self._list.assigned.emit(self.name, site)
+
+
+class _WornOn(QAbstractButton):
+    """Says the place, and opens the list of places."""
+
+    def __init__(self, look: Look, row: SensorRowView) -> None:
+        super().__init__(row)
+        self._look, self._row = look, row
+        self._site: Site | None = None
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def show_site(self, site: Site | None) -> None:
+        self._site = site
+        self.update()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Down):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        if self._site is not None:
+            chip = px(CHIP)
+            paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
+        (word,) = self.painted_texts()
+        word.paint(painter, c)
+        side, end = px(CHEVRON), word.needed.right() + px(6)
+        middle = QRectF(end, (self.height() - side) / 2 + 1, side, side)
+        paint_icon(painter, Icon.CHEVRON, middle, getattr(c, word.tone))
+
+    def painted_texts(self) -> list[PaintedText]:
+        theme = self._look.theme
+        px = theme.px
+        left = px(CHIP + 6) if self._site is not None else 0
+        return [
+            PaintedText(
+                segment_name(self._site) if self._site is not None else tr("nowhere"),
+                QRectF(left, 0, self.width() - left - px(CHEVRON + 6), self.height()),
+                theme.font(14, MEDIUM if self._site is not None else REGULAR),
+                "caution_ink" if self._row.sensor.wants_look else "ink",
+            )
+        ]
+
+
+class _Identify(QAbstractButton):
+    """Lights the sensor's LED; where the sensor is silent, looks for it again."""
+
+    def __init__(self, look: Look, row: SensorRowView) -> None:
+        super().__init__(row)
+        self._look, self._row = look, row
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def show_sensor(self, sensor: SensorRow) -> None:
+        is_silent = sensor.silent_s > 0
+        name = tr("Look for {sensor} again") if is_silent else tr("Light the LED of {sensor}")
+        self.setAccessibleName(name.format(sensor=sensor.name))
+        self.setToolTip(self.accessibleName())
+        self.setVisible(is_silent or sensor.can_identify)
+        self.update()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if self.underMouse() or self.isDown():
+            painter.setPen(Qt.PenStyle.NoPen)
+            painter.setBrush(theme.veil(self.isDown()))
+            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        sensor = self._row.sensor
+        side = px(22)
+        box = QRectF(self.width() - px(10) - side, (self.height() - side) / 2, side, side)
+        icon = Icon.REPEAT if sensor.silent_s > 0 else Icon.LIGHT
+        paint_icon(painter, icon, box, c.caution_ink if sensor.wants_look else c.ink)
+
+
+class _PlaceMenu(QMenu):
+    """The six places and nowhere; the present one is checked, and their numbers are keys."""
+
+    chosen = Signal(object)
+
+    def __init__(self, look: Look, site: Site | None, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.setAccessibleName(tr("Worn on"))
+        self.setFont(look.theme.font(16, SEMIBOLD))  # what the width is reckoned from
+        group = QActionGroup(self)
+        for one in (*Site, None):
+            words = tr("Nowhere") if one is None else f"&{number_of(one)}  {name_of(one)}"
+            action = QAction(words, self)
+            action.setCheckable(True)
+            action.setChecked(one is site)
+            action.setFont(look.theme.font(16, SEMIBOLD if one is site else REGULAR))
+            action.setData(None if one is None else one.value)
+            group.addAction(action)
+            self.addAction(action)
+            if one is site:
+                self.setActiveAction(action)
+        self.triggered.connect(self._on_triggered)
+
+    def _on_triggered(self, action: QAction) -> None:
+        self.chosen.emit(None if action.data() is None else Site(action.data()))

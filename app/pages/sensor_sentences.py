@@ -1,0 +1,126 @@
+"""What does the page of the sensors say? The one sentence that matters most, and what to do."""
+
+from collections.abc import Collection, Mapping, Sequence
+
+from app.pages.sensor_row import SensorRow
+from app.widgets.icons import Icon
+from app.wording import name_of, tr
+from core.body import Segment, Side, Site
+
+Said = tuple[Icon | None, str, str, bool]
+"""Icon, what is so, what to do, and whether it wants a look."""
+
+
+def said_of_dragged(sensor: str, site: Site, worn: Mapping[Site, SensorRow]) -> Said:
+    """What happens to a sensor that is dropped here."""
+    other = worn.get(site)
+    if other is not None and other.name != sensor:
+        what = tr("{site} is already worn by {sensor}.").format(site=name_of(site), sensor=other.name)
+        return Icon.INFO, what, tr("Drop here to swap the two."), False
+    return Icon.INFO, name_of(site), tr("Drop {sensor} here.").format(sensor=sensor), False
+
+
+def said_of_shaken_together(sensors: Sequence[str]) -> Said:
+    """Several were shaken at once, which tells nothing."""
+    first, *_, last = sensors
+    what = (
+        tr("Both {first} and {last} were shaken.").format(first=first, last=last)
+        if len(sensors) == 2
+        else tr("{count} sensors were shaken.").format(count=len(sensors))
+    )
+    return Icon.WARNING, what, tr("Shake one at a time."), True
+
+
+def said_of_sensors(
+    sensors: Sequence[SensorRow],
+    worn: Mapping[Site, SensorRow],
+    bared: Collection[Site],
+    next_place: Site | None,
+    is_left_to_motion: bool,
+) -> Said:
+    """How the sensors are, and what is missing.
+
+    Parameters
+    ----------
+    bared
+        Sites that a sensor was taken off from.
+    next_place
+        Where the sensor that is shaken next goes; None where places are told otherwise.
+    """
+    if silent := [sensor for sensor in sensors if sensor.silent_s > 0]:
+        return Icon.WARNING, *_said_of_silent(silent[0]), True
+    if (foot := _missing_foot(sensors, worn, bared, is_left_to_motion)) is not None:
+        return Icon.WARNING, *_said_of_missing_foot(foot), True
+    if low := [sensor for sensor in sensors if sensor.is_low]:
+        what = tr("{name} has {charge} battery.").format(name=_called(low[0]), charge=low[0].charge)
+        return Icon.WARNING, what, tr("Charge it after this patient."), True
+    if lossy := [sensor for sensor in sensors if sensor.is_lossy]:
+        what = tr("{name}: {share} % of the samples were lost.").format(
+            name=_called(lossy[0]), share=f"{100 * lossy[0].lost_share:.1f}"
+        )
+        return Icon.WARNING, what, tr("Bring the receiver nearer to the patient."), True
+    if is_left_to_motion and not worn:
+        what = tr("The free motion tells which sensor is where.")
+        return Icon.INFO, what, tr("Strap one on each thigh, shank and foot, in any order."), False
+    if len(worn) == len(Site):
+        return Icon.CHECK, tr("All six are worn and heard."), "", False
+    if sensors and len(worn) == len(sensors):
+        return Icon.INFO, tr("All sensors have their place."), "", False
+    if next_place is not None:
+        what = tr("Shake the sensor of the {site}.").format(site=_in_sentence(next_place))
+        return Icon.NEXT, what, tr("Its place goes dark when it is known."), False
+    return Icon.NEXT, tr("Drag each sensor to its place."), tr("Or choose one and press 1 to 6."), False
+
+
+def _missing_foot(
+    sensors: Sequence[SensorRow], worn: Mapping[Site, SensorRow], bared: Collection[Site], is_left_to_motion: bool
+) -> Site | None:
+    """A foot that goes without a sensor: it was taken off, or none is left for it, while its shank has one."""
+    if is_left_to_motion and not worn:
+        return None
+    is_any_left = any(sensor.site is None for sensor in sensors)
+    for side in Side:
+        foot, shank = Site(f"{side}_{Segment.FOOT}"), Site(f"{side}_{Segment.SHANK}")
+        if foot not in worn and shank in worn and (foot in bared or not is_any_left):
+            return foot
+    return None
+
+
+def _called(sensor: SensorRow) -> str:
+    """A sensor by its place, or by its name while it has none."""
+    return name_of(sensor.site) if sensor.site is not None else sensor.name
+
+
+def _in_sentence(site: Site) -> str:
+    return {
+        Site.LEFT_THIGH: tr("left thigh"),
+        Site.LEFT_SHANK: tr("left shank"),
+        Site.LEFT_FOOT: tr("left foot"),
+        Site.RIGHT_THIGH: tr("right thigh"),
+        Site.RIGHT_SHANK: tr("right shank"),
+        Site.RIGHT_FOOT: tr("right foot"),
+    }[site]
+
+
+def _said_of_silent(sensor: SensorRow) -> tuple[str, str]:
+    seconds = max(round(sensor.silent_s), 1)
+    what = tr("{name} has been silent for {seconds} s.").format(name=_called(sensor), seconds=seconds)
+    if sensor.site is None:
+        return what, tr("Switch it off and on.")
+    lost = {
+        Site.LEFT_THIGH: tr("left knee angles"),
+        Site.LEFT_SHANK: tr("left knee and ankle angles"),
+        Site.LEFT_FOOT: tr("left ankle angles"),
+        Site.RIGHT_THIGH: tr("right knee angles"),
+        Site.RIGHT_SHANK: tr("right knee and ankle angles"),
+        Site.RIGHT_FOOT: tr("right ankle angles"),
+    }[sensor.site]
+    return what, tr("Switch it off and on, or go on without {angles}.").format(angles=lost)
+
+
+def _said_of_missing_foot(foot: Site) -> tuple[str, str]:
+    if foot.side is Side.LEFT:
+        what = tr("No left foot sensor: no left ankle angles.")
+    else:
+        what = tr("No right foot sensor: no right ankle angles.")
+    return what, tr("Steps come from the shank. It will be printed.")

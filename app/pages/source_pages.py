@@ -1,0 +1,109 @@
+"""Where there are no sensors yet: what they can be heard through, and what is being looked for."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QProgressBar, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.icons import Icon
+from app.widgets.notice import Notice
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
+
+
+@dataclass(frozen=True, slots=True)
+class SourceOption:
+    """Something that sensors can be heard through; `note` is what was found there: "6 found"."""
+
+    key: str
+    name: str
+    note: str = ""
+
+
+class NoSource(QWidget):
+    """One sentence, and the sources that can be opened."""
+
+    chosen = Signal(str)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self.buttons: list[Button] = []
+        self._keys: list[str] = []
+        self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
+        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._notice = Notice(look, size=16)
+        self._row = QVBoxLayout()
+        self._column = QVBoxLayout(self)
+        self._column.addWidget(self._notice)
+        self._column.addStretch(1)
+        self._column.addWidget(self._sentence)
+        self._column.addLayout(self._row)
+        self._column.addStretch(2)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def tell(self, what: str, then: str) -> None:
+        """Say why nothing is connected, above the sources that may be tried instead."""
+        self._notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+
+    def show_options(self, options: Sequence[SourceOption]) -> None:
+        if [option.key for option in options] == self._keys:
+            return
+        for button in self.buttons:
+            button.setParent(None)
+            button.deleteLater()
+        self.buttons, self._keys = [], [option.key for option in options]
+        for number, option in enumerate(options):
+            button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
+            button.clicked.connect(self._on_clicked)
+            self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
+            button.show()  # at once: what is not in sight yet takes no focus
+            self.buttons.append(button)
+        self._on_look_changed()
+
+    def _on_clicked(self) -> None:
+        button = self.sender()
+        assert isinstance(button, Button)
+        self.chosen.emit(self._keys[self.buttons.index(button)])
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(24))
+        self._row.setSpacing(px(12))
+        for button in self.buttons:
+            button.setMinimumWidth(px(320))
+
+
+class Searching(QWidget):
+    """What is looked for, and the way out."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._sentence = Text(look, size=20, weight=SEMIBOLD, wraps=True)
+        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._line = QProgressBar()
+        self._line.setTextVisible(False)
+        self._line.setRange(0, 0)
+        self._line.setAccessibleName(tr("Looking for sensors"))
+        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP)
+        self._column = QVBoxLayout(self)
+        self._column.addStretch(1)
+        self._column.addWidget(self._sentence)
+        self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
+        self._column.addStretch(2)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+
+    def begin(self, source: str) -> None:
+        self._sentence.setText(tr("Looking for sensors: {source}").format(source=source))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(20))
+        self._line.setFixedSize(px(320), px(8))
