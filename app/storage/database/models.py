@@ -25,6 +25,7 @@ from sqlalchemy import (
     Text,
     TypeDecorator,
     UniqueConstraint,
+    false,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, declared_attr, mapped_column, relationship, validates
 
@@ -149,6 +150,7 @@ class SessionRow(Versioned, Base):
     software: Mapped[str]
     comment: Mapped[str]
     is_simulated: Mapped[bool]
+    cannot_stand: Mapped[bool] = mapped_column(default=False, server_default=false())
     findings: Mapped[list[dict[str, Any]]] = mapped_column(JSON)
     unknown: Mapped[Mapping[str, object]]
     created_at: Mapped[datetime.datetime]
@@ -161,7 +163,10 @@ class SessionRow(Versioned, Base):
 
 
 class JointRow(Base):
-    """What was said about one joint: the goniometer while standing, and the turned sign. None: nothing was said."""
+    """What was said about one joint: the goniometer while standing, and the turned sign. None: nothing was said.
+
+    `is_absent`: a foot without an ankle joint.
+    """
 
     __tablename__ = "joints"
     __table_args__ = (
@@ -174,6 +179,7 @@ class JointRow(Base):
     joint: Mapped[Joint] = mapped_column(_words(Joint, "joint"))
     zero_rad: Mapped[float | None]
     turned_sign: Mapped[int | None]
+    is_absent: Mapped[bool] = mapped_column(default=False, server_default=false())
 
 
 class PlacementRow(Base):
@@ -207,6 +213,8 @@ class PlacedSensorRow(Base):
 
 
 class RecordingRow(Versioned, Base):
+    """`judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then."""
+
     __tablename__ = "recordings"
     __table_args__ = (UniqueConstraint("session_id", "number"), UniqueConstraint("session_id", "name"))
 
@@ -224,6 +232,7 @@ class RecordingRow(Versioned, Base):
     is_restrapped_before: Mapped[bool]
     is_simulated: Mapped[bool]
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
+    judged_by: Mapped[str] = mapped_column(default="", server_default="")
     unknown: Mapped[Mapping[str, object]]
 
     placement: Mapped[PlacementRow | None] = relationship()
