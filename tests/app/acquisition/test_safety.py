@@ -16,11 +16,13 @@ import pytest
 
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.recorder import ROW_WAIT_S, Recorder
+from app.review.viewer import Viewer
 from app.storage.journal.disk import JournalFile, Room
 from app.storage.journal.writer import JournalSummary
 from app.storage.library import FILE_NAME, Library
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role
+from core.results import Analysis, Method
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.replay import ReplaySource
 from tests.safety.journal_material import ID, KEY
@@ -38,6 +40,9 @@ connection.execute("PRAGMA key = \\"x'" + bytes(range(32)).hex() + "'\\"")
 connection.execute("BEGIN IMMEDIATE")
 print("locked", flush=True)
 sys.stdin.readline()
+"""
+VIEWER = """#!/bin/sh
+test "$1" = analytics || exec sleep 60
 """
 
 needs_proc = pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="what a process holds is read from /proc")
@@ -138,6 +143,30 @@ def test_a_disk_that_stalls_loses_nothing(
     assert all(one.silent_s < 1.0 for one in acquisition.status().values())
     answers.set()
     check(acquisition, acquisition.stop_recording(), seconds)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="the stand-in for the viewer is a script")
+@pytest.mark.parametrize("seconds", [0.3, pytest.param(5.0, marks=pytest.mark.endurance)])
+def test_a_viewer_that_is_killed_loses_nothing(
+    acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float
+) -> None:
+    """Nothing is said of it either: whose window is gone knows that."""
+    monkeypatch.setenv("DISPLAY", ":0")
+    program = tmp_path / "rerun"
+    program.write_text(VIEWER)
+    program.chmod(0o700)
+    viewer = Viewer(tmp_path / "review", program)
+    acquisition.record(open_journal(tmp_path, ID))
+    viewer.open(Session(()), Analysis(Method.ROBUST, False, (), ()))
+    (shown,) = viewer._shown.values()
+    time.sleep(seconds)
+    assert shown.poll() is None
+    shown.kill()
+    time.sleep(seconds)
+    assert viewer.failures() == 1
+    assert list((tmp_path / "review").rglob("*.rrd")) == []
+    check(acquisition, acquisition.stop_recording(), 1.8 * seconds)
+    viewer.close()
 
 
 @pytest.fixture
