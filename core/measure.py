@@ -94,7 +94,7 @@ def measure(
     witnesses: list[tuple[FloatArray, ...]] = []
     j1, j2 = geometry.axis_1, geometry.axis_2
     for block in tracks.blocks(recording):
-        pairs = [p for p in pairs_of(tracks, recording, joint, block, geometry.lag_s) if _is_anchored(p)]
+        pairs = [p for p in pairs_of(tracks, recording, joint, block, geometry.lag_s) if is_anchored(p)]
         for pair in pairs:
             heading = heading_over(pair, j1, j2, geometry.unknowns)
             fused = published_angle(pair, j1, j2, geometry.centre_1_m, geometry.centre_2_m, geometry.tau_s)
@@ -128,7 +128,7 @@ def measure(
     )
 
 
-def _is_anchored(pair: Pair) -> bool:
+def is_anchored(pair: Pair) -> bool:
     """Whether enough of a stretch is known to say where its angle stands."""
     return int(np.count_nonzero(pair.is_known)) * pair.step_s >= MIN_KNOWN_S
 
