@@ -158,6 +158,30 @@ class Recordings:
             session.flush()
             return stored_recording(row)
 
+    def judge(self, recording: StoredRecording, is_kept: bool) -> StoredRecording:
+        """Note that the operator has looked at what was recovered after a crash, and whether it is kept.
+
+        Raises
+        ------
+        ChangedMeanwhileError
+            `recording` is not what the library holds any more.
+        """
+        with self._desk.writing(Role.CLINICIAN) as session:
+            row = current_recording(session, recording)
+            visit = session.get_one(SessionRow, row.session_id)
+            changes = differences(row, {"is_kept": is_kept, "judged_by": self._desk.code})
+            apply(self._desk, session, changes, visit.patient_id, visit.id)
+            session.flush()
+            note(
+                self._desk,
+                session,
+                Action.EDIT,
+                about("recording", row.id),
+                is_recovered=True,
+                is_kept=is_kept,
+            )
+            return stored_recording(row)
+
     def find(self, recording_id: UUID) -> StoredRecording | None:
         """The recording that a journal says it is; None: an orphan."""
         with self._desk.reading() as session:

@@ -26,6 +26,7 @@ from app.storage.recordings import current_recording
 from app.storage.stored import (
     Action,
     LibraryError,
+    Limits,
     PlacedSensor,
     Placement,
     Role,
@@ -39,6 +40,7 @@ from devices.files.session_toml import SIGN, ZERO
 
 KEPT_DELETED = datetime.timedelta(days=30)
 CORRECTABLE = ("started", "operator", "surface", "notes", "software")
+NO_LIMITS = Limits()
 SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRow.comment, PatientRow.code)
 
 
@@ -48,7 +50,7 @@ class Sessions:
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
 
-    def create(self, patient_id: UUID, told: Session) -> StoredSession:
+    def create(self, patient_id: UUID, told: Session, limits: Limits = NO_LIMITS) -> StoredSession:
         """Add a visit that has no recordings yet; who the patient is stands in the patient's own row.
 
         Raises
@@ -66,10 +68,16 @@ class Sessions:
             row = SessionRow(
                 patient=patient,
                 comment="",
+                cannot_stand=limits.cannot_stand,
                 findings=[asdict(finding) for finding in told.findings],
                 created_at=self._desk.now(),
                 joints=[
-                    JointRow(joint=joint, zero_rad=told.zero_rad.get(joint), turned_sign=told.turned_sign.get(joint))
+                    JointRow(
+                        joint=joint,
+                        zero_rad=told.zero_rad.get(joint),
+                        turned_sign=told.turned_sign.get(joint),
+                        is_absent=_is_absent(joint, limits),
+                    )
                     for joint in Joint
                 ],
                 **{name: getattr(told, name) for name in SESSION_FIELDS},
@@ -123,8 +131,10 @@ class Sessions:
         with self._desk.reading() as session:
             return _lines(session, is_wanted)
 
-    def change(self, visit: StoredSession, told: Session, comment: str | None = None) -> StoredSession:
-        """Correct what was told of a visit: words, goniometer, turned signs, and the clinician's `comment`.
+    def change(
+        self, visit: StoredSession, told: Session, comment: str | None = None, limits: Limits | None = None
+    ) -> StoredSession:
+        """Correct what was told of a visit: words, goniometer, turned signs, the clinician's `comment`, the `limits`.
 
         Kept in the history, and undone from there. Recordings, sensors and patient are changed where they belong.
 
@@ -143,10 +153,17 @@ class Sessions:
             wanted = {name: getattr(told, name) for name in CORRECTABLE}
             if comment is not None:
                 wanted["comment"] = comment
+            if limits is not None:
+                wanted["cannot_stand"] = limits.cannot_stand
             changes = differences(row, wanted)
             for joint in row.joints:
-                zero_rad, turned_sign = told.zero_rad.get(joint.joint), told.turned_sign.get(joint.joint)
-                changes += differences(joint, {"zero_rad": zero_rad, "turned_sign": turned_sign})
+                said: dict[str, object] = {
+                    "zero_rad": told.zero_rad.get(joint.joint),
+                    "turned_sign": told.turned_sign.get(joint.joint),
+                }
+                if limits is not None:
+                    said["is_absent"] = _is_absent(joint.joint, limits)
+                changes += differences(joint, said)
             apply(self._desk, session, changes, row.patient_id, row.id)
             session.flush()
             return stored_session(row)
@@ -253,6 +270,10 @@ def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -
     """
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
         raise LibraryError(f"Only what was deleted {KEPT_DELETED.days} days ago is destroyed", "Wait until then")
+
+
+def _is_absent(joint: Joint, limits: Limits) -> bool:
+    return not joint.is_knee and joint.side in limits.without_ankle
 
 
 def _refuse_wrong_joints(told: Session) -> None:

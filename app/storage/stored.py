@@ -10,7 +10,7 @@ from enum import StrEnum
 from typing import Self
 from uuid import UUID
 
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, SensorInfo, Session
 
 
@@ -129,6 +129,8 @@ class StoredJournal:
 
 @dataclass(frozen=True, slots=True)
 class StoredRecording:
+    """`judged_by`: who said after a crash whether what was recovered is kept; empty until somebody has."""
+
     id: UUID
     version: int
     session_id: UUID
@@ -137,6 +139,23 @@ class StoredRecording:
     is_simulated: bool
     placement: Placement | None
     journals: tuple[StoredJournal, ...]
+    judged_by: str = ""
+
+    @property
+    def is_unjudged(self) -> bool:
+        """Whether it was recovered, and nobody has looked at it since."""
+        return self.state is RecordingState.RECOVERED and not self.judged_by
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What the patient's body does not allow on this visit: it has no key in a session folder, so it stays here.
+
+    `without_ankle` holds the sides whose foot has no ankle joint.
+    """
+
+    without_ankle: frozenset[Side] = frozenset()
+    cannot_stand: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,6 +171,7 @@ class StoredSession:
     deleted_at: datetime | None
     placements: tuple[Placement, ...]
     recordings: tuple[StoredRecording, ...]
+    limits: Limits
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
 from app.storage.journal.disk import TOLD, Trouble
-from app.storage.stored import StoredRecording, StoredSession
+from app.storage.stored import RecordingState, StoredRecording, StoredSession
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from core.body import Side
@@ -194,7 +194,9 @@ class Takes(QObject):
         if take.told.is_restrapped_before and not is_kept and take.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
         self._put(replace(take, is_decided=True))
-        if take.told.is_kept != is_kept:
+        if take.stored.state is RecordingState.RECOVERED:
+            self._judge(take, is_kept)
+        elif take.told.is_kept != is_kept:
             self.change(take, replace(take.told, is_kept=is_kept))
 
     def change(self, take: Take, told: Recording) -> None:
@@ -205,6 +207,15 @@ class Takes(QObject):
             return opened.library.recordings.change(current or take.stored, told)
 
         self._desk.run(save, self._on_changed, self._on_not_changed, self)
+
+    def _judge(self, take: Take, is_kept: bool) -> None:
+        """Say so of what was recovered after a crash: it is noted who did."""
+
+        def judge(opened: "OpenedLibrary") -> StoredRecording:
+            current = opened.library.recordings.find(take.id)
+            return opened.library.recordings.judge(current or take.stored, is_kept)
+
+        self._desk.run(judge, self._on_changed, self._on_not_changed, self)
 
     def recordings(self) -> tuple[Recording, ...]:
         """Those that count and have been read, in order of time, as an analysis takes them.

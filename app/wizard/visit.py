@@ -14,7 +14,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.logs import version_of
-from app.storage.stored import RecordingState, StoredPatient, StoredRecording, StoredSession
+from app.storage.stored import Limits, RecordingState, StoredPatient, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
 from app.wizard.reviewing import Reviewing
@@ -76,8 +76,8 @@ class Visit(QObject):
         """Sets the report's pages; of the visit, for its threads outlive a step."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
-        self.has_skipped_standing = False
-        self.without_ankle: frozenset[Side] = frozenset()
+        self.limits = Limits()
+        """What the patient's body does not allow, the last word of it on the screen."""
         self.placement_before: dict[str, Site] = {}
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
@@ -127,6 +127,14 @@ class Visit(QObject):
         return frozenset(side for side in Side if said in (side, "both"))
 
     @property
+    def without_ankle(self) -> frozenset[Side]:
+        return self.limits.without_ankle
+
+    @property
+    def has_skipped_standing(self) -> bool:
+        return self.limits.cannot_stand
+
+    @property
     def is_simulated(self) -> bool:
         acquisition = self.sensors.acquisition
         return bool(self.told.is_simulated or (acquisition is not None and acquisition.is_simulated))
@@ -157,9 +165,10 @@ class Visit(QObject):
             operator=state.operator.name if state is not None else "",
             software=f"gaitwright {version_of('gaitwright')}",
         )
+        limits = self.limits
 
         def create(opened: "OpenedLibrary") -> StoredSession:
-            return opened.library.sessions.create(patient.id, told)
+            return opened.library.sessions.create(patient.id, told, limits)
 
         self._desk.run(create, self._on_session_changed, self._on_refused, self)
 
@@ -171,6 +180,12 @@ class Visit(QObject):
         else:
             zero[joint] = zero_rad
         self._change(replace(self.told, zero_rad=zero))
+
+    def set_limits(self, limits: Limits) -> None:
+        """Take what the patient's body does not allow; before there is a session, it waits for that."""
+        if limits != self.limits:
+            self.limits = limits
+            self._change(self.told)
 
     def set_turned(self, joint: Joint, sign: int | None) -> None:
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `evaluation.done` follows."""
@@ -305,12 +320,12 @@ class Visit(QObject):
         if self.session is None or self._is_changing:
             return
         self._is_changing = True
-        session = self.session
+        session, limits = self.session, self.limits
 
         def save(opened: "OpenedLibrary") -> StoredSession:
             current = opened.library.sessions.get(session.id)
             wanted = replace(current.told, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
-            return opened.library.sessions.change(current, wanted)
+            return opened.library.sessions.change(current, wanted, limits=limits)
 
         self._desk.run(save, self._on_session_changed, self._on_refused, self)
 
@@ -318,8 +333,8 @@ class Visit(QObject):
         self._is_changing = False
         self.session = self.takes.session = session
         wanted = self._wanted
-        if wanted is not None and _by_hand(wanted) != _by_hand(session.told):
-            self._change(wanted)  # typed on meanwhile
+        if self.limits != session.limits or (wanted is not None and _by_hand(wanted) != _by_hand(session.told)):
+            self._change(wanted or session.told)  # typed on meanwhile
         else:
             self._wanted = None
             evaluated = self.evaluation.session
@@ -341,6 +356,7 @@ class Visit(QObject):
 
     def _on_resumed(self, read: tuple[StoredPatient, StoredSession, tuple[Take, ...]]) -> None:
         patient, self.session, takes = read
+        self.limits = self.session.limits
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
         self._is_of_another_day = bool(takes) and _day(takes[-1].told.started) not in ("", _day(_now()))
@@ -382,6 +398,8 @@ class Visit(QObject):
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_changing = False
         self._wanted = None
+        if self.session is not None:
+            self.limits = self.session.limits
         self.refused.emit(what, remedy)
         self.changed.emit()
 
@@ -404,7 +422,11 @@ def _read(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
 
     usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     return tuple(
-        Take(stored, recording_with_samples(opened, stored, DECODERS)[0])
+        Take(
+            stored,
+            recording_with_samples(opened, stored, DECODERS)[0],
+            is_decided=not (stored.is_unjudged and stored.told.is_kept),
+        )
         for stored in session.recordings
         if stored.state in usable
     )

@@ -7,6 +7,7 @@ from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import OperatorRow, PatientRow, PlacementRow, RecordingRow, ResultRow, SessionRow
 from app.storage.stored import (
+    Limits,
     Operator,
     PlacedSensor,
     Placement,
@@ -71,6 +72,7 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
         row.is_simulated,
         placement_of(row.placement) if row.placement is not None else None,
         tuple(StoredJournal(j.segment, j.file, j.wrapped_key, j.sha256) for j in row.journals),
+        row.judged_by,
     )
 
 
@@ -102,6 +104,7 @@ def stored_session(row: SessionRow) -> StoredSession:
         row.deleted_at,
         placements,
         recordings,
+        Limits(frozenset(joint.joint.side for joint in row.joints if joint.is_absent), row.cannot_stand),
     )
 
 

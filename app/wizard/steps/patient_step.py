@@ -1,6 +1,7 @@
 """Whom the session is about: found or made in the library as it is typed."""
 
 import datetime
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -134,7 +135,7 @@ class PatientStep(Step):
             self._page.show_last_visit(None if session is None else _last_visit(session))
 
     def _on_edited(self, draft: "PatientDraft") -> None:
-        self._visit.without_ankle = draft.without_ankle
+        self._visit.set_limits(replace(self._visit.limits, without_ankle=draft.without_ankle))
         self._visit.patient.edit(draft.patient)
         if self._visit.patient.told.code != self._taken_code:
             self._taken_code = ""

@@ -1,6 +1,7 @@
 """Three seconds of standing: each sensor's bias, and the angles at which the patient stands."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
@@ -261,7 +262,7 @@ class StandStillStep(Step):
 
     def _on_cannot_stand(self) -> None:
         """No zero: a standing that was kept does not count either."""
-        self._visit.has_skipped_standing = True
+        self._visit.set_limits(replace(self._visit.limits, cannot_stand=True))
         self._phase = StandPhase.SKIPPED
         if self._is_recording:
             self._abandon()
@@ -272,7 +273,7 @@ class StandStillStep(Step):
         self.changed.emit()
 
     def _on_can_stand(self) -> None:
-        self._visit.has_skipped_standing = False
+        self._visit.set_limits(replace(self._visit.limits, cannot_stand=False))
         self._phase = StandPhase.READY
         self._watch()
         self._show()

@@ -47,7 +47,6 @@ class WalkingStep(Step):
         self._ticks = 0
         self._losses = Losses()
         self._trouble: Message = NOTHING
-        self._judged: set[UUID] = set()  # recovered walks that somebody has kept or discarded
         self._discarded: UUID | None = None
         visit.takes.begun.connect(self._on_begun)
         visit.takes.ended.connect(self._on_ended)
@@ -252,7 +251,6 @@ class WalkingStep(Step):
         sounds.play(Sound.STOP)
 
     def _keep(self, take: "Take", is_kept: bool) -> None:
-        self._judged.add(take.id)
         self._visit.takes.keep(take, is_kept)
         if not is_kept:
             self._discarded = take.id
@@ -361,7 +359,7 @@ class WalkingStep(Step):
 
     def _recovered_message(self) -> Message | None:
         asked = self._asked
-        if asked is None or asked.stored.state is not RecordingState.RECOVERED or asked.id in self._judged:
+        if asked is None or asked.stored.state is not RecordingState.RECOVERED:
             return None
         recovered = tr("{time} of {walk} was recovered up to the last 0.1 s. Look at it, then keep or discard.")
         return (
@@ -400,14 +398,9 @@ class WalkingStep(Step):
     @property
     def _asked(self) -> "Take | None":
         """The walk that waits for somebody to say whether it is kept: the newest, or one that was recovered."""
-        walks = self._visit.takes.walks
-        undecided = [take for take in walks if not take.is_decided]
-        recovered = [
-            take
-            for take in walks
-            if take.stored.state is RecordingState.RECOVERED and take.told.is_kept and take.id not in self._judged
-        ]
-        return undecided[-1] if undecided else recovered[0] if recovered else None
+        undecided = [take for take in self._visit.takes.walks if not take.is_decided]
+        new = [take for take in undecided if take.stored.state is not RecordingState.RECOVERED]
+        return new[-1] if new else undecided[0] if undecided else None
 
     def _take(self, identity: UUID | None) -> "Take | None":
         return next((take for take in self._visit.takes.walks if take.id == identity), None)
@@ -436,9 +429,8 @@ class WalkingStep(Step):
         for take in takes.walks:
             state = WalkState.KEPT if take.told.is_kept else WalkState.DISCARDED
             if not take.is_decided:
-                state = WalkState.ASKING
-            elif take.stored.state is RecordingState.RECOVERED and take.told.is_kept and take.id not in self._judged:
-                state = WalkState.RECOVERED
+                is_recovered = take.stored.state is RecordingState.RECOVERED
+                state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
             strides = max(self._strides_of(take).values(), default=None)
             letter = letters.get(take.told.condition, "")
             rows.append(WalkRow(str(take.id), letter, take.told.condition or take.told.name, state, strides))

@@ -8,6 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.free_motion_work import FreeMotionView
 from app.pages.free_motion_page import FreeMotionPage
+from app.storage.stored import Limits
 from app.theme import Look
 from app.widgets.gauge import GaugeState
 from app.widgets.step_rail import StepState
@@ -162,7 +163,7 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     visit.sensors.assign_all({name: site for name, site in worn.items() if site is not Site.RIGHT_FOOT})
-    visit.without_ankle = frozenset({Side.LEFT})
+    visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
     step.enter()
     assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")

@@ -214,7 +214,8 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looke
     assert not step.bar().others[0].is_enabled
     assert step.bar().note == "Choose the source of the sensors first."
     (walk,) = again.takes.walks
-    again.takes.every = (replace(walk, stored=replace(walk.stored, state=RecordingState.RECOVERED)),)
+    recovered = replace(walk.stored, state=RecordingState.RECOVERED)
+    again.takes.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
     assert "was recovered up to the last 0.1 s" in step.page.notice.text
     step._on_discard_pressed(str(walk.id))

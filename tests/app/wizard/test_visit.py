@@ -5,6 +5,12 @@ from dataclasses import replace
 import numpy as np
 from pytestqt.qtbot import QtBot
 
+from app.storage.audit import about
+from app.storage.stored import Limits, RecordingState
+from app.theme import Look
+from app.widgets.step_rail import StepState
+from app.wizard.steps.patient_step import PatientStep
+from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
@@ -113,6 +119,71 @@ def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> No
     wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
     assert visit.told.zero_rad == wanted
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.told.zero_rad == wanted)
+
+
+def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+) -> None:
+    """Told before there is a session, and after; it is on the rows, and shown by whoever resumes."""
+    visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
+    begin(qtbot, visit, worn)
+    session = visit.session
+    assert session is not None
+    assert session.limits == Limits(without_ankle=frozenset({Side.LEFT}))
+    visit.patient.edit(replace(visit.patient.told, prosthetic_side="both"))
+    wanted = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
+    visit.set_limits(replace(wanted, cannot_stand=False))
+    visit.set_limits(wanted)
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
+    qtbot.waitUntil(lambda: visit.patient.is_saved)
+    again = Visit(desk, [])
+    with qtbot.waitSignal(again.resumed, timeout=10_000):
+        again.resume(session.id)
+    assert again.without_ankle == {Side.LEFT, Side.RIGHT}
+    step = StandStillStep(Look(), again)
+    qtbot.addWidget(step.page)
+    step.enter()
+    primary = step.bar().primary
+    assert primary is not None
+    assert (step.state, primary.text) == (StepState.SKIPPED, "Go on to free motion")
+    step.leave()
+    patient = PatientStep(Look(), again)
+    qtbot.addWidget(patient.page)
+    patient.enter()
+    assert patient.page.draft.without_ankle == {Side.LEFT, Side.RIGHT}
+    again.finish()
+
+
+def test_who_judged_a_recovered_walk_is_noted_once_for_all(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+) -> None:
+    begin(qtbot, visit, worn)
+    walk = record(qtbot, visit, RecordingKind.WALKING, 2.0)
+    session = visit.session
+    state = desk.state
+    assert session is not None
+    assert state is not None
+    library = state.library.library
+    hashes = {journal.segment: journal.sha256 for journal in walk.stored.journals}
+    library.recordings.close(walk.id, RecordingState.RECOVERED, hashes)  # as after a crash
+
+    def resumed() -> Visit:
+        again = Visit(desk, [])
+        with qtbot.waitSignal(again.resumed, timeout=10_000):
+            again.resume(session.id)
+        return again
+
+    first = resumed()
+    assert not first.takes.walks[0].is_decided
+    first.takes.keep(first.takes.walks[0], is_kept=True)
+    qtbot.waitUntil(lambda: first.takes.walks[0].stored.judged_by == "hk")
+    audited = library.audit.entries(about("recording", walk.id))[-1]
+    assert (audited.operator, audited.details) == ("hk", '{"is_kept":true,"is_recovered":true}')
+    second = resumed()
+    assert second.takes.walks[0].is_decided
+    assert second.takes.walks[0].told.is_kept
+    first.finish()
+    second.finish()
 
 
 def test_one_sensor_at_one_site(visit: Visit) -> None:
