@@ -355,8 +355,8 @@ def _report(wanted: argparse.Namespace) -> None:
         earlier = None
         if wanted.earlier is not None:
             before = read_session(session_of(wanted.earlier))
-            past = Visit(before, analyse(before, progress=progress))
-            earlier = past, chosen_walks(past, [], str(wanted.earlier))[-1]
+            earlier = Visit(before, analyse(before, progress=progress))
+            chosen_walks(earlier, [], str(wanted.earlier))  # refuses a visit without a walk
             walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
         now, version = datetime.now().astimezone(), version_of("gaitwright")
         progress(1.0, "report")

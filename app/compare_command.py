@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,7 +11,7 @@ from app.library_commands import LibrarySession, add_key_arguments, default_fold
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
-    from app.reports.differences import Row, Told
+    from app.reports.comparison import Comparison, Part
     from core.samples import Session
 
 DIFFERENCES = "differences.csv"
@@ -52,8 +52,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
     OSError
         The table cannot be written.
     """
-    from app.reports.differences import pairs, rows_of, write_differences
-    from app.reports.patient_report.request import Visit
+    from app.reports.differences import comparisons_of, rows_of, write_differences
     from app.reports.result_folder import written_beside
     from core.analysis import analyse
 
@@ -65,8 +64,9 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
             report((number + share) / len(wanted.sessions), what)
 
         session = _read(wanted, place, told)
-        visits.append(Visit(session, analyse(session, progress=told)))
-    rows = [row for one, other in pairs(visits) for row in rows_of(one, other)]
+        visits.append((session, analyse(session, progress=told)))
+    comparisons = comparisons_of(visits)
+    rows = [row for comparison in comparisons for row in rows_of(comparison)]
     if not rows:
         names = ", ".join(one_line(str(place)) for place in wanted.sessions)
         what = "there are no two conditions, nor two sessions, with strides in both"
@@ -75,7 +75,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         write_differences(rows, folder / DIFFERENCES)
         report(1.0, "writing")
     return [
-        *_table(rows),
+        *(line for comparison in comparisons for line in _table(comparison)),
         "",
         f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
     ]
@@ -96,21 +96,23 @@ def _check_place(out: Path) -> None:
         raise FileRefusedError(str(out), "this is there already and is not a comparison", "Choose another --out")
 
 
-def _table(rows: "Sequence[Row]") -> Iterator[str]:
-    for (one, other), of_pair in groupby(rows, key=lambda row: (row.one, row.other)):
-        simulated = "SIMULATED. " if one.facts.is_simulated or other.facts.is_simulated else ""
-        yield f"{simulated}{_named(one)} less {_named(other)}"
+def _table(comparison: "Comparison") -> Iterator[str]:
+    from app.reports.differences import rows_of
+
+    simulated = "SIMULATED. " if comparison.is_simulated else ""
+    for _, of_part in groupby(rows_of(comparison), key=lambda row: row.part.letter):
+        rows = list(of_part)
+        yield f"{simulated}{_named(rows[0].part)} less {_named(comparison.against)}"
         yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
-        for row in of_pair:
+        for row in rows:
             side = "" if row.side is None else row.side[0].upper()
-            figures = (row.one_mean.mean, row.other_mean.mean, row.difference)
+            figures = (row.value.mean, row.other.mean, row.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)
             yield f"  {side:5} {row.parameter:38} {cells} {_short(row.error):>7}  {FLAGS[row.verdict]}"
 
 
-def _named(told: "Told") -> str:
-    condition = f" ({one_line(told.condition)})" if told.condition.strip() else ""
-    return f"session {told.number}, {one_line(told.facts.walk.name)}{condition}"
+def _named(part: "Part") -> str:
+    return f"{part.letter} {one_line(part.name)}"
 
 
 def _short(value: float) -> str:

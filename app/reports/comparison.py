@@ -1,6 +1,6 @@
 """What changed between walks, visits or legs, and is that more than the measurement error?
 
-The screen and the files take their figures from here, so that no number is drawn that no table holds.
+Screen, report and files take their figures from here, so that no number is drawn that no table holds.
 """
 
 import math
@@ -8,10 +8,13 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
+from itertools import accumulate
+from statistics import fmean
 
 import numpy as np
 
-from app.reports.gait_csv import parameter, used_cycles
+from app.reports.gait_csv import WINDOWS, parameter, used_cycles
+from app.reports.walk_figures import both_sides
 from app.wording import later
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
@@ -40,6 +43,12 @@ class Measure:
     name: str
     kind: str
     unit: str = "°"
+
+    @classmethod
+    def of(cls, column: str) -> "Measure":
+        """Any column of strides.csv; only an angle is a joint's."""
+        is_angle = column.endswith("_deg")
+        return cls(column, "", column.split("_")[0] if is_angle else "", "°" if is_angle else "%")
 
     def joint(self, side: Side) -> Joint | None:
         """Whose figure it is; None where it is no joint's."""
@@ -118,6 +127,18 @@ class Part:
             return mean_cycle(np.empty((0, POINTS)))
         return mean_cycle(np.rad2deg(np.concatenate(known)))
 
+    def is_no_peak(self, side: Side, column: str) -> bool:
+        """Whether the angle is known and only passes through where this peak is looked for."""
+        joint = Measure.of(column).joint(side)
+        if joint is None or column not in WINDOWS or self.zero(joint) is ZeroKind.NONE:
+            return False
+        return self.cycle(joint).n >= MIN_STRIDES_FOR_MEAN and not math.isfinite(self.value(side, column).mean)
+
+    def of_both(self, name: str) -> float:
+        """Cadence, double support or speed (the names of `BothFeet`), the mean of the walks in which it is known."""
+        known = [value for walk in self.walks if math.isfinite(value := getattr(both_sides(walk), name))]
+        return fmean(known) if known else math.nan
+
     def stance_percent(self, side: Side) -> float:
         return self.value(side, "stance_percent").mean
 
@@ -170,6 +191,20 @@ class Comparison:
     @property
     def sides(self) -> tuple[Side, ...]:
         return tuple(side for side in Side if any(side in part.sides for part in self.parts))
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        return tuple(joint for joint in Joint if any(joint in part.joints for part in self.parts))
+
+    @property
+    def is_one_attachment(self) -> bool:
+        """Whether the sensors stayed on from the first walk to the last."""
+        return all(map(self.is_same_attachment, self.others))
+
+    @cached_property
+    def has_one_zero_throughout(self) -> bool:
+        """Whether the heights of all joints can be compared."""
+        return all(map(self.has_one_zero, self.joints))
 
     @cached_property
     def rows(self) -> tuple[Compared, ...]:
@@ -256,7 +291,7 @@ def calibrated_for(analysis: Analysis, recording: RecordingAnalysis) -> Mapping[
     return analysis.calibrations[-1].joints if analysis.calibrations else {}
 
 
-def conditions_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple[Part, ...]:
+def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> tuple[Part, ...]:
     """The walks of one session that have strides: those of the same condition and attachment together.
 
     Walks without a condition stay by themselves, named as recorded.
@@ -265,17 +300,21 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording]) -> tuple[
     ----------
     recordings
         Those of the session, in order of time, whose conditions and attachments count.
+    prefix
+        Stands before each letter.
     """
     found: dict[tuple[str, int], list[RecordingAnalysis]] = {}
-    attachment, told = 0, {}
-    for recording in recordings:
-        attachment += recording.is_restrapped_before
-        told[recording.name] = (recording.condition, attachment)
+    told = {
+        recording.name: (recording.condition, attachment)
+        for recording, attachment in zip(
+            recordings, accumulate(recording.is_restrapped_before for recording in recordings), strict=True
+        )
+    }
     for walk in _walks(analysis):
         condition, at = told.get(walk.name, ("", 0))
         found.setdefault((condition or walk.name, at), []).append(walk)
     return tuple(
-        Part(letter, name, tuple(walks), calibrated_for(analysis, walks[0]), at)
+        Part(prefix + letter, name, tuple(walks), calibrated_for(analysis, walks[0]), at)
         for letter, ((name, at), walks) in zip(LETTERS, found.items(), strict=False)
     )
 
@@ -298,7 +337,8 @@ def _walks(analysis: Analysis) -> list[RecordingAnalysis]:
 def _difference(measure: Measure, side: Side, one: MeanAndSd, other: MeanAndSd, *, is_same: bool) -> Difference:
     joint = measure.joint(side)
     if joint is None:
-        return _stance_difference(one, other, is_same=is_same)
+        is_same_stance = is_same and measure.column == "stance_percent"  # of other figures no error is known
+        return _stance_difference(one, other, is_same=is_same_stance)
     return compare_same_attachment(one, other) if is_same else compare_new_attachment(joint, one, other)
 
 

@@ -1,92 +1,99 @@
-"""By how much do conditions or visits differ, and is that more than the measurement error? One table of every pair.
+"""By how much do conditions, visits or legs differ, and is that more than the measurement error? The tables of it.
 
-Within a session each later condition is told against the first. Between sessions a condition is told against the same
-one of the first session; where they share none, the last walks are. What is judged, and how, is as in the report.
+`rows_of` tells every figure of strides.csv, those of both legs, and how far the mean curves lie apart; screen and
+report show some of them.
 """
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, SideRow, conditions_of
 from app.reports.csv_report import write_table
 from app.reports.gait_csv import PARAMETERS
-from app.reports.patient_report.comparison_page import Compared, Comparison
-from app.reports.patient_report.facts import KINDS, Facts
-from app.reports.patient_report.request import Visit, default_walks
-from core.body import Side
+from core.body import Joint, Side
+from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.symmetry import curve_difference
-from core.norms import MIN_STRIDES_FOR_MEAN, Verdict
+from core.norms import MIN_STRIDES_FOR_MEAN, Difference, Verdict
+from core.results import Analysis
+from core.samples import Session
 
+DIFFERENCES = "differences.csv"
+COMPARED_CYCLES = "compared_cycles.csv"
+SIDES = "sides.csv"
 NO_COMMON_ZERO = "no_common_zero"  # heights of the curves say nothing, so only their ranges are compared
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
-OF_PAIR = ("one_session", "one_walk", "one_condition", "other_session", "other_walk", "other_condition")
-OF_MEANS = ("one_mean", "one_sd", "one_n", "other_mean", "other_sd", "other_n")
-HEADER = (*OF_PAIR, "side", "parameter", *OF_MEANS, "difference", "error", "verdict")
-
-
-@dataclass(frozen=True, slots=True)
-class Told:
-    """One walk of the session `number`, counted from 1 in the order they were given."""
-
-    number: int
-    facts: Facts
-
-    @property
-    def condition(self) -> str:
-        return self.facts.visit.recording(self.facts.walk.name).condition
+OF_PART = ("part", "name", "walks")
+JUDGED = ("difference", "error", "verdict")
+HEADER = (
+    *OF_PART,
+    *(f"against_{what}" for what in OF_PART),
+    *("side", "parameter", "n", "mean", "sd", "against_n", "against_mean", "against_sd"),
+    *JUDGED,
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One figure of two walks, `one` being the later. `side` None: of both. NaN where something is not known."""
+    """One figure of `part` and of the one it is told against. `side` None: of both. NaN where it is not known."""
 
-    one: Told
-    other: Told
+    part: Part
+    against: Part
     side: Side | None
     parameter: str
-    one_mean: MeanAndSd
-    other_mean: MeanAndSd
+    value: MeanAndSd
+    other: MeanAndSd
     difference: float
     error: float
     verdict: str
 
 
-def pairs(visits: Sequence[Visit]) -> list[tuple[Told, Told]]:
-    """Which walks are told against which, the later one first."""
-    walks = [
-        [Told(number, Facts(visit, visit.walk(name))) for name in _last_of_conditions(visit)]
-        for number, visit in enumerate(visits, start=1)
+def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
+    """Within each visit its conditions, then each later visit against the first.
+
+    Between visits a condition is told against the same one of the first; where they share none, the last ones are.
+    Letters of several visits have the visit's number before them.
+    """
+    of_visits = []
+    for number, (session, analysis) in enumerate(visits, start=1):
+        prefix = str(number) if len(visits) > 1 else ""
+        of_visits.append(conditions_of(analysis, session.recordings, prefix))
+    are_simulated = [analysis.is_simulated for _, analysis in visits]
+    found = [
+        Comparison(Kind.CONDITIONS, parts, is_simulated=is_simulated)
+        for parts, is_simulated in zip(of_visits, are_simulated, strict=True)
+        if len(parts) > 1
     ]
-    found = [(one, of_one[0]) for of_one in walks for one in of_one[1:]]
-    first = {told.condition: told for told in walks[0]} if walks else {}
-    for later in walks[1:]:
-        shared = [(one, first[one.condition]) for one in later if one.condition in first]
-        found += shared or [(one, other) for one, other in zip(later[-1:], walks[0][-1:], strict=False)]
+    of_first = of_visits[0] if of_visits else ()
+    for parts, is_simulated in list(zip(of_visits, are_simulated, strict=True))[1:]:
+        names = {part.name: part for part in reversed(of_first)}
+        shared = [(names[part.name], part) for part in parts if part.name in names]
+        for pair in shared or zip(of_first[-1:], parts[-1:], strict=False):
+            found.append(Comparison(Kind.VISITS, pair, is_simulated=is_simulated or are_simulated[0]))
     return found
 
 
-def rows_of(one: Told, other: Told) -> Iterator[Row]:
-    """Every figure that both walks have."""
-    parts = [Compared(letter, "", told.facts) for letter, told in (("A", other), ("B", one))]
-    comparison = Comparison(parts, is_visits=one.number != other.number)
-    for side in Side:
-        for column in PARAMETERS:
-            mine, theirs = one.facts.value(side, column), other.facts.value(side, column)
-            if mine.n and theirs.n:
-                difference, error, verdict = _judged(comparison, side, column, mine, theirs)
-                yield Row(one, other, side, column, mine, theirs, difference, error, verdict)
-        yield from _curves(one, other, side, comparison)
-    for name in OF_BOTH:
-        values = [getattr(told.facts.feet, name) for told in (one, other)]
-        if all(map(math.isfinite, values)):
-            mine, theirs = (MeanAndSd(value, math.nan, 0) for value in values)
-            verdict = str(Verdict.NO_PUBLISHED_FIGURE)
-            yield Row(one, other, None, name, mine, theirs, mine.mean - theirs.mean, math.nan, verdict)
+def rows_of(comparison: Comparison) -> Iterator[Row]:
+    """Every figure that a part and the one it is told against both have."""
+    against = comparison.against
+    for part in comparison.others:
+        for side in Side:
+            for column in PARAMETERS:
+                found = comparison.compare(Measure.of(column), side, part)
+                if found.reservation is Reservation.NOT_MEASURED or not (found.value.n and found.other.n):
+                    continue
+                told: tuple[float, float, str] = (math.nan, math.nan, NO_COMMON_ZERO)
+                if found.reservation is Reservation.NONE:
+                    judged = found.difference
+                    told = judged.difference_deg, judged.error_deg, str(judged.verdict)
+                yield Row(part, against, side, column, found.value, found.other, *told)
+            yield from _curves(comparison, part, side)
+        yield from _of_both(part, against)
 
 
-def write_differences(found: Sequence[Row], path: Path) -> None:
+def write_differences(found: Iterable[Row], path: Path) -> None:
     """Write the table.
 
     Raises
@@ -94,51 +101,83 @@ def write_differences(found: Sequence[Row], path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    write_table(HEADER, (_cells(row) for row in found), path)
+    write_table(HEADER, map(_cells, found), path)
 
 
-def _last_of_conditions(visit: Visit) -> list[str]:
-    """The last walk of each condition, however many, in order of time."""
-    last = {visit.recording(name).condition: name for name in visit.walk_names()}
-    return [name for name in visit.walk_names() if name in last.values()] or list(default_walks(visit))
+def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
+    """Write the mean cycles that are laid over one another.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
+    cycles = [part.cycle(joint) for part, joint in curves]
+    heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in ("mean_deg", "stride_sd_deg", "n")]
+    lines = []
+    for percent in range(POINTS):
+        cells = [(_cell(float(one.mean[percent])), _cell(float(one.sd[percent])), str(one.n)) for one in cycles]
+        lines.append([str(percent), *(cell for of_cycle in cells for cell in of_cycle)])
+    write_table(["percent", *heads], lines, path)
 
 
-def _judged(
-    comparison: Comparison, side: Side, column: str, one: MeanAndSd, other: MeanAndSd
-) -> tuple[float, float, str]:
-    if not comparison.is_comparable(column) and column.endswith("_deg"):
-        return math.nan, math.nan, NO_COMMON_ZERO
-    if column.endswith("_deg") or column == "stance_percent":
-        found = comparison.difference(comparison.parts[-1], side, column)
-        return found.difference_deg, found.error_deg, str(found.verdict)
-    if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
-        return math.nan, math.nan, str(Verdict.TOO_FEW_STRIDES)
-    return one.mean - other.mean, math.nan, str(Verdict.NO_PUBLISHED_FIGURE)
+def write_sides(rows: tuple[SideRow, ...], first: Side, second: Side, path: Path) -> None:
+    """Write the legs of one part side by side, the first less the second.
+
+    Raises
+    ------
+    OSError
+        The file cannot be written.
+    """
+    each = [f"{side}_{what}" for side in (first, second) for what in ("n", "mean", "sd")]
+    lines = []
+    for row in rows:
+        cells = [row.measure.column, *_mean(row.first), *_mean(row.second)]
+        lines.append([*cells, *_judged(row.difference), _cell(row.symmetry_percent)])
+    write_table(["parameter", *each, *JUDGED, "symmetry_index_percent"], lines, path)
 
 
-def _curves(one: Told, other: Told, side: Side, comparison: Comparison) -> Iterator[Row]:
+def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
     """How far apart the mean curves lie on average, where both are told from the same kind of zero."""
     nothing = MeanAndSd(math.nan, math.nan, 0)
-    for kind in KINDS if comparison.has_one_zero else ():
-        curves = [told.facts.mean_curve_deg(side, kind) for told in (one, other)]
-        difference = curve_difference(curves[0], curves[1])
-        if math.isfinite(difference):
-            name, verdict = f"{kind}_curve_difference_deg", str(Verdict.NO_PUBLISHED_FIGURE)
-            yield Row(one, other, side, name, nothing, nothing, difference, math.nan, verdict)
+    for joint in comparison.joints:
+        if joint.side is not side or not comparison.has_one_zero(joint):
+            continue
+        cycles = part.cycle(joint), comparison.against.cycle(joint)
+        difference = curve_difference(cycles[0].mean, cycles[1].mean)
+        if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
+            name = f"{'knee' if joint.is_knee else 'ankle'}_curve_difference_deg"
+            verdict = str(Verdict.NO_PUBLISHED_FIGURE)
+            yield Row(part, comparison.against, side, name, nothing, nothing, difference, math.nan, verdict)
+
+
+def _of_both(part: Part, against: Part) -> Iterator[Row]:
+    for name in OF_BOTH:
+        value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
+        if math.isfinite(difference := value.mean - other.mean):
+            verdict = str(Verdict.NO_PUBLISHED_FIGURE)
+            yield Row(part, against, None, name, value, other, difference, math.nan, verdict)
 
 
 def _cells(row: Row) -> list[str]:
-    walks = [text for told in (row.one, row.other) for text in (str(told.number), told.facts.walk.name, told.condition)]
-    means = [
-        cell for mean in (row.one_mean, row.other_mean) for cell in (_cell(mean.mean), _cell(mean.sd), _count(mean.n))
+    parts = [
+        cell
+        for part in (row.part, row.against)
+        for cell in (part.letter, part.name, "; ".join(w.name for w in part.walks))
     ]
     side = "both" if row.side is None else str(row.side)
-    return [*walks, side, row.parameter, *means, _cell(row.difference), _cell(row.error), row.verdict]
+    judged = [_cell(row.difference), _cell(row.error), row.verdict]
+    return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged]
+
+
+def _mean(value: MeanAndSd) -> list[str]:
+    return [str(value.n) if value.n else "", _cell(value.mean), _cell(value.sd)]
+
+
+def _judged(difference: Difference) -> list[str]:
+    return [_cell(difference.difference_deg), _cell(difference.error_deg), str(difference.verdict)]
 
 
 def _cell(value: float) -> str:
     return f"{value:.5f}" if math.isfinite(value) else ""
-
-
-def _count(n: int) -> str:
-    return str(n) if n else ""

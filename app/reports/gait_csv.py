@@ -1,4 +1,4 @@
-"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, as three tables.
+"""Which strides stand behind the averages? Events, strides, when they peak, and mean cycles of one recording: tables.
 
 A joint whose clinical sign is in doubt may be mirrored, one without a zero stands at no height: of them the strides
 hold the ranges, which are the same either way, and no angle. The mean cycle of a joint without zero shows its shape.
@@ -13,7 +13,7 @@ import numpy as np
 
 from app.reports.csv_report import write_table
 from core.body import Joint, Side
-from core.gait.cycles import POINTS, MeanCycle, mean_cycle
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
 
@@ -40,10 +40,12 @@ PARAMETERS = (  # as strides.csv has them; angles in degrees
     "ankle_swing_dorsiflexion_deg",
     "ankle_range_deg",
 )
+WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
+PEAK_TIMES = tuple(f"{window.name}_percent" for window in WINDOWS.values())
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait they hold their headings only.
+    """Write `events.csv`, `strides.csv`, `peaks.csv` and `cycles.csv`; without gait they hold their headings only.
 
     Raises
     ------
@@ -55,7 +57,7 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
 
 
 def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
-    """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
+    """Give headings and rows of `events`, `strides`, `peaks` and `cycles`, every cell as it stands in the file."""
     joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
     of_cycles = ["percent"]
     for joint in joints:
@@ -64,6 +66,7 @@ def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iter
     return {
         "events": (["time_s", "side", "event"], events),
         "strides": (["side", *TIMES, *PARAMETERS, "used", "reason"], _strides(recording)),
+        "peaks": (["side", "start_s", *PEAK_TIMES, "used"], _peaks(recording)),
         "cycles": (of_cycles, _cycles(recording, joints)),
     }
 
@@ -87,6 +90,15 @@ def parameter(gait: SideGait, name: str) -> FloatArray:
     if values is None or not _holds(gait, name):
         return np.full(len(gait.strides), np.nan)
     return np.rad2deg(values) if name.endswith("_deg") else values
+
+
+def peak_percent(gait: SideGait, column: str) -> FloatArray:
+    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none, or it may be mirrored."""
+    window = WINDOWS[column]
+    joint = next((joint for joint in gait.cycles if column.startswith(_kind(joint))), None)
+    if joint is None or joint in gait.sign_in_doubt:
+        return np.full(len(gait.strides), np.nan)
+    return find_peak(gait.cycles[joint], window).percent
 
 
 def used_cycles(gait: SideGait, joint: Joint) -> FloatArray:
@@ -121,6 +133,15 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
         for k, reason in enumerate(gait.strides.reason):
             used = "false" if reason else "true"
             yield [str(side), *(_cell(float(column[k])) for column in columns), used, str(reason)]
+
+
+def _peaks(recording: RecordingAnalysis) -> Iterator[list[str]]:
+    for side in Side:
+        if side in recording.gait:
+            gait = recording.gait[side]
+            columns = [gait.strides.start_s, *(peak_percent(gait, column) for column in WINDOWS)]
+            for k, reason in enumerate(gait.strides.reason):
+                yield [str(side), *(_cell(float(column[k])) for column in columns), "false" if reason else "true"]
 
 
 def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[str]]:

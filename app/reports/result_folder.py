@@ -12,8 +12,16 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from app.reports.comparison import Comparison, Kind, compare_sides, conditions_of, first_and_second
-from app.reports.comparison_csv import COMPARED_CYCLES, DIFFERENCES, SIDES, write_comparison, write_sides
 from app.reports.csv_report import write_angles
+from app.reports.differences import (
+    COMPARED_CYCLES,
+    DIFFERENCES,
+    SIDES,
+    rows_of,
+    write_compared_cycles,
+    write_differences,
+    write_sides,
+)
 from app.reports.gait_csv import write_gait
 from app.reports.summary import read_summary, write_summary
 from core.results import Analysis
@@ -58,7 +66,8 @@ def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> No
     """The conditions of the session, each against the first; and of the last one its legs."""
     parts = conditions_of(analysis, session.recordings)
     if len(parts) > 1:
-        write_comparison(Comparison(Kind.CONDITIONS, parts, is_simulated=analysis.is_simulated), folder)
+        write_differences(rows_of(Comparison(Kind.CONDITIONS, parts)), folder / DIFFERENCES)
+        write_compared_cycles(parts, folder / COMPARED_CYCLES)
     if parts and (rows := compare_sides(parts[-1], analysis.affected_side)):
         first, second = first_and_second(analysis.affected_side)
         write_sides(rows, first, second, folder / SIDES)

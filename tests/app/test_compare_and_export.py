@@ -9,9 +9,8 @@ import pytest
 
 from app.cli import main
 from app.compare_command import DIFFERENCES, FLAGS
-from app.reports.differences import NO_COMMON_ZERO, Row, pairs, rows_of
+from app.reports.differences import NO_COMMON_ZERO, Row, comparisons_of, rows_of
 from app.reports.gait_csv import PARAMETERS
-from app.reports.patient_report.request import Visit
 from core.analysis import analyse
 from core.body import Side
 from core.norms import KNEE_NEW_ATTACHMENT_DEG, Verdict
@@ -22,6 +21,7 @@ from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
+Visit = tuple[Session, Analysis]
 CONDITIONS = {"walk 1": "barefoot", "walk 2": "AFO"}
 
 
@@ -35,19 +35,19 @@ def session_of(seed: int, *walks: str) -> Session:
 @pytest.fixture(scope="module")
 def visits() -> list[Visit]:
     sessions = session_of(5, "walk 1", "walk 2"), session_of(6, "walk 2")
-    return [Visit(session, analyse(session)) for session in sessions]
+    return [(session, analyse(session)) for session in sessions]
 
 
 @pytest.fixture(scope="module")
 def folders(visits: list[Visit], tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     folder = tmp_path_factory.mktemp("visits")
-    for number, visit in enumerate(visits, start=1):
-        write_session(visit.session, folder / str(number))
+    for number, (session, _) in enumerate(visits, start=1):
+        write_session(session, folder / str(number))
     return [folder / "1", folder / "2"]
 
 
 def rows(visits: list[Visit]) -> list[Row]:
-    return [row for one, other in pairs(visits) for row in rows_of(one, other)]
+    return [row for comparison in comparisons_of(visits) for row in rows_of(comparison)]
 
 
 def row(found: list[Row], side: Side, parameter: str) -> Row:
@@ -56,18 +56,20 @@ def row(found: list[Row], side: Side, parameter: str) -> Row:
 
 
 def test_conditions_are_told_against_the_first_and_visits_by_condition(visits: list[Visit]) -> None:
-    told = [(one.number, one.condition, other.number, other.condition) for one, other in pairs(visits)]
-    assert told == [(1, "AFO", 1, "barefoot"), (2, "AFO", 1, "AFO")]
-    other_name = replace(visits[1].session.recordings[-1], condition="shoes")
-    renamed = replace(visits[1].session, recordings=(*visits[1].session.recordings[:-1], other_name))
-    (_, last) = pairs([visits[0], Visit(renamed, visits[1].analysis)])
-    assert (last[0].condition, last[1].condition) == ("shoes", "AFO")
-    assert pairs(visits[1:]) == []
+    told = [[(part.letter, part.name) for part in found.parts] for found in comparisons_of(visits)]
+    assert told == [[("1A", "barefoot"), ("1B", "AFO")], [("1B", "AFO"), ("2A", "AFO")]]
+    session, analysis = visits[1]
+    renamed = replace(
+        session, recordings=(*session.recordings[:-1], replace(session.recordings[-1], condition="shoes"))
+    )
+    last = comparisons_of([visits[0], (renamed, analysis)])[-1]
+    assert [part.name for part in last.parts] == ["AFO", "shoes"]
+    assert comparisons_of(visits[1:]) == []
 
 
 def test_within_a_session_the_error_is_that_of_sensors_that_stay_on(visits: list[Visit]) -> None:
     found = row(rows(visits[:1]), Side.LEFT, "knee_range_deg")
-    one, other = found.one_mean, found.other_mean
+    one, other = found.value, found.other
     assert found.difference == one.mean - other.mean
     assert found.error == pytest.approx(1.96 * (one.sd**2 / one.n + other.sd**2 / other.n) ** 0.5 + 1.0)
     assert found.verdict == Verdict.INSIDE_ERROR
@@ -75,7 +77,7 @@ def test_within_a_session_the_error_is_that_of_sensors_that_stay_on(visits: list
 
 
 def test_between_sessions_knees_are_judged_and_ankles_are_not(visits: list[Visit]) -> None:
-    found = [one for one in rows(visits) if one.one.number != one.other.number]
+    found = [one for one in rows(visits) if one.part.letter == "2A"]
     knee = row(found, Side.LEFT, "knee_swing_peak_deg")
     is_beyond = abs(knee.difference) > KNEE_NEW_ATTACHMENT_DEG
     assert knee.error == KNEE_NEW_ATTACHMENT_DEG
@@ -91,7 +93,7 @@ def test_heights_without_a_common_zero_are_not_compared(visits: list[Visit]) -> 
         )
         return replace(analysis, calibrations=spans)
 
-    found = rows([Visit(visits[0].session, without_zero(visits[0].analysis))])
+    found = rows([(visits[0][0], without_zero(visits[0][1]))])
     assert row(found, Side.LEFT, "knee_swing_peak_deg").verdict == NO_COMMON_ZERO
     assert row(found, Side.LEFT, "knee_range_deg").verdict == Verdict.INSIDE_ERROR
     assert not [one for one in found if "curve_difference" in one.parameter]
@@ -103,7 +105,7 @@ def test_the_command_writes_the_table_and_says_it(
     arguments = ["compare", *map(str, folders), "--out", str(tmp_path / "out")]
     assert main(arguments) == 0
     said = capsys.readouterr().out
-    assert "SIMULATED. session 2, walk 2 (AFO) less session 1, walk 2 (AFO)" in said
+    assert "SIMULATED. 2A AFO less 1B AFO" in said
     assert "inside measurement error" in said
     first = (tmp_path / "out" / DIFFERENCES).read_bytes()
     with (tmp_path / "out" / DIFFERENCES).open(newline="") as file:

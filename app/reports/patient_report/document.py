@@ -8,29 +8,22 @@ from typing import Any
 import typst
 
 from app.reports.patient_report.blocks import Block
-from app.reports.patient_report.comparison_page import Compared, Comparison, comparison_page
+from app.reports.patient_report.comparison_page import comparison_of, comparison_page
 from app.reports.patient_report.consistency_page import consistency_page
 from app.reports.patient_report.curves_page import curves_page
+from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.first_page import (
-    day,
-    fields,
-    key_numbers,
-    quality_box,
-    time_distance_table,
-    typed,
-    what_stands_out,
-)
+from app.reports.patient_report.first_page import fields, key_numbers, quality_box, time_distance_table
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.peaks_page import peaks_page
-from app.reports.patient_report.plain_text import isolated, plain, shortened
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, shortened, typed
 from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.what_stands_out import what_stands_out
 from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
 CODE_LENGTH = 16  # of the running head
 TITLE_CODE_LENGTH = 24
-CONDITION_LENGTH = 32  # within a sentence or a legend
 
 
 def make_report(request: ReportRequest) -> bytes:
@@ -75,7 +68,7 @@ def _whole_seconds(moment: datetime) -> datetime:
 def report_data(request: ReportRequest) -> dict[str, Any]:
     """Give all that the template sets: words and figures, in the order they are read."""
     facts = Facts(request.visit, request.visit.walk(request.shown))
-    comparison = _comparison(request, facts)
+    comparison = comparison_of(request)
     session = request.visit.session
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
@@ -83,7 +76,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     pages: list[list[Block]] = [
         curves_page(facts, condition),
         peaks_page(facts),
-        *([comparison_page(comparison)] if comparison is not None else []),
+        *([comparison_page(comparison, facts)] if comparison is not None else []),
         consistency_page(facts),
         words_page(request, facts),
     ]
@@ -121,29 +114,6 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         "first_page": [*time_distance_table(facts), *what_stands_out(facts, comparison)],
         "pages": pages,
     }
-
-
-def _comparison(request: ReportRequest, shown: Facts) -> Comparison | None:
-    if len(request.walks) > 1:
-        parts = []
-        for letter, name in zip("ABC", request.walks, strict=False):
-            facts = shown if name == request.shown else Facts(request.visit, request.visit.walk(name))
-            parts.append(
-                Compared(letter, typed(request.visit.recording(name).condition or name, CONDITION_LENGTH), facts)
-            )
-        return Comparison(parts, is_visits=False)
-    if request.earlier is not None:
-        earlier, name = request.earlier
-        before = Facts(earlier, earlier.walk(name))
-        names = [tr("Earlier visit, {day}"), tr("This visit, {day}")]
-        days = [_day_of(earlier.session.started), _day_of(request.visit.session.started)]
-        parts = [Compared(str(k + 1), names[k].format(day=days[k]), facts) for k, facts in enumerate((before, shown))]
-        return Comparison(parts, is_visits=True)
-    return None
-
-
-def _day_of(started: str) -> str:
-    return day(started) if started else tr("date not stated")
 
 
 def _subject(facts: Facts) -> str:

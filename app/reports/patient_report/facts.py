@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from app.reports.gait_csv import mean_of_used, parameter
+from app.reports.comparison import Part, first_and_second
+from app.reports.gait_csv import WINDOWS, mean_of_used, peak_percent
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import Visit
 from app.reports.reference_bands import reference_curves, time_distance_classes
@@ -23,15 +24,15 @@ from app.reports.walk_figures import (
     strides_used,
     time_distance_figures,
 )
+from app.wording import capitalised, side_name, tr
 from core.body import Joint, Side, ankle_of, knee_of
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, POINTS, find_peak
+from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.norms import MAX_SPEED_DIFFERENCE_M_S, ReferenceCurves, ReferenceValues
 from core.results import JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray
 
 KINDS = ("knee", "ankle")
-WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 ADULT_FROM_YEARS = 18  # every band there is was measured on adults
 
 
@@ -59,7 +60,7 @@ class Facts:
     @property
     def first_and_second(self) -> tuple[Side, Side]:
         """The side that symmetry starts from, and the other: affected before sound, else left before right."""
-        return (Side.RIGHT, Side.LEFT) if self.affected is Side.RIGHT else (Side.LEFT, Side.RIGHT)
+        return first_and_second(self.affected)
 
     @property
     def is_prosthetic(self) -> bool:
@@ -73,6 +74,11 @@ class Facts:
     def calibrated(self) -> Mapping[Joint, JointCalibration]:
         spans = (span for span in self.visit.analysis.calibrations if self.walk.name in span.walks)
         return {joint: found for span in spans for joint, found in span.joints.items()}
+
+    @cached_property
+    def _alone(self) -> Part:
+        """The walk as it would stand in a comparison."""
+        return Part("", self.walk.name, (self.walk,), self.calibrated)
 
     @cached_property
     def summary(self) -> dict[str, Any]:
@@ -135,30 +141,17 @@ class Facts:
 
     def value(self, side: Side, column: str) -> MeanAndSd:
         """Mean and SD of one column of strides.csv over the strides used."""
-        if side not in self.gait:
-            return MeanAndSd(math.nan, math.nan, 0)
-        return mean_and_sd(parameter(self.gait[side], column)[self.gait[side].strides.is_used])
+        return self._alone.value(side, column)
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
-        joint = joint_of(column.split("_")[0], side)
-        if column not in WINDOWS or not self.is_measured(joint) or self.doubt(joint) is not None:
-            return False
-        is_known = is_mean_enough(side_cycle(self.gait[side], joint).mean.n)
-        return is_known and not math.isfinite(self.value(side, column).mean)
+        return self._alone.is_no_peak(side, column)
 
     def peak_percent(self, side: Side, column: str) -> MeanAndSd:
-        """When in the stride a peak comes, as each stride has it."""
-        joint = joint_of(column.split("_")[0], side)
-        nothing = MeanAndSd(math.nan, math.nan, 0)
-        if column not in WINDOWS or not self.is_measured(joint) or joint in self.gait[side].sign_in_doubt:
-            return nothing
-        if column == "knee_swing_peak_deg":
-            return self.value(side, "knee_swing_peak_percent")
-        if self.is_no_peak(side, column):
-            return nothing
-        gait = self.gait[side]
-        return mean_and_sd(find_peak(gait.cycles[joint], WINDOWS[column]).percent[gait.strides.is_used])
+        """When in the stride a peak comes, as each stride of peaks.csv has it."""
+        if column not in WINDOWS or side not in self.gait:
+            return MeanAndSd(math.nan, math.nan, 0)
+        return mean_and_sd(peak_percent(self.gait[side], column)[self.gait[side].strides.is_used])
 
     def mean_curve_deg(self, side: Side, kind: str) -> FloatArray:
         """The mean over the strides used (101,), about its own mean where there is no zero; NaN from too few."""
@@ -213,3 +206,13 @@ class Facts:
 
 def joint_of(kind: str, side: Side) -> Joint:
     return knee_of(side) if kind == "knee" else ankle_of(side)
+
+
+def role(facts: Facts, side: Side) -> str:
+    """Name a side with what is known of it: "Right (prosthetic)"."""
+    patient = facts.visit.session.patient
+    if patient.prosthetic_side in (side, "both"):
+        return tr("{side} (prosthetic)").format(side=capitalised(side_name(side)))
+    if patient.affected_side in (side, "both"):
+        return tr("{side} (affected)").format(side=capitalised(side_name(side)))
+    return capitalised(side_name(side))

@@ -1,60 +1,31 @@
-"""The page that stands alone: who, how good the recording is, three key numbers, time and distance, what stands out."""
+"""The page that stands alone: who, how good the recording is, three key numbers, time and distance."""
 
 import math
 from collections.abc import Mapping
-from datetime import datetime
 
 from app.reports.patient_report import quality
-from app.reports.patient_report.blocks import Block, Cell, Column, Row, bullets, heading, note, table
-from app.reports.patient_report.comparison_page import Comparison
-from app.reports.patient_report.facts import Facts, joint_of
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
+from app.reports.patient_report.dates import moment
+from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
     Band,
     against_band,
     band_in_figures,
     fixed,
-    in_a_sentence,
+    sides_against_band,
     signed,
     spread,
 )
-from app.reports.patient_report.plain_text import breakable, isolated, plain, shortened
+from app.reports.patient_report.plain_text import typed
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.small_charts import gauge
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
-from app.wording import capitalised, name_of, sentence, side_name, tr, tr_n
+from app.wording import capitalised, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.norms import Verdict
 
-MAX_SENTENCES = 4
-MAX_TYPED = 120  # characters of one field, of which the page shows two lines
 NOT_STATED = ("", "none")
-
-
-def typed(text: str, most: int = MAX_TYPED) -> str:
-    """Give what the clinic typed, ready to stand within a line of ours."""
-    return isolated(breakable(shortened(plain(text), most))) or tr("not stated")
-
-
-def day(started: str) -> str:
-    """Give the day of an ISO 8601 stamp as people write it; as it is where it is none."""
-    try:
-        when = datetime.fromisoformat(started)
-    except ValueError:
-        return typed(started)
-    months = (
-        tr("Jan"), tr("Feb"), tr("Mar"), tr("Apr"), tr("May"), tr("Jun"),
-        tr("Jul"), tr("Aug"), tr("Sep"), tr("Oct"), tr("Nov"), tr("Dec"),
-    )  # fmt: skip
-    return tr("{day} {month} {year}").format(day=when.day, month=months[when.month - 1], year=when.year)
-
-
-def moment(started: str) -> str:
-    try:
-        return f"{day(started)}, {datetime.fromisoformat(started):%H:%M}"
-    except ValueError:
-        return typed(started)
 
 
 def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
@@ -199,118 +170,6 @@ def time_distance_table(facts: Facts) -> list[Block]:
     return [heading(tr("Time and distance")), table(columns, rows), note(" ".join([band, symmetry, *swing]))]
 
 
-def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
-    """At most four sentences, all of them numbers; the last is the caveat that weighs most."""
-    said: list[str] = []
-    sides = [side for side in facts.first_and_second if side in facts.gait]
-    if comparison is not None:
-        said += comparison.sentences()[:2]
-    shown = sides[:1] if facts.affected is not None else sides
-    for side in shown:
-        if len(said) < 2:
-            said += _knee_sentence(facts, side)
-    said += _difference_sentence(facts)
-    for side in sides:
-        for column, name in (
-            ("ankle_push_off_plantarflexion_deg", tr("plantarflexion peak at push\u2011off")),
-            ("knee_loading_peak_deg", tr("flexion peak while loading")),
-        ):
-            if facts.is_no_peak(side, column):
-                sentence = tr("{joint}: no {peak} was found. This is printed as “no peak”, not as a number.")
-                joint = capitalised(name_of(joint_of(column.split("_")[0], side)))
-                said.append(sentence.format(joint=joint, peak=name))
-    stance = _stance_sentence(facts)
-    caveat = _caveat(facts)
-    kept = said[: MAX_SENTENCES - len(stance) - len(caveat)]
-    # what weighs on every number is said last
-    return [heading(tr("What stands out")), bullets([*kept, *stance, *caveat] or [tr("Nothing can be told.")])]
-
-
-def role(facts: Facts, side: Side) -> str:
-    """Name a side with what is known of it: "Right (prosthetic)"."""
-    patient = facts.visit.session.patient
-    if patient.prosthetic_side in (side, "both"):
-        return tr("{side} (prosthetic)").format(side=capitalised(side_name(side)))
-    if patient.affected_side in (side, "both"):
-        return tr("{side} (affected)").format(side=capitalised(side_name(side)))
-    return capitalised(side_name(side))
-
-
-def _knee_sentence(facts: Facts, side: Side) -> list[str]:
-    for column, name in (
-        ("knee_swing_peak_deg", tr("{side} knee in swing: {value}°")),
-        ("knee_range_deg", tr("{side} knee range over the stride: {value}°")),
-    ):
-        value = facts.value(side, column)
-        if not is_mean_enough(value.n):
-            continue
-        said = name.format(side=role(facts, side), value=fixed(value.mean, 0))
-        band = facts.band(column)
-        if band is None:
-            return [said + "."]
-        number = "[2]" if facts.is_band_two(column) else "[1]"
-        return [f"{said}, {against_band(value.mean, band)} ({tr('band')} {number})."]
-    return []
-
-
-def _difference_sentence(facts: Facts) -> list[str]:
-    """The largest difference between the knees that exceeds the measurement error."""
-    differences = facts.summary["both"].get("side_difference") or {}
-    names = {
-        "knee_loading_peak_deg": tr("Knee flexion while loading"),
-        "knee_stance_minimum_deg": tr("Least knee flexion in stance"),
-        "knee_swing_peak_deg": tr("Knee flexion in swing"),
-        "knee_range_deg": tr("Knee range"),
-    }
-    real = {
-        column: found
-        for column in names
-        if (found := differences.get(column)) is not None and found["verdict"] == Verdict.EXCEEDS_ERROR
-    }
-    if not real:
-        return []
-    column = max(real, key=lambda name: abs(real[name]["difference_deg"]))
-    values = {side: facts.value(side, column).mean for side in Side}
-    said = tr("{measure}: left {left}°, right {right}°; the difference of {difference}° is {verdict}.")
-    return [
-        said.format(
-            measure=names[column],
-            left=fixed(values[Side.LEFT], 0),
-            right=fixed(values[Side.RIGHT], 0),
-            difference=fixed(abs(real[column]["difference_deg"]), 1),
-            verdict=in_a_sentence(Verdict.EXCEEDS_ERROR),
-        )
-    ]
-
-
-def _stance_sentence(facts: Facts) -> list[str]:
-    left, right = (facts.value(side, "stance_percent") for side in Side)
-    if not (is_mean_enough(left.n) and is_mean_enough(right.n)):
-        return []
-    symmetry = _symmetry(facts, "stance_percent")
-    said = tr("Stance: left {left} %, right {right} % of the stride (symmetry {symmetry}).")
-    sentence = said.format(left=fixed(left.mean, 1), right=fixed(right.mean, 1), symmetry=symmetry)
-    double = facts.time_distance[tr("Double support")]
-    if double.both is not None and math.isfinite(double.both) and double.band and facts.values_group is not None:
-        more = tr("Double support: {value} %, {against}.")
-        sentence += " " + more.format(value=fixed(double.both, 1), against=against_band(double.both, double.band))
-    return [sentence]
-
-
-def _caveat(facts: Facts) -> list[str]:
-    _, reasons = quality.verdict_of(facts)
-    if reasons:
-        return reasons[:1]
-    late = [finding for finding in facts.visit.analysis.findings if finding.key == "prosthetic_toe_off"]
-    if late:
-        return [plain(sentence(late[0]))]
-    group = facts.curves_group
-    if group is not None and math.isfinite(facts.feet.speed_m_s) and not group.fits(facts.feet.speed_m_s):
-        said = tr("This walk: {speed} m/s, band [1]: {group} m/s. Part of a distance from the band comes from speed.")
-        return [said.format(speed=fixed(facts.feet.speed_m_s, 2), group=fixed(group.speed_m_s, 2))]
-    return []
-
-
 def _both_row(facts: Facts, name: str, label: str) -> list[Cell | str]:
     figure = facts.time_distance[name]
     value = math.nan if figure.both is None else figure.both
@@ -331,17 +190,7 @@ def _side_row(
     cells = [_mean_cell(facts, side, value, decimals) for side, value in values.items()]
     in_band = band_in_figures(band, decimals) if band is not None else NOTHING
     words = sides_against_band({s: v for s, v in values.items() if is_mean_enough(v.n)}, band)
-    return [label, *cells, in_band, words, _symmetry(facts, column) if symmetry is None else symmetry]
-
-
-def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
-    """Say where both legs lie; in one line where they agree."""
-    if band is None or not values:
-        return NOTHING
-    said = {side: against_band(value.mean, band) for side, value in values.items() if math.isfinite(value.mean)}
-    if len(said) == len(Side) and len(set(said.values())) == 1:
-        return f"L, R {said[Side.LEFT]}"
-    return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
+    return [label, *cells, in_band, words, symmetry_in_words(facts, column) if symmetry is None else symmetry]
 
 
 def _mean_cell(facts: Facts, side: Side, value: MeanAndSd, decimals: int) -> Cell | str:
@@ -350,7 +199,8 @@ def _mean_cell(facts: Facts, side: Side, value: MeanAndSd, decimals: int) -> Cel
     return Cell(spread(value, decimals), is_grey=not is_spread_enough(value.n))
 
 
-def _symmetry(facts: Facts, column: str) -> str:
+def symmetry_in_words(facts: Facts, column: str) -> str:
+    """Give the symmetry of both legs as summary.json has it; a dash where there is none."""
     index = (facts.summary["both"].get("symmetry_index_percent") or {}).get(column)
     if index is None or not all(is_mean_enough(facts.strides(side)) for side in Side):
         return NOTHING

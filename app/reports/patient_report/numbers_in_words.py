@@ -1,8 +1,10 @@
 """How does a number stand on paper? Fixed decimals, a true minus, and words for where it lies against a band."""
 
 import math
+from collections.abc import Mapping
 
 from app.wording import tr
+from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, Verdict
 
@@ -49,6 +51,16 @@ def against_band(value: float, band: Band) -> str:
     if abs(away) <= 2:
         return tr("1–2\u00a0SD\u00a0below") if away < 0 else tr("1–2\u00a0SD\u00a0above")
     return tr("more than 2\u00a0SD\u00a0below") if away < 0 else tr("more than 2\u00a0SD\u00a0above")
+
+
+def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
+    """Say where both legs lie; in one line where they agree."""
+    if band is None or not values:
+        return NOTHING
+    said = {side: against_band(value.mean, band) for side, value in values.items() if math.isfinite(value.mean)}
+    if len(said) == len(Side) and len(set(said.values())) == 1:
+        return f"L, R {said[Side.LEFT]}"
+    return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
 
 
 def in_words(verdict: Verdict) -> str:

@@ -2,11 +2,19 @@
 
 import math
 
+from app.reports.gait_csv import WINDOWS
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
-from app.reports.patient_report.facts import KINDS, WINDOWS, Facts, joint_of
-from app.reports.patient_report.first_page import sides_against_band
-from app.reports.patient_report.numbers_in_words import NOTHING, band_in_figures, fixed, in_words, signed, spread
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.numbers_in_words import (
+    NOTHING,
+    band_in_figures,
+    fixed,
+    in_words,
+    sides_against_band,
+    signed,
+    spread,
+)
 from app.reports.patient_report.panels import peak_name
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import capitalised, tr

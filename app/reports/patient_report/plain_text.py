@@ -9,6 +9,8 @@ import unicodedata
 from functools import cache
 from importlib.resources import files
 
+from app.wording import tr
+
 FONT_FILES = (
     "Inter-Regular.otf",
     "Inter-Medium.otf",
@@ -24,6 +26,8 @@ BREAK_EVERY = 6
 UNSEEN = {"Cc", "Cf", "Cs", "Co", "Cn"}
 ISOLATE, POP = "\u2068", "\u2069"
 BREAK = "\u200b"
+MAX_TYPED = 120  # characters of one field, of which the page shows two lines
+CONDITION_LENGTH = 32  # within a sentence or a legend
 
 
 def plain(text: str) -> str:
@@ -43,6 +47,11 @@ def plain(text: str) -> str:
             shown[-1] += character
             marks += 1
     return " ".join("".join(shown).split())
+
+
+def typed(text: str, most: int = MAX_TYPED) -> str:
+    """Give what the clinic typed, ready to stand within a line of ours."""
+    return isolated(breakable(shortened(plain(text), most))) or tr("not stated")
 
 
 def plain_lines(text: str) -> list[str]:

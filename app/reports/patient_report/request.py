@@ -51,7 +51,7 @@ class ReportRequest:
     made_at
         When the report is made; must know its time zone.
     earlier
-        A visit before this one and the name of its walk to compare with; used where one walk is chosen.
+        A visit before this one to compare with, in place of the conditions.
     """
 
     visit: Visit
@@ -62,7 +62,7 @@ class ReportRequest:
     operator: str = ""
     clinic: str = ""
     paper: str = "a4"
-    earlier: tuple[Visit, str] | None = None
+    earlier: Visit | None = None
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:

@@ -14,11 +14,13 @@ from pytestqt.qtbot import QtBot
 from app.pages.compare_page import CURVES, PLOT, TABLE
 from app.pages.result_page import COMPARE, ResultPage
 from app.reports.comparison import Comparison, Kind, Part, compare_sides, conditions_of, first_and_second
-from app.reports.comparison_csv import (
+from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
     SIDES,
-    write_comparison,
+    rows_of,
+    write_compared_cycles,
+    write_differences,
     write_sides,
 )
 from app.theme import Look, load_fonts
@@ -72,7 +74,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     qapp.setStyleSheet("")
 
 
-def rows_of(path: Path) -> list[dict[str, str]]:
+def lines_of(path: Path) -> list[dict[str, str]]:
     with path.open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
@@ -139,8 +141,9 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
     compare = page.compare
     found = compare.comparison
     assert found is not None
-    write_comparison(found, tmp_path)
-    rows = {(row["measure"], row["side"], row["part"]): row for row in rows_of(tmp_path / DIFFERENCES)}
+    write_differences(rows_of(found), tmp_path / DIFFERENCES)
+    write_compared_cycles(found.parts, tmp_path / COMPARED_CYCLES)
+    rows = {(row["parameter"], row["side"], row["part"]): row for row in lines_of(tmp_path / DIFFERENCES)}
     judged = [row for row in found.rows if row.is_told]
     assert judged
     for row in judged:
@@ -152,7 +155,7 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
     written = [float(row["difference"]) for row in rows.values() if row["difference"]]
     assert drawn
     assert all(any(abs(value - other) < DIGITS for other in written) for value in drawn)
-    cycles = rows_of(tmp_path / COMPARED_CYCLES)
+    cycles = lines_of(tmp_path / COMPARED_CYCLES)
     for (side, is_knee), frame in compare.frames.items():
         joint = Joint(f"{side}_{'knee' if is_knee else 'ankle'}")
         assert len(frame.chart.lines) == 2
@@ -166,7 +169,7 @@ def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, tmp_path: Pat
     compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.SIDES))
     assert compare.side_rows
     write_sides(compare.side_rows, Side.LEFT, Side.RIGHT, tmp_path / SIDES)
-    written = [float(row["difference"]) for row in rows_of(tmp_path / SIDES)]
+    written = [float(row["difference"]) for row in lines_of(tmp_path / SIDES)]
     drawn = [dot.value for group in compare.plot.groups for row in group.rows for dot in row.dots]
     assert len(drawn) == len(compare.plot.groups)
     assert all(any(abs(value - other) < DIGITS for other in written) for value in drawn)

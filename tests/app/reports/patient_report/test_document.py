@@ -129,8 +129,12 @@ def test_without_a_comparison_there_are_five_pages(request_of_demonstration: Rep
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
     request_of_alignments: ReportRequest, alignments: Visit
 ) -> None:
-    wanted = replace(request_of_alignments, walks=("walk 3",), earlier=(alignments, "walk 1"))
-    page = texts(make_report(wanted))[3]
+    recordings = alignments.session.recordings[:-2]  # up to alignment A, which is then its last condition
+    before = Visit(
+        replace(alignments.session, recordings=recordings),
+        replace(alignments.analysis, recordings=alignments.analysis.recordings[:-2]),
+    )
+    page = texts(make_report(replace(request_of_alignments, earlier=before)))[3]
     assert "Comparison of visits" in page
     assert "sensors put on anew" in page
     assert "9.2" in page
