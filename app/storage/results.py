@@ -5,13 +5,16 @@ from dataclasses import asdict
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import select
+from sqlalchemy import delete, select
+from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import canonical
-from app.storage.database.models import ResultRow
+from app.storage.database.models import ResultRow, SessionRow
 from app.storage.database.values import stored_result
 from app.storage.desk import Desk
-from app.storage.stored import AnalysisInputs, ResultKind, Role, StoredResult
+from app.storage.stored import AnalysisInputs, LibraryError, ResultKind, Role, StoredResult
+
+MOST_KEPT = 2  # of a session and kind: what holds, and what did before the last correction, should that be undone
 
 
 class Results:
@@ -29,20 +32,28 @@ class Results:
     def keep(
         self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs, content_format: str, content: bytes
     ) -> StoredResult:
-        """Store what was computed. Where two computed it at once, the first one stays: they are equal.
+        """Store what was computed, in the place of the eldest; what was computed again replaces what was there.
+
+        Whoever may look at a session may keep it, so that a viewer, too, waits for it once only.
 
         Raises
         ------
         LibraryError
             There is no such session.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
-            row = session.scalars(_wanted(session_id, kind, key_of(inputs))).first()
+        key = key_of(inputs)
+        with self._desk.writing(Role.VIEWER) as session:
+            _existing(session, session_id)
+            row = session.scalars(_wanted(session_id, kind, key)).first()
+            if row is not None and (row.format, row.content) != (content_format, content):
+                session.delete(row)
+                session.flush()
+                row = None
             if row is None:
                 row = ResultRow(
                     session_id=session_id,
                     kind=kind,
-                    key=key_of(inputs),
+                    key=key,
                     inputs=_plain(inputs),
                     algorithm=inputs.algorithm,
                     format=content_format,
@@ -51,6 +62,9 @@ class Results:
                 )
                 session.add(row)
                 session.flush()
+                elder = select(ResultRow.id).where(ResultRow.session_id == session_id, ResultRow.kind == kind)
+                too_many = session.scalars(elder.order_by(ResultRow.id.desc()).offset(MOST_KEPT)).all()
+                session.execute(delete(ResultRow).where(ResultRow.id.in_(too_many)))
             return stored_result(row)
 
 
@@ -65,3 +79,8 @@ def _plain(inputs: AnalysisInputs) -> dict[str, Any]:
 
 def _wanted(session_id: UUID, kind: ResultKind, key: str) -> Any:
     return select(ResultRow).where(ResultRow.session_id == session_id, ResultRow.kind == kind, ResultRow.key == key)
+
+
+def _existing(session: OrmSession, session_id: UUID) -> None:
+    if session.get(SessionRow, session_id) is None:
+        raise LibraryError("This session is not in the library any more", "Reload the list")

@@ -11,7 +11,7 @@ from typing import Self
 from uuid import UUID
 
 from core.body import Joint, Side, Site
-from core.samples import Patient, Recording, SensorInfo, Session
+from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 
 
 class LibraryError(Exception):
@@ -214,29 +214,29 @@ class Correction:
 
 @dataclass(frozen=True, slots=True)
 class AnalysedRecording:
-    """One recording as an analysis saw it. `sha256` of its journals, in order."""
+    """One recording as an analysis saw it. `samples` is the SHA-256 of each site's, in their order."""
 
     name: str
-    sha256: tuple[str, ...]
-    site_of: Mapping[str, Site]
+    folder: str
+    kind: RecordingKind
     is_kept: bool
     is_restrapped_before: bool
+    samples: tuple[tuple[Site, str], ...]
 
 
 @dataclass(frozen=True, slots=True)
 class AnalysisInputs:
     """Everything that an analysis depends on: the same inputs give the same result, byte for byte.
 
-    `parameters` holds method and settings, by name. `calibration` is the key of a stored calibration that was taken
-    instead of being identified from the recordings.
+    `told` is what was said of patient, sensors and joints, `parameters` method and settings, both by name.
     """
 
     recordings: tuple[AnalysedRecording, ...]
     zero_rad: Mapping[Joint, float]
     turned_sign: Mapping[Joint, int]
+    told: Mapping[str, str | float | bool | None]
     algorithm: str
     parameters: Mapping[str, str | float | bool]
-    calibration: str = ""
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,9 +17,16 @@ _log = logging.getLogger(__name__)
 
 
 class Evaluation(QObject):
-    """`analysis` is that of `session`, both None before the first; a newer question takes the older one's place."""
+    """`analysis` is that of `session`, both None before the first; a newer question takes the older one's place.
+
+    Signals
+    -------
+    computed
+        A session and its analysis, which nobody knew before; `done` follows.
+    """
 
     done = Signal()
+    computed = Signal(object, object)
     progressed = Signal(float, str)
     refused = Signal(str, str)
 
@@ -59,11 +66,21 @@ class Evaluation(QObject):
         self._asked = session
         self._background.start(_analysing(session))
 
+    def take_over(self, session: "Session", analysis: "Analysis") -> None:
+        """Go on with what is known of `session` already; `done` follows."""
+        self._background.stop()
+        self._asked = session
+        self._settle(analysis)
+
     def finish(self) -> None:
         """Wait for the last thread, at the end of the program."""
         self._background.finish()
 
     def _on_done(self, analysis: "Analysis") -> None:
+        self.computed.emit(self._asked, analysis)
+        self._settle(analysis)
+
+    def _settle(self, analysis: "Analysis") -> None:
         self.session, self.analysis = self._asked, analysis
         self.done.emit()
 
@@ -83,8 +100,9 @@ def calibration_of(analysis: "Analysis") -> "Mapping[Joint, JointCalibration]":
 
 def _analysing(session: "Session") -> Work:
     def work(report: Report) -> object:
+        from app.storage.kept_analyses import bare
         from core.analysis import analyse
 
-        return analyse(session, progress=report)
+        return analyse(bare(session), progress=report)
 
     return work

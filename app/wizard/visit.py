@@ -14,11 +14,12 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.logs import version_of
-from app.storage.stored import Limits, RecordingState, StoredPatient, StoredRecording, StoredSession
+from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
+from app.wizard.resuming import Resumed, analysis_of, evaluated, read_session, read_takes, rests_of
 from app.wizard.reviewing import Reviewing
-from app.wizard.takes import Take, Takes, counted
+from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
 from app.workers.background import Background, Report
@@ -82,13 +83,14 @@ class Visit(QObject):
         """Site by the sensor's name as at the last visit, where the same set-up was asked for."""
         self._began_s: float | None = None
         self._ended_s: float | None = None
-        self._is_changing = self._is_of_another_day = False
+        self._is_changing = self._is_of_another_day = self._is_partial = False
         self._wanted: Session | None = None
         self.patient.refused.connect(self.refused)
         self.sensors.refused.connect(self.refused)
         self.sensors.opened.connect(self._on_sensors_opened)
         self.takes.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
+        self.evaluation.computed.connect(self._on_computed)
         self.reviewing.refused.connect(self.refused)
         self.takes.ended.connect(self._on_take_ended)
         self.takes.changed.connect(self._on_takes_changed)
@@ -218,7 +220,7 @@ class Visit(QObject):
                 other = {_opposite(site): sensor for site, sensor in placement.sensors.items()}
                 library.sessions.correct_placement(recordings, other)
             session = library.sessions.get(session_id)
-            return session, _read(opened, session)
+            return session, read_takes(opened, session)
 
         self._desk.run(swap, self._on_read, self._on_refused, self)
 
@@ -248,16 +250,15 @@ class Visit(QObject):
             if stored:
                 current = [opened.library.recordings.find(recording.id) for recording in stored]
                 sessions.correct_placement([recording for recording in current if recording], placed)
-            return sessions.get(session_id), _read(opened, sessions.get(session_id))
+            return sessions.get(session_id), read_takes(opened, sessions.get(session_id))
 
         self._desk.run(correct, self._on_read, self._on_refused, self)
 
     def resume(self, session_id: UUID) -> None:
         """Take up a session of the library where it was left; `resumed` follows."""
 
-        def read(opened: "OpenedLibrary") -> tuple[StoredPatient, StoredSession, tuple[Take, ...]]:
-            session = opened.library.sessions.view(session_id)
-            return opened.library.patients.get(session.patient_id), session, _read(opened, session)
+        def read(opened: "OpenedLibrary") -> Resumed:
+            return read_session(opened, session_id)
 
         self._desk.run(read, self._on_resumed, self._on_refused, self)
 
@@ -273,6 +274,7 @@ class Visit(QObject):
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.told.sensors if self.session is not None else {}
             told = replace(self.told, sensors=sensors, is_simulated=self.is_simulated)
+            self._is_partial = with_walk is not None
             self.evaluation.ask(replace(told, recordings=recordings))
 
     def read_earlier(self) -> None:
@@ -282,16 +284,9 @@ class Visit(QObject):
         session = self.session
 
         def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[str, Analysis]]":
-            from core.analysis import analyse
-
             lines = opened.library.sessions.list(session.patient_id)  # latest first
             before = [line for line in lines if line.id != session.id and line.started < session.told.started]
-            found = []
-            for line in reversed(before[:MOST_EARLIER]):
-                stored = opened.library.sessions.get(line.id)
-                told = replace(stored.told, recordings=counted(_read(opened, stored)))
-                found.append((stored.told.started, analyse(told, progress=report)))
-            return found
+            return [(line.started, analysis_of(opened, line.id, report)) for line in reversed(before[:MOST_EARLIER])]
 
         self._desk.run_long(work, self._on_earlier_read, self._on_refused, None, self)
 
@@ -354,17 +349,36 @@ class Visit(QObject):
     def _on_earlier_read(self, found: "list[tuple[str, Analysis]]") -> None:
         self.earlier_read.emit(found)
 
-    def _on_resumed(self, read: tuple[StoredPatient, StoredSession, tuple[Take, ...]]) -> None:
-        patient, self.session, takes = read
+    def _on_computed(self, session: Session, analysis: "Analysis") -> None:
+        """Keep what came of all that is in the library, for whoever opens the session next."""
+        if self.session is None or self._is_partial:
+            return
+        session_id = self.session.id
+
+        def keep(opened: "OpenedLibrary") -> None:
+            from app.storage.kept_analyses import keep_analysis
+
+            keep_analysis(opened.library.results, session_id, session, analysis)
+
+        self._desk.run(keep, None, self._on_not_kept, self)
+
+    def _on_not_kept(self, _what: str, _remedy: str) -> None:
+        """No harm: it is computed again."""
+
+    def _on_resumed(self, read: Resumed) -> None:
+        patient, self.session, takes, known = read
         self.limits = self.session.limits
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
         self._is_of_another_day = bool(takes) and _day(takes[-1].told.started) not in ("", _day(_now()))
         self.takes.take_over(self.session, takes)
-        self.rests = _rests(takes)
+        self.rests = rests_of(takes)
+        if known is not None:
+            self.evaluation.take_over(evaluated(self.session, takes), known)
+        else:
+            self.evaluate()
         self.resumed.emit()
         self.changed.emit()
-        self.evaluate()
 
     def _refuses_code(self, code: str) -> tuple[str, str]:
         """A session stays its patient's, and what is simulated a simulated patient's."""
@@ -413,36 +427,6 @@ def _opposite(site: Site) -> Site:
     """The same place on the other leg."""
     other = Side.RIGHT if site.side is Side.LEFT else Side.LEFT
     return Site(f"{other}_{site.segment}")
-
-
-def _read(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
-    """All recordings of a session that can be read, with their samples."""
-    from app.library_commands import DECODERS
-    from app.storage.exchange import recording_with_samples
-
-    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
-    return tuple(
-        Take(
-            stored,
-            recording_with_samples(opened, stored, DECODERS)[0],
-            is_decided=not (stored.is_unjudged and stored.told.is_kept),
-        )
-        for stored in session.recordings
-        if stored.state in usable
-    )
-
-
-def _rests(takes: Sequence[Take]) -> "dict[str, Rest]":
-    """What each sensor reads at rest, by its name, as the latest standing tells."""
-    from core.calibration.rest import rest_of
-
-    rests: dict[str, Rest] = {}
-    for take in takes:
-        if take.told.kind is RecordingKind.STANDING and take.recording and take.stored.placement and take.told.is_kept:
-            worn = take.stored.placement.sensors
-            found = {worn[site].name: rest_of(block) for site, block in take.recording.imu.items() if site in worn}
-            rests |= {name: rest for name, rest in found.items() if rest is not None}
-    return rests
 
 
 def _now() -> str:

@@ -40,9 +40,12 @@ with Library.open(Path(sys.argv[1]), bytes(range(32))) as library:
         print(k, flush=True)
 """
 INPUTS = AnalysisInputs(
-    recordings=(AnalysedRecording("walk 1", ("ab" * 32,), {"S1": Site.LEFT_SHANK}, True, False),),
+    recordings=(
+        AnalysedRecording("walk 1", "walk_1", RecordingKind.WALKING, True, False, ((Site.LEFT_SHANK, "ab" * 32),)),
+    ),
     zero_rad={Joint.LEFT_KNEE: 0.1},
     turned_sign={Joint.LEFT_KNEE: -1},
+    told={"affected_side": "left"},
     algorithm="1.0",
     parameters={"method": "robust", "tau_s": 5.0},
 )
@@ -236,11 +239,13 @@ def test_a_result_is_found_by_all_that_it_depends_on_and_by_nothing_less(library
     visit = library.sessions.create(library.patients.create(Patient(code="P-1")).id, Session(()))
     kept = library.results.keep(visit.id, ResultKind.ANALYSIS, INPUTS, "json", b"{}")
     assert library.results.find(visit.id, ResultKind.ANALYSIS, INPUTS) == kept
-    assert library.results.keep(visit.id, ResultKind.ANALYSIS, INPUTS, "json", b"other") == kept
+    assert library.results.keep(visit.id, ResultKind.ANALYSIS, INPUTS, "json", b"{}") == kept
     (walk,) = INPUTS.recordings
     others = [
-        replace(INPUTS, recordings=(replace(walk, sha256=("cd" * 32,)),)),
-        replace(INPUTS, recordings=(replace(walk, site_of={"S1": Site.LEFT_FOOT}),)),
+        replace(INPUTS, recordings=(replace(walk, samples=((Site.LEFT_SHANK, "cd" * 32),)),)),
+        replace(INPUTS, recordings=(replace(walk, samples=((Site.LEFT_FOOT, "ab" * 32),)),)),
+        replace(INPUTS, recordings=(replace(walk, kind=RecordingKind.FREE_MOTION),)),
+        replace(INPUTS, recordings=(replace(walk, folder="walk"),)),
         replace(INPUTS, recordings=(replace(walk, is_kept=False),)),
         replace(INPUTS, recordings=(replace(walk, is_restrapped_before=True),)),
         replace(INPUTS, recordings=(walk, walk)),
@@ -249,13 +254,29 @@ def test_a_result_is_found_by_all_that_it_depends_on_and_by_nothing_less(library
         replace(INPUTS, turned_sign={}),
         replace(INPUTS, algorithm="1.1"),
         replace(INPUTS, parameters={"method": "robust", "tau_s": 6.0}),
-        replace(INPUTS, calibration="ef" * 32),
+        replace(INPUTS, told={"affected_side": "right"}),
     ]
     for other in others:
         assert library.results.find(visit.id, ResultKind.ANALYSIS, other) is None
     assert library.results.find(visit.id, ResultKind.CALIBRATION, INPUTS) is None
     same = replace(INPUTS, parameters={"tau_s": 5.0, "method": "robust"})
     assert library.results.find(visit.id, ResultKind.ANALYSIS, same) == kept
+
+
+def test_of_the_results_of_a_session_the_latest_two_are_kept_and_one_computed_again_takes_its_place(
+    library: Library,
+) -> None:
+    """What was corrected and is undone is there at once; a long session does not fill the library with the rest."""
+    visit = library.sessions.create(library.patients.create(Patient(code="P-1")).id, Session(()))
+    versions = [replace(INPUTS, algorithm=name) for name in ("1", "2", "3")]
+    for inputs in versions:
+        library.results.keep(visit.id, ResultKind.ANALYSIS, inputs, "json", inputs.algorithm.encode())
+    found = [library.results.find(visit.id, ResultKind.ANALYSIS, inputs) for inputs in versions]
+    assert [None if one is None else one.content for one in found] == [None, b"2", b"3"]
+    library.results.keep(visit.id, ResultKind.ANALYSIS, versions[2], "json", b"mended")
+    mended = library.results.find(visit.id, ResultKind.ANALYSIS, versions[2])
+    assert mended is not None
+    assert mended.content == b"mended"
 
 
 def test_the_database_is_loaded_when_a_library_is_opened_and_not_before() -> None:

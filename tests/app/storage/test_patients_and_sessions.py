@@ -408,7 +408,7 @@ def test_only_what_was_deleted_30_days_ago_is_destroyed_and_then_nothing_is_left
     double = library.patients.create(Patient(code="P-1"))
     library.patients.change(double, Patient(code="P-2"))
     library.patients.merge(library.patients.get(patient.id), library.patients.get(double.id))
-    inputs = AnalysisInputs((), {}, {}, "1", {})
+    inputs = AnalysisInputs((), {}, {}, {}, "1", {})
     library.results.keep(walk.session_id, ResultKind.ANALYSIS, inputs, "json", b"{}")
     with pytest.raises(LibraryError, match="30 days"):
         library.patients.destroy(patient.id)
@@ -448,7 +448,7 @@ def test_everything_of_one_patient_is_everything_and_of_nobody_else(
     other = library.sessions.create(stranger.id, Session((), notes="not mine"))
     library.patients.change(library.patients.get(patient.id), replace(FULL, aids="frame"))
     library.recordings.change(walk, replace(WALK, is_kept=False))
-    inputs = AnalysisInputs((), {}, {}, "1", {})
+    inputs = AnalysisInputs((), {}, {}, {}, "1", {})
     kept = library.results.keep(walk.session_id, ResultKind.ANALYSIS, inputs, "json", b"{}")
     library.results.keep(other.id, ResultKind.ANALYSIS, inputs, "json", b"{}")
     found = library.patients.everything(patient.id)

@@ -11,6 +11,7 @@ from app.theme import Look
 from app.widgets.step_rail import StepState
 from app.wizard.steps.patient_step import PatientStep
 from app.wizard.steps.stand_still_step import StandStillStep
+from app.storage.analysis_content import packed
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
@@ -66,13 +67,17 @@ def test_whole_session_is_evaluated_and_stored(
     stored = visit.session
     assert stored is not None
     again = Visit(desk, [])
+    computed: list[object] = []
+    again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
         again.resume(stored.id)
+    assert computed == []  # it was kept
     assert [take.told.name for take in again.takes.every] == ["standing", "free motion", "walk 1"]
     assert set(again.rests) == set(worn)
     one, other = visit.evaluation.analysis, again.evaluation.analysis
     assert one is not None
     assert other is not None
+    assert packed(one) == packed(other)
     for before, after in zip(one.recordings, other.recordings, strict=True):
         for joint in before.joints:
             np.testing.assert_array_equal(before.joints[joint].angle_rad, after.joints[joint].angle_rad)

@@ -1,0 +1,131 @@
+"""What came of these very samples, was it computed before? Then it is read, not computed again.
+
+The key is over all that an analysis is given: the samples themselves, what was said of them, and the program's own
+code. An analysis is given nothing else (`bare`), so nothing else can change it.
+"""
+
+import hashlib
+import logging
+from dataclasses import fields, replace
+from functools import cache
+from pathlib import Path
+from uuid import UUID
+
+import numpy as np
+
+from app.logs import version_of
+from app.storage.analysis_content import FORMAT, DamagedContentError, packed, unpacked
+from app.storage.results import Results
+from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, ResultKind
+from core.results import Analysis
+from core.samples import ImuBlock, Patient, Recording, SensorInfo, Session
+
+_log = logging.getLogger(__name__)
+
+CODE = Path(__file__).parents[2] / "core"
+FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may give another last bit
+
+
+def bare(session: Session) -> Session:
+    """The session with all that an analysis reads, and without what was said to people: names, notes, conditions."""
+    patient, told = session.patient, session.sensors
+    return Session(
+        recordings=tuple(
+            Recording(
+                name=recording.name,
+                kind=recording.kind,
+                folder=recording.folder,
+                imu={site: replace(block, sensor="", unknown={}) for site, block in recording.imu.items()},
+                is_kept=recording.is_kept,
+                is_restrapped_before=recording.is_restrapped_before,
+            )
+            for recording in session.recordings
+        ),
+        patient=Patient(affected_side=patient.affected_side, prosthetic_side=patient.prosthetic_side),
+        sensors={site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind) for site, info in told.items()},
+        zero_rad=session.zero_rad,
+        turned_sign=session.turned_sign,
+        is_simulated=session.is_simulated,
+        findings=session.findings,
+    )
+
+
+def find_analysis(results: Results, session_id: UUID, session: Session) -> Analysis | None:
+    """What `analyse(bare(session))` gave when it was last computed; None: not yet, or what was kept is damaged.
+
+    Raises
+    ------
+    LibraryError
+        The library cannot be read.
+    """
+    kept = results.find(session_id, ResultKind.ANALYSIS, inputs_of(session))
+    if kept is None or kept.format != FORMAT:
+        return None
+    try:
+        return unpacked(kept.content)
+    except DamagedContentError:
+        _log.warning("a kept analysis is damaged; it is computed again")
+        return None
+
+
+def keep_analysis(results: Results, session_id: UUID, session: Session, analysis: Analysis) -> None:
+    """Keep what `analyse(bare(session))` gave. That it cannot be kept is no harm: it is computed again."""
+    try:
+        results.keep(session_id, ResultKind.ANALYSIS, inputs_of(session), FORMAT, packed(analysis))
+    except LibraryError as error:
+        _log.info("an analysis was not kept", exc_info=error)
+
+
+def inputs_of(session: Session) -> AnalysisInputs:
+    """All that `analyse(bare(session))` depends on."""
+    patient = session.patient
+    told: dict[str, str | float | bool | None] = {
+        "affected_side": patient.affected_side,
+        "prosthetic_side": patient.prosthetic_side,
+        "is_simulated": session.is_simulated,
+    }
+    for site, info in session.sensors.items():
+        told[f"{site} rate_hz"] = info.rate_hz
+        told[f"{site} rate_kind"] = info.rate_kind
+    for number, finding in enumerate(session.findings):
+        told[f"finding {number}"] = repr(finding)
+    return AnalysisInputs(
+        recordings=tuple(
+            AnalysedRecording(
+                recording.name,
+                recording.folder,
+                recording.kind,
+                recording.is_kept,
+                recording.is_restrapped_before,
+                tuple((site, _digest(block)) for site, block in recording.imu.items()),
+            )
+            for recording in session.recordings
+        ),
+        zero_rad=session.zero_rad,
+        turned_sign=session.turned_sign,
+        told=told,
+        algorithm=algorithm(),
+        parameters={},
+    )
+
+
+@cache
+def algorithm() -> str:
+    """Which code computes: versions, and a digest of the core's own source, which changes between versions, too."""
+    source = hashlib.sha256()
+    for path in sorted(CODE.rglob("*.py")):
+        source.update(str(path.relative_to(CODE)).encode() + b"\0" + path.read_bytes() + b"\0")
+    versions = [f"{name} {version_of(name)}" for name in FIGURES_FROM]
+    return ", ".join([*versions, f"core {source.hexdigest()}"])
+
+
+def _digest(block: ImuBlock) -> str:
+    """SHA-256 of all of a block that is measured."""
+    digest = hashlib.sha256()
+    for field in fields(block):
+        value = getattr(block, field.name)
+        if isinstance(value, np.ndarray):
+            digest.update(f"{field.name} {value.dtype.str} {value.shape}\0".encode())
+            digest.update(np.ascontiguousarray(value).data)
+    digest.update(f"{block.is_rate_derived}".encode())
+    return digest.hexdigest()

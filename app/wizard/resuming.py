@@ -1,0 +1,84 @@
+"""What the library holds of a session, read back for the screen: recordings, rests, and what came of them before."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+from uuid import UUID
+
+from app.storage.stored import RecordingState, StoredPatient, StoredSession
+from app.wizard.takes import Take, counted
+from app.workers.background import Report
+from core.samples import RecordingKind, Session
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+    from core.calibration.rest import Rest
+    from core.results import Analysis
+
+
+class Resumed(NamedTuple):
+    """A session of the library, and what came of it when it was computed last, if that is known."""
+
+    patient: StoredPatient
+    session: StoredSession
+    takes: tuple[Take, ...]
+    known: "Analysis | None"
+
+
+def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
+    """Read a session that somebody opens; raises as `exchange.session_with_samples`."""
+    from app.storage.kept_analyses import find_analysis
+
+    session = opened.library.sessions.view(session_id)
+    takes = read_takes(opened, session)
+    known = find_analysis(opened.library.results, session_id, evaluated(session, takes))
+    return Resumed(opened.library.patients.get(session.patient_id), session, takes, known)
+
+
+def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "Analysis":
+    """What came of a session: as it is kept, else computed now, and kept."""
+    from app.storage.kept_analyses import bare, find_analysis, keep_analysis
+    from core.analysis import analyse
+
+    results, stored = opened.library.results, opened.library.sessions.get(session_id)
+    told = evaluated(stored, read_takes(opened, stored))
+    known = find_analysis(results, session_id, told)
+    if known is None:
+        known = analyse(bare(told), progress=report)
+        keep_analysis(results, session_id, told, known)
+    return known
+
+
+def evaluated(session: StoredSession, takes: Sequence[Take]) -> Session:
+    """What is evaluated of a session of the library, as `Visit.evaluate` asks it when nothing is recorded."""
+    return replace(session.told, recordings=counted(takes))
+
+
+def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
+    """All recordings of a session that can be read, with their samples."""
+    from app.library_commands import DECODERS
+    from app.storage.exchange import recording_with_samples
+
+    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
+    return tuple(
+        Take(
+            stored,
+            recording_with_samples(opened, stored, DECODERS)[0],
+            is_decided=not (stored.is_unjudged and stored.told.is_kept),
+        )
+        for stored in session.recordings
+        if stored.state in usable
+    )
+
+
+def rests_of(takes: Sequence[Take]) -> "dict[str, Rest]":
+    """What each sensor reads at rest, by its name, as the latest standing tells."""
+    from core.calibration.rest import rest_of
+
+    rests: dict[str, Rest] = {}
+    for take in takes:
+        if take.told.kind is RecordingKind.STANDING and take.recording and take.stored.placement and take.told.is_kept:
+            worn = take.stored.placement.sensors
+            found = {worn[site].name: rest_of(block) for site, block in take.recording.imu.items() if site in worn}
+            rests |= {name: rest for name, rest in found.items() if rest is not None}
+    return rests
