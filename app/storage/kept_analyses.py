@@ -8,12 +8,12 @@ import hashlib
 import logging
 from dataclasses import fields, replace
 from functools import cache
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from uuid import UUID
 
 import numpy as np
 
-from app.logs import version_of
 from app.storage.analysis_content import FORMAT, DamagedContentError, packed, unpacked
 from app.storage.results import Results
 from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, ResultKind
@@ -115,8 +115,15 @@ def algorithm() -> str:
     source = hashlib.sha256()
     for path in sorted(CODE.rglob("*.py")):
         source.update(str(path.relative_to(CODE)).encode() + b"\0" + path.read_bytes() + b"\0")
-    versions = [f"{name} {version_of(name)}" for name in FIGURES_FROM]
+    versions = [f"{name} {_version(name)}" for name in FIGURES_FROM]
     return ", ".join([*versions, f"core {source.hexdigest()}"])
+
+
+def _version(distribution: str) -> str:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:  # run from its source
+        return "not installed"
 
 
 def _digest(block: ImuBlock) -> str:

@@ -145,7 +145,7 @@ def test_every_field_is_either_in_the_key_or_kept_from_the_analysis(session: Ses
         SensorInfo: given.sensors[SHANK],
     }
     for kind, names in in_key.items():
-        for field in fields(kind):  # type: ignore[arg-type]  # all are dataclasses
+        for field in fields(kind):
             if field.name not in names:
                 empty: Any = kind() if kind in (Patient, SensorInfo) else None
                 value = getattr(told[kind], field.name)

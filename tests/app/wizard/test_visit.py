@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 from pytestqt.qtbot import QtBot
 
+from app.storage.analysis_content import packed
 from app.storage.audit import about
 from app.storage.stored import Limits, RecordingState
 from app.theme import Look
 from app.widgets.step_rail import StepState
 from app.wizard.steps.patient_step import PatientStep
 from app.wizard.steps.stand_still_step import StandStillStep
-from app.storage.analysis_content import packed
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
