@@ -8,36 +8,31 @@ import argparse
 import io
 import math
 import os
-import signal
 import sys
-import threading
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn, TextIO
+from typing import TYPE_CHECKING, NoReturn
 
 from app.compare_command import add_compare_arguments, compare
 from app.device_commands import EMULATED
 from app.export_command import add_export_arguments, export
-from app.library_commands import LibrarySession, add_key_arguments, default_folder
+from app.import_command import add_import_arguments, import_files
+from app.library_commands import LibrarySession, add_key_arguments, default_folder, session_place
 from app.logs import log_folder, start_logging, version_of
+from app.report_command import add_report_arguments, make
+from app.terminal import Progress, finding_lines, one_of, positive
 
 if TYPE_CHECKING:
-    from core.findings import Finding
     from core.results import Analysis
     from core.samples import Session
-    from devices.files.imports import Imported
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 3
 
-# as core.results.Method, core.published.angles, core.samples.RecordingKind and _importers() have them, whose imports
-# would cost half a second here
+# as core.results.Method and core.published.angles have them, whose imports would cost half a second here
 DEFAULT_TAU_S = 2.0
 METHODS = ("robust", "published")
-KINDS = ("standing", "free_motion", "walking")
-PAPERS = ("a4", "letter")  # as app.reports.patient_report.request has them
-FORMATS = ("xsens-mtmanager",)
 SUBCOMMANDS = ("analyse", "demo", "report", "compare", "export", "import", "recover", "audit", "devices")
 OF_LIBRARY = "the folder of the library (your own)"
 
@@ -131,21 +126,24 @@ def _parser() -> argparse.ArgumentParser:
 def _add_analyse(parser: argparse.ArgumentParser) -> None:
     parser.description = "Compute knee and ankle angles of a session and write them as a folder of results."
     parser.add_argument(
-        "session", metavar="SESSION", type=_session, help="the session folder, or library:ID for one of the library"
+        "session",
+        metavar="SESSION",
+        type=session_place,
+        help="the session folder, or library:ID for one of the library",
     )
     parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
     add_key_arguments(parser)
     parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="the folder of results to write")
     parser.add_argument(
         "--method",
-        type=_one_of(METHODS),
+        type=one_of(METHODS),
         default=METHODS[0],
         metavar="{robust,published}",
         help="how joints are identified and which angle is the result (robust)",
     )
     parser.add_argument(
         "--tau",
-        type=_positive,
+        type=positive,
         default=DEFAULT_TAU_S,
         metavar="S",
         help="time constant of the published fusion in seconds (2)",
@@ -168,56 +166,23 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_report(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Analyse a session and make its report: one walk, or up to three conditions beside each other."
-    parser.add_argument(
-        "session",
-        metavar="SESSION|OUT",
-        type=_session,
-        help="the session folder, results with their session inside, or library:ID",
-    )
-    parser.add_argument("--library", metavar="LIBRARY", type=Path, default=default_folder(), help=OF_LIBRARY)
-    add_key_arguments(parser)
-    parser.add_argument("--out", metavar="FILE.pdf", type=Path, required=True, help="the report to write")
-    parser.add_argument(
-        "--walk",
-        metavar="NAME",
-        action="append",
-        default=[],
-        help="a walk to show; up to three are compared, the last is shown (the last walk of each condition)",
-    )
-    parser.add_argument("--earlier", metavar="SESSION", type=Path, help="the session folder of a visit to compare with")
-    parser.add_argument("--comment", metavar="FILE", type=Path, help="the clinician's words, a text in UTF-8")
-    parser.add_argument("--paper", type=_one_of(PAPERS), default=PAPERS[0], metavar="PAPER", help=" | ".join(PAPERS))
-    parser.set_defaults(run=_report)
+    add_report_arguments(parser)
+    parser.set_defaults(run=_telling(make))
 
 
 def _add_compare(parser: argparse.ArgumentParser) -> None:
-    add_compare_arguments(parser, _session)
-    parser.set_defaults(run=_compare)
+    add_compare_arguments(parser)
+    parser.set_defaults(run=_telling(compare))
 
 
 def _add_export(parser: argparse.ArgumentParser) -> None:
-    add_export_arguments(parser, _session)
-    parser.set_defaults(run=_export)
+    add_export_arguments(parser)
+    parser.set_defaults(run=_telling(export))
 
 
 def _add_import(parser: argparse.ArgumentParser) -> None:
-    parser.description = "Make one recording of files of another program and add it to a session folder."
-    parser.add_argument("files", metavar="FILES", type=Path, nargs="+", help="the files of one recording")
-    parser.add_argument(
-        "--as", dest="format", type=_one_of(FORMATS), required=True, metavar="FORMAT", help=", ".join(FORMATS)
-    )
-    parser.add_argument(
-        "--map",
-        required=True,
-        metavar="SITE=FILE_OR_SENSOR_ID,...",
-        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot",
-    )
-    parser.add_argument("--kind", type=_one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
-    parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
-    parser.add_argument("--rate", type=_positive, metavar="HZ", help="samples per second, where the files do not tell")
-    parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
-    parser.set_defaults(run=_import)
+    add_import_arguments(parser)
+    parser.set_defaults(run=_telling(import_files))
 
 
 def _add_recover(parser: argparse.ArgumentParser) -> None:
@@ -250,13 +215,13 @@ def _add_devices(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--emulate",
-        type=_one_of(EMULATED),
+        type=one_of(EMULATED),
         metavar="{" + ",".join(EMULATED) + "}",
         help="play sensors that are not there instead, and print their ports",
     )
     parser.add_argument("--count", type=int, default=6, metavar="N", help="how many are played (6)")
     parser.add_argument(
-        "--seconds", type=_positive, default=math.inf, metavar="S", help="for how long they are played (until Ctrl C)"
+        "--seconds", type=positive, default=math.inf, metavar="S", help="for how long they are played (until Ctrl C)"
     )
     parser.set_defaults(run=_devices, out="The port of an emulated sensor")
 
@@ -267,7 +232,7 @@ def _analyse(wanted: argparse.Namespace) -> None:
     place = wanted.library if isinstance(wanted.session, LibrarySession) else wanted.session
     check_place(wanted.out, place)
     session_is_inside = place.resolve() == wanted.out.resolve() / OWN_SESSION
-    with _Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
+    with Progress(sys.stderr) as progress, written_beside(wanted.out, keeps_session=session_is_inside) as folder:
         progress(0.0, str(wanted.session))
         session = _read(wanted, progress)
         analysis = _write_analysis(
@@ -276,7 +241,7 @@ def _analyse(wanted: argparse.Namespace) -> None:
     _tell(analysis, wanted.out)
 
 
-def _read(wanted: argparse.Namespace, progress: "_Progress") -> "Session":
+def _read(wanted: argparse.Namespace, progress: Progress) -> "Session":
     if isinstance(wanted.session, LibrarySession):
         from app.library_commands import read_library_session
 
@@ -291,7 +256,7 @@ def _recover(wanted: argparse.Namespace) -> None:
 
     lines: list[str] = []
     try:
-        with _Progress(sys.stderr) as progress:
+        with Progress(sys.stderr) as progress:
             for line in recover(wanted, progress):
                 lines += [line]
     finally:  # also before a refusal
@@ -322,7 +287,7 @@ def _demo(wanted: argparse.Namespace) -> None:
     from devices.walker import DEMONSTRATION, simulate, truth_table
 
     check_demonstration_place(wanted.out)
-    with _Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
+    with Progress(sys.stderr) as progress, written_beside(wanted.out) as folder:
         progress(0.0, "simulated patient")
         simulated = simulate(DEMONSTRATION)
         write_session(simulated.session, folder / OWN_SESSION)
@@ -332,93 +297,15 @@ def _demo(wanted: argparse.Namespace) -> None:
     _tell(analysis, wanted.out)
 
 
-def _report(wanted: argparse.Namespace) -> None:
-    from app.reports.patient_report.document import make_report
-    from app.reports.patient_report.report_file import check_report_place, chosen_walks, replace_report, session_of
-    from app.reports.patient_report.request import MAX_CONDITIONS, ReportRequest, Visit
-    from core.analysis import analyse
-    from devices.files.refusal import FileRefusedError
-    from devices.files.session_folder import read_session
+def _telling(work: Callable[[argparse.Namespace, Progress], Iterable[str]]) -> Callable[[argparse.Namespace], None]:
+    """Do a subcommand that gives its lines for the terminal."""
 
-    check_report_place(wanted.out)
-    if len(wanted.walk) > MAX_CONDITIONS:
-        what = f"{len(wanted.walk)} walks are too many for one report"
-        raise FileRefusedError("--walk", what, f"Choose up to {MAX_CONDITIONS}")
-    if not isinstance(wanted.session, LibrarySession):
-        wanted.session = session_of(wanted.session)
-    with _Progress(sys.stderr) as progress:
-        progress(0.0, str(wanted.session))
-        comment = _comment(wanted.comment)
-        session = _read(wanted, progress)
-        visit = Visit(session, analyse(session, progress=progress))
-        walks = chosen_walks(visit, wanted.walk, str(wanted.session))
-        earlier = None
-        if wanted.earlier is not None:
-            before = read_session(session_of(wanted.earlier))
-            earlier = Visit(before, analyse(before, progress=progress))
-            chosen_walks(earlier, [], str(wanted.earlier))  # refuses a visit without a walk
-            walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
-        now, version = datetime.now().astimezone(), version_of("gaitwright")
-        progress(1.0, "report")
-        request = ReportRequest(visit, walks, now, version, comment, paper=wanted.paper, earlier=earlier)
-        replace_report(make_report(request), wanted.out)
-    print(f"{wanted.out}: the report of {', '.join(walks)}.")
+    def run(wanted: argparse.Namespace) -> None:
+        with Progress(sys.stderr) as progress:
+            lines = list(work(wanted, progress))
+        print(*lines, sep="\n")
 
-
-def _compare(wanted: argparse.Namespace) -> None:
-    with _Progress(sys.stderr) as progress:
-        lines = compare(wanted, progress)
-    print(*lines, sep="\n")
-
-
-def _export(wanted: argparse.Namespace) -> None:
-    with _Progress(sys.stderr) as progress:
-        lines = export(wanted, progress)
-    print(*lines, sep="\n")
-
-
-def _comment(file: Path | None) -> str:
-    from devices.files.refusal import FileRefusedError
-
-    if file is None:
-        return ""
-    try:
-        return file.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as problem:
-        why = problem.strerror if isinstance(problem, OSError) else "it is no text in UTF-8"
-        raise FileRefusedError(str(file), f"this cannot be read ({why})", "Give --comment a text file") from problem
-
-
-def _import(wanted: argparse.Namespace) -> None:
-    from core.samples import Recording, RecordingKind, Session
-    from devices.files.imports import add_recording, folder_for, free_name, parse_map
-    from devices.files.refusal import FileRefusedError
-    from devices.files.session_folder import read_session, write_session
-
-    kind = RecordingKind(wanted.kind)
-    placement = parse_map(wanted.map)
-    with _Progress(sys.stderr) as progress:
-        is_new = not wanted.out.exists() or (wanted.out.is_dir() and not any(wanted.out.iterdir()))
-        session = Session(()) if is_new else read_session(wanted.out)
-        name = wanted.recording or free_name(session, kind)
-        progress(0.0, name)
-        try:
-            imported = _importers()[wanted.format](wanted.files, placement, name, wanted.rate)
-        except OSError as problem:
-            what = f"this cannot be read ({problem.strerror})"
-            raise FileRefusedError(str(problem.filename), what, "Check its permissions") from problem
-        recording = Recording(name, kind, folder_for(name), imported.imu)
-        session = add_recording(session, recording, imported.sensors, imported.findings)
-        progress(0.5, str(wanted.out))
-        write_session(session, wanted.out)
-    print(f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites.")
-    _tell_findings(imported.findings, lowest="info")
-
-
-def _importers() -> dict[str, Callable[..., "Imported"]]:
-    from devices.files.xsens_mtmanager import import_mtmanager
-
-    return {"xsens-mtmanager": import_mtmanager}
+    return run
 
 
 def _write_analysis(
@@ -426,7 +313,7 @@ def _write_analysis(
     folder: Path,
     method: str,
     tau_s: float,
-    progress: "_Progress",
+    progress: Progress,
     has_log: bool = True,
     has_report: bool = True,
 ) -> "Analysis":
@@ -454,59 +341,8 @@ def _tell(analysis: "Analysis", out: Path) -> None:
     names = ", ".join(name_of(joint) for joint in dict.fromkeys(joints)) or "no joint"
     count = len(analysis.recordings)
     print(f"{out}: {names}; {count} {'recording' if count == 1 else 'recordings'}.")
-    _tell_findings(analysis.findings, lowest="warning")
-
-
-def _tell_findings(findings: Sequence["Finding"], lowest: str) -> None:
-    from app.wording import sentence
-    from core.findings import Severity
-    from devices.files.refusal import one_line
-
-    severities = list(Severity)
-    for finding in findings:
-        if severities.index(finding.severity) >= severities.index(Severity(lowest)):
-            print(f"- {one_line(sentence(finding))}")
-
-
-class _Progress:
-    """A line that renews itself on a terminal, else a line for every tenth of the work."""
-
-    def __init__(self, stream: TextIO) -> None:
-        self._stream = stream
-        self._is_terminal = stream.isatty()
-        self._next_percent = 0
-        self._is_interrupted = False
-        self._handler_before: Any = None
-
-    def __enter__(self) -> "_Progress":
-        if threading.current_thread() is threading.main_thread():
-            self._handler_before = signal.signal(signal.SIGINT, self._interrupt)
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._handler_before is not None:
-            signal.signal(signal.SIGINT, self._handler_before)
-        if self._is_terminal:
-            print("\r\x1b[K", end="", file=self._stream, flush=True)
-
-    def _interrupt(self, *_: object) -> None:
-        """Stop at once, or, where a library swallows the exception, at the next progress."""
-        self._is_interrupted = True
-        raise KeyboardInterrupt
-
-    def __call__(self, share: float, what: str) -> None:
-        if self._is_interrupted:
-            raise KeyboardInterrupt
-        from app.wording import place
-        from devices.files.refusal import one_line
-
-        percent = min(100, round(100 * share))
-        text = f"{percent:3d} % {place(one_line(what))}"
-        if self._is_terminal:
-            print(f"\r\x1b[K{text[:78]}", end="", file=self._stream, flush=True)
-        elif percent >= self._next_percent:
-            print(text, file=self._stream, flush=True)
-            self._next_percent = percent // 10 * 10 + 10
+    for line in finding_lines(analysis.findings, lowest="warning"):
+        print(line)
 
 
 def _is_folder(argument: str) -> bool:
@@ -521,26 +357,3 @@ def _open_window(arguments: list[str]) -> int:
     from app.main_window import open_window
 
     return open_window(arguments)
-
-
-def _session(text: str) -> Path | LibrarySession:
-    return LibrarySession.parsed(text) if text.startswith("library:") else Path(text)
-
-
-def _one_of(words: Sequence[str]) -> Callable[[str], str]:
-    def check(text: str) -> str:
-        if text not in words:
-            raise argparse.ArgumentTypeError(f"{text} is none of {', '.join(words)}")
-        return text
-
-    return check
-
-
-def _positive(text: str) -> float:
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not 0 < number < math.inf:
-        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
-    return number

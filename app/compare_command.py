@@ -7,12 +7,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.library_commands import LibrarySession, add_key_arguments, default_folder, read_library_session
+from app.library_commands import add_key_arguments, default_folder, read_place, session_place
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
     from app.reports.comparison import Comparison, Part
-    from core.samples import Session
 
 DIFFERENCES = "differences.csv"
 FLAGS = {  # as core.norms.Verdict and app.reports.differences have them
@@ -26,7 +25,7 @@ FLAGS = {  # as core.norms.Verdict and app.reports.differences have them
 Report = Callable[[float, str], None]
 
 
-def add_compare_arguments(parser: argparse.ArgumentParser, session: Callable[[str], Path | LibrarySession]) -> None:
+def add_compare_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Tell the differences between the conditions of a session, or between sessions, and which of them are inside "
         "the measurement error."
@@ -34,7 +33,7 @@ def add_compare_arguments(parser: argparse.ArgumentParser, session: Callable[[st
     help_text = (
         "session folders, results with their session inside, or library:ID; the first is what others differ from"
     )
-    parser.add_argument("sessions", metavar="SESSION", type=session, nargs="+", help=help_text)
+    parser.add_argument("sessions", metavar="SESSION", type=session_place, nargs="+", help=help_text)
     parser.add_argument(
         "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
     )
@@ -63,7 +62,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         def told(share: float, what: str, number: int = number) -> None:
             report((number + share) / len(wanted.sessions), what)
 
-        session = _read(wanted, place, told)
+        session = read_place(wanted, place, told)
         visits.append((session, analyse(session, progress=told)))
     comparisons = comparisons_of(visits)
     rows = [row for comparison in comparisons for row in rows_of(comparison)]
@@ -79,15 +78,6 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         "",
         f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
     ]
-
-
-def _read(wanted: argparse.Namespace, place: "Path | LibrarySession", report: Report) -> "Session":
-    from app.reports.patient_report.report_file import session_of
-    from devices.files.session_folder import read_session
-
-    if isinstance(place, LibrarySession):
-        return read_library_session(wanted, place, report)
-    return read_session(session_of(place))
 
 
 def _check_place(out: Path) -> None:

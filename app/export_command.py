@@ -4,7 +4,14 @@ import argparse
 from collections.abc import Callable
 from pathlib import Path
 
-from app.library_commands import DECODERS, LibrarySession, add_key_arguments, default_folder, opened_library
+from app.library_commands import (
+    DECODERS,
+    LibrarySession,
+    add_key_arguments,
+    default_folder,
+    opened_library,
+    session_place,
+)
 from devices.files.refusal import FileRefusedError, one_line
 
 FORMATS = ("xlsx", "c3d", "mot", "fhir")  # as app.exports.exports has them, whose import takes long
@@ -12,13 +19,13 @@ FORMATS = ("xlsx", "c3d", "mot", "fhir")  # as app.exports.exports has them, who
 Report = Callable[[float, str], None]
 
 
-def add_export_arguments(parser: argparse.ArgumentParser, session: Callable[[str], Path | LibrarySession]) -> None:
+def add_export_arguments(parser: argparse.ArgumentParser) -> None:
     parser.description = (
         "Analyse a session and write its results for other programs: a spreadsheet, C3D, OpenSim's mot, a FHIR R4 "
         "bundle. Names are taken away unless identity is asked for."
     )
     help_text = "the session folder, results with their session inside, or library:ID"
-    parser.add_argument("session", metavar="SESSION", type=session, help=help_text)
+    parser.add_argument("session", metavar="SESSION", type=session_place, help=help_text)
     parser.add_argument(
         "--library", metavar="LIBRARY", type=Path, default=default_folder(), help="the folder of the library (your own)"
     )

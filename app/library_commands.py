@@ -69,6 +69,11 @@ class LibrarySession:
             raise argparse.ArgumentTypeError(f"{one_line(text)} is not {PREFIX}ID with the id of a session") from None
 
 
+def session_place(text: str) -> Path | LibrarySession:
+    """An argument that names a session: its folder, or library:ID."""
+    return LibrarySession.parsed(text) if text.startswith(PREFIX) else Path(text)
+
+
 def default_folder() -> Path:
     """Where a user's own library is."""
     return platformdirs.user_data_path("gaitwright", appauthor=False) / "library"
@@ -125,6 +130,22 @@ def read_library_session(wanted: argparse.Namespace, session: LibrarySession, re
     if not read.recordings:
         raise FileRefusedError(str(session), "this session has no recording", "Choose another session")
     return read
+
+
+def read_place(wanted: argparse.Namespace, place: Path | LibrarySession, report: Report) -> "Session":
+    """A session of the library, or of a folder: its own, or results with it inside.
+
+    Raises
+    ------
+    FileRefusedError
+        There is no such session, or it cannot be read.
+    """
+    if isinstance(place, LibrarySession):
+        return read_library_session(wanted, place, report)
+    from app.reports.patient_report.report_file import session_of
+    from devices.files.session_folder import read_session
+
+    return read_session(session_of(place))
 
 
 def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:

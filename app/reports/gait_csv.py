@@ -1,11 +1,11 @@
-"""Which strides stand behind the averages? Events, strides, when they peak, and mean cycles of one recording: tables.
+"""Which strides stand behind the averages? Events, strides and mean cycles of one recording, and when strides peak.
 
 A joint whose clinical sign is in doubt may be mirrored, one without a zero stands at no height: of them the strides
 hold the ranges, which are the same either way, and no angle. The mean cycle of a joint without zero shows its shape.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -45,7 +45,7 @@ PEAK_TIMES = tuple(f"{window.name}_percent" for window in WINDOWS.values())
 
 
 def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
-    """Write `events.csv`, `strides.csv`, `peaks.csv` and `cycles.csv`; without gait they hold their headings only.
+    """Write `events.csv`, `strides.csv` and `cycles.csv`; without gait they hold their headings only.
 
     Raises
     ------
@@ -56,8 +56,22 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
         write_table(header, rows, folder / f"{name}.csv")
 
 
+def peak_table(recordings: Sequence[RecordingAnalysis]) -> tuple[list[str], list[list[str]]]:
+    """Give heading and rows of `peaks.csv`: when each stride of any recording peaks, % of the stride."""
+    rows = []
+    for recording in recordings:
+        for side in Side:
+            if side in recording.gait:
+                gait = recording.gait[side]
+                columns = [gait.strides.start_s, *(peak_percent(gait, column) for column in WINDOWS)]
+                for k, reason in enumerate(gait.strides.reason):
+                    cells = [_cell(float(column[k])) for column in columns]
+                    rows.append([recording.folder, str(side), *cells, "false" if reason else "true"])
+    return ["recording", "side", "start_s", *PEAK_TIMES, "used"], rows
+
+
 def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iterator[list[str]]]]:
-    """Give headings and rows of `events`, `strides`, `peaks` and `cycles`, every cell as it stands in the file."""
+    """Give headings and rows of `events`, `strides` and `cycles`, every cell as it stands in the file."""
     joints = [joint for joint in Joint if joint.side in recording.gait and joint in recording.gait[joint.side].cycles]
     of_cycles = ["percent"]
     for joint in joints:
@@ -66,7 +80,6 @@ def gait_tables(recording: RecordingAnalysis) -> dict[str, tuple[list[str], Iter
     return {
         "events": (["time_s", "side", "event"], events),
         "strides": (["side", *TIMES, *PARAMETERS, "used", "reason"], _strides(recording)),
-        "peaks": (["side", "start_s", *PEAK_TIMES, "used"], _peaks(recording)),
         "cycles": (of_cycles, _cycles(recording, joints)),
     }
 
@@ -133,15 +146,6 @@ def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:
         for k, reason in enumerate(gait.strides.reason):
             used = "false" if reason else "true"
             yield [str(side), *(_cell(float(column[k])) for column in columns), used, str(reason)]
-
-
-def _peaks(recording: RecordingAnalysis) -> Iterator[list[str]]:
-    for side in Side:
-        if side in recording.gait:
-            gait = recording.gait[side]
-            columns = [gait.strides.start_s, *(peak_percent(gait, column) for column in WINDOWS)]
-            for k, reason in enumerate(gait.strides.reason):
-                yield [str(side), *(_cell(float(column[k])) for column in columns), "false" if reason else "true"]
 
 
 def _cycles(recording: RecordingAnalysis, joints: list[Joint]) -> Iterator[list[str]]:

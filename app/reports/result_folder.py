@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from app.reports.comparison import Comparison, Kind, compare_sides, conditions_of, first_and_second
-from app.reports.csv_report import write_angles
+from app.reports.csv_report import write_angles, write_table
 from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
@@ -22,7 +22,7 @@ from app.reports.differences import (
     write_differences,
     write_sides,
 )
-from app.reports.gait_csv import write_gait
+from app.reports.gait_csv import peak_table, write_gait
 from app.reports.summary import read_summary, write_summary
 from core.results import Analysis
 from core.samples import Session
@@ -31,10 +31,11 @@ from devices.files.session_toml import FILE_NAME as SESSION_FILE
 
 SUMMARY = "summary.json"
 ANGLES = "angles.csv"
+PEAKS = "peaks.csv"
 LOG = "session.rrd"
 REPORT = "report.pdf"
 OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
-TAKEN = tuple((name,) for name in (SUMMARY, LOG, REPORT, OWN_SESSION, DIFFERENCES, COMPARED_CYCLES, SIDES))
+TAKEN = tuple((name,) for name in (SUMMARY, LOG, REPORT, OWN_SESSION, PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES))
 
 
 def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log: bool) -> None:
@@ -54,6 +55,8 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)
         write_angles(recording, folder / recording.folder / ANGLES)
         write_gait(recording, folder / recording.folder)
+    if any(len(recording.gait) > 1 for recording in analysis.recordings):
+        write_table(*peak_table(analysis.recordings), folder / PEAKS)
     _write_comparisons(session, analysis, folder)
     if has_log:
         from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write

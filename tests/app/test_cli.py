@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app import cli
+from app import cli, import_command, report_command
 from app.cli import main
 from app.reports import result_folder
+from app.reports.patient_report import request
 from app.wording import SENTENCES
 from core.body import Site
 from core.published.angles import DEFAULT_TAU_S
@@ -181,8 +182,9 @@ def test_help_comes_without_the_heavy_libraries() -> None:
 
 def test_the_choices_are_those_of_the_core() -> None:
     assert tuple(Method) == cli.METHODS
-    assert tuple(RecordingKind) == cli.KINDS
-    assert tuple(cli._importers()) == cli.FORMATS
+    assert tuple(RecordingKind) == import_command.KINDS
+    assert tuple(import_command.importers()) == import_command.FORMATS
+    assert report_command.PAPERS == request.PAPERS
     assert cli.DEFAULT_TAU_S == DEFAULT_TAU_S
 
 

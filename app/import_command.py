@@ -1,0 +1,76 @@
+"""`gaitwright import`: a recording of another program, added to a session folder."""
+
+import argparse
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.terminal import finding_lines, one_of, positive
+
+if TYPE_CHECKING:
+    from devices.files.imports import Imported
+
+# as core.samples.RecordingKind and importers() have them, whose imports would cost half a second here
+KINDS = ("standing", "free_motion", "walking")
+FORMATS = ("xsens-mtmanager",)
+
+Report = Callable[[float, str], None]
+
+
+def add_import_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = "Make one recording of files of another program and add it to a session folder."
+    parser.add_argument("files", metavar="FILES", type=Path, nargs="+", help="the files of one recording")
+    parser.add_argument(
+        "--as", dest="format", type=one_of(FORMATS), required=True, metavar="FORMAT", help=", ".join(FORMATS)
+    )
+    parser.add_argument(
+        "--map",
+        required=True,
+        metavar="SITE=FILE_OR_SENSOR_ID,...",
+        help="where each sensor was worn: left_thigh, left_shank, left_foot, right_thigh, right_shank, right_foot",
+    )
+    parser.add_argument("--kind", type=one_of(KINDS), default="walking", metavar="KIND", help=" | ".join(KINDS))
+    parser.add_argument("--recording", metavar="NAME", help='the name of the recording ("walk 1" and so on)')
+    parser.add_argument("--rate", type=positive, metavar="HZ", help="samples per second, where the files do not tell")
+    parser.add_argument("--out", metavar="SESSION", type=Path, required=True, help="the session folder, new or not")
+
+
+def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
+    """Add the recording and give the lines for the terminal.
+
+    Raises
+    ------
+    FileRefusedError
+        The files are not what they should be, or do not fit the session.
+    OSError
+        The session cannot be written.
+    """
+    from core.samples import Recording, RecordingKind, Session
+    from devices.files.imports import add_recording, folder_for, free_name, parse_map
+    from devices.files.refusal import FileRefusedError
+    from devices.files.session_folder import read_session, write_session
+
+    kind = RecordingKind(wanted.kind)
+    placement = parse_map(wanted.map)
+    is_new = not wanted.out.exists() or (wanted.out.is_dir() and not any(wanted.out.iterdir()))
+    session = Session(()) if is_new else read_session(wanted.out)
+    name = wanted.recording or free_name(session, kind)
+    progress(0.0, name)
+    try:
+        imported = importers()[wanted.format](wanted.files, placement, name, wanted.rate)
+    except OSError as problem:
+        what = f"this cannot be read ({problem.strerror})"
+        raise FileRefusedError(str(problem.filename), what, "Check its permissions") from problem
+    recording = Recording(name, kind, folder_for(name), imported.imu)
+    session = add_recording(session, recording, imported.sensors, imported.findings)
+    progress(0.5, str(wanted.out))
+    write_session(session, wanted.out)
+    held = f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites."
+    return [held, *finding_lines(imported.findings, lowest="info")]
+
+
+def importers() -> dict[str, Callable[..., "Imported"]]:
+    """What reads each of FORMATS."""
+    from devices.files.xsens_mtmanager import import_mtmanager
+
+    return {"xsens-mtmanager": import_mtmanager}
