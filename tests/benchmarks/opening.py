@@ -1,0 +1,164 @@
+"""How soon are the results of a stored session on the screen?
+
+    python -m tests.benchmarks.opening [--times 10]
+
+The demonstration patient with three walks, in an encrypted library on the disk. From the moment a session is opened
+from the list until its results are painted, on a window without a display (Qt's offscreen): the first opening of the
+program's life, and the median and the longest of those after; once with nothing kept, so that the analysis is computed,
+and once from the analysis that is kept. Each with the processor time that it took.
+"""
+
+import argparse
+import os
+import statistics
+import sys
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from time import perf_counter, process_time, sleep
+from typing import NamedTuple
+from uuid import UUID
+
+os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
+
+from PySide6.QtCore import QEvent, QObject, QSettings
+from PySide6.QtWidgets import QApplication, QWidget
+
+from app.settings import Settings
+from app.storage.exchange import import_session
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary, open_library
+from app.storage.stored import Operator, Role
+from app.theme import Look, load_fonts
+from app.wizard.wizard import Wizard
+from app.workers.library_desk import LibraryDesk
+from core.samples import Session
+from devices.walker import DEMONSTRATION, simulate
+
+PASSPHRASE = "four short words here"
+WALKS = 3
+LONGEST_S = 120.0
+
+
+class Opening(NamedTuple):
+    """Seconds until the results were painted, and of the processor."""
+
+    shown_s: float
+    work_s: float
+
+
+class Painted(QObject):
+    """Whether a widget was painted since it was last asked."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.was = False
+
+    def eventFilter(self, _watched: QObject, event: QEvent) -> bool:
+        self.was = self.was or event.type() is QEvent.Type.Paint
+        return False
+
+
+def three_walks() -> Session:
+    walk = DEMONSTRATION.recordings[-1]
+    more = tuple(replace(walk, name=f"walk {k}") for k in range(2, WALKS + 1))
+    return simulate(replace(DEMONSTRATION, recordings=DEMONSTRATION.recordings + more)).session
+
+
+def library_with(session: Session, folder: Path) -> UUID:
+    """Make an encrypted library that holds the session."""
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
+    with open_library(folder, PASSPHRASE) as opened:
+        return import_session(opened, session, lambda _share, _what: None, "DEMO-1").session_id
+
+
+def wait_until(application: QApplication, is_so: Callable[[], bool]) -> None:
+    until_s = perf_counter() + LONGEST_S
+    while not is_so():
+        application.processEvents()
+        sleep(0.0005)
+        if perf_counter() > until_s:
+            raise TimeoutError
+
+
+def opened_once(application: QApplication, wizard: Wizard, session_id: UUID) -> Opening:
+    """Open a session as from the list, and leave it again once it is painted."""
+    began_s, worked_s = perf_counter(), process_time()
+    wizard.show_session(session_id)
+    wait_until(application, lambda: _results(wizard) is not None)
+    results, painted = _results(wizard), Painted()
+    assert results is not None
+    results.installEventFilter(painted)
+    results.update()
+    wait_until(application, lambda: painted.was)
+    took = Opening(perf_counter() - began_s, process_time() - worked_s)
+    idle_until_s = perf_counter() + 0.5  # what came of it is kept meanwhile
+    wait_until(application, lambda: perf_counter() > idle_until_s)
+    wizard.close_visit()
+    return took
+
+
+def forget(opened: OpenedLibrary, session_id: UUID) -> None:
+    """Remove what is kept, as if the algorithm were another one."""
+    from sqlalchemy import delete
+
+    from app.storage.database.models import ResultRow
+
+    with opened.library._desk.writing(Role.CLINICIAN) as session:  # only a measurement wants this
+        session.execute(delete(ResultRow).where(ResultRow.session_id == session_id))
+
+
+def row(name: str, openings: list[Opening]) -> str:
+    first, *later = openings
+    shown, work = [one.shown_s for one in later], [one.work_s for one in later]
+    return (
+        f"| {name} | {first.shown_s:.2f} | {statistics.median(shown):.2f} | {max(shown):.2f} "
+        f"| {statistics.median(work):.2f} |"
+    )
+
+
+def _results(wizard: Wizard) -> QWidget | None:
+    """The page of results, once it is in sight with what came of the session."""
+    page = wizard.shell.page
+    current = getattr(page, "currentWidget", lambda: None)()
+    return current if current is not None and getattr(page, "has_results", False) and _is_results(current) else None
+
+
+def _is_results(widget: QWidget) -> bool:
+    return type(widget).__name__ == "ResultPage"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--times", type=int, default=10)
+    times = parser.parse_args().times
+    application = QApplication(sys.argv[:1])
+    load_fonts()
+    look, desk = Look(application), LibraryDesk()
+    with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
+        session_id = library_with(three_walks(), Path(folder))
+        desk.open(Path(folder), PASSPHRASE)
+        wait_until(application, lambda: desk.state is not None)
+        settings = Settings(QSettings(str(Path(folder) / "settings.ini"), QSettings.Format.IniFormat))
+        wizard = Wizard(look, desk, settings)
+        wizard.resize(1280, 800)
+        wizard.show()
+        print("| analysis | first, s | median, s | longest, s | processor, s |\n|---|---|---|---|---|", flush=True)
+        for name in ("computed", "kept"):
+            openings = []
+            for _ in range(times + 1):
+                if name == "computed":
+                    desk.run(partial(forget, session_id=session_id), None, None, wizard)
+                openings.append(opened_once(application, wizard, session_id))
+            print(row(name, openings), flush=True)
+        wizard.close()
+        wizard.finish()
+        desk.finish()
+
+
+if __name__ == "__main__":
+    main()
