@@ -108,6 +108,11 @@ class Viewer:
                 tr("Rerun could not be started. See whether the disk has room, then try again.")
             ) from problem
 
+    @property
+    def is_showing(self) -> bool:
+        """Whether a window is open that nobody has closed."""
+        return any(process.poll() is None for process in self._shown.values())
+
     def failures(self) -> int:
         """How many viewers ended with an error since this was asked last, as without usable graphics."""
         ended = self._forget_closed()

@@ -27,6 +27,11 @@ class Reviewing(QObject):
         self._background = Background(self)
         self._background.failed.connect(self._on_failed)
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether no window is open, nor being made ready."""
+        return self._background.is_idle and (self._viewer is None or not self._viewer.is_showing)
+
     def show(self, session: "Session", analysis: "Analysis") -> None:
         """Open a window on the session; one at a time is made ready."""
         from app.review.viewer import Viewer, default_root, viewer_program, why_not

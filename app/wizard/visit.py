@@ -238,11 +238,11 @@ class Visit(QObject):
         self._desk.run(place, self._on_session_changed, self._on_refused, self)
 
     def correct_placement(self) -> None:
-        """Tell the library that everything so far was worn as it is said now; what was recorded is read anew."""
+        """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
         if self.session is None:
             return
         session_id, placed = self.session.id, self.sensors.placed()
-        stored = [take.stored for take in self.takes.every]
+        stored = [take.stored for take in self.takes.since_strapped]
 
         def correct(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[Take, ...]]:
             sessions = opened.library.sessions
@@ -302,6 +302,12 @@ class Visit(QObject):
             self._desk.run(close, None, None, self._desk)  # in its turn, after the recording has been stopped
         else:
             self.sensors.close()
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
+        idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
+        return idle and not self.takes.is_recording
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""

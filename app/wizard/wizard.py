@@ -117,7 +117,8 @@ class Wizard(QWidget):
     def _forget_closed(self) -> None:
         """Let go of earlier visits, with their samples, as far as nothing of them runs any more."""
         for visit in tuple(self._closing):
-            if visit.sensors.is_idle and visit.evaluation.is_idle and not visit.takes.is_recording:
+            if visit.is_idle:
+                visit.finish()  # waits for nothing
                 self._closing.remove(visit)
                 visit.deleteLater()
 

@@ -24,6 +24,7 @@ from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import RESULTS, Wizard
+from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
 from core.samples import Patient, RecordingKind, Session
@@ -308,3 +309,24 @@ def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
         pass
     assert wizard.current is not wizard._steps[RESULTS]
     assert wizard.visit.session is None
+
+
+def test_a_report_still_being_set_when_the_session_is_left_is_waited_for_at_the_end(
+    qtbot: QtBot, wizard: Wizard
+) -> None:
+    wizard.begin(None)
+    left, may_end, is_over = wizard.visit, threading.Event(), threading.Event()
+    assert left is not None
+
+    def work(_report: Report) -> None:
+        may_end.wait(10.0)
+        is_over.set()
+
+    left.preview.start(work)
+    wizard.begin(None)
+    wizard.begin(None)
+    assert not left.is_idle
+    may_end.set()
+    wizard.finish()
+    assert is_over.is_set()
+    assert left.is_idle
