@@ -87,6 +87,7 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     found = identify_joint(
         lambda lag_s: _pairs(tracks, joint, names, lag_s),
         lambda lag_s: _pairs(tracks, joint, tuple(walk for walk in basis.walks if walk not in names), lag_s),
+        lambda lag_s: _pairs(tracks, joint, (basis.free_motion,) if basis.free_motion else (), lag_s),
         is_knee=joint.is_knee,
         is_from_walking=basis.free_motion is None,
         downs=_downs(tracks, basis),

@@ -75,7 +75,12 @@ def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
 
 
 def identify_joint(
-    pairs_at: PairsAtLag, others_at: PairsAtLag, is_knee: bool, is_from_walking: bool, downs: Downs | None
+    pairs_at: PairsAtLag,
+    others_at: PairsAtLag,
+    free_at: PairsAtLag,
+    is_knee: bool,
+    is_from_walking: bool,
+    downs: Downs | None,
 ) -> Identification | None:
     """Identify one joint; None where the recordings hold too little movement.
 
@@ -83,6 +88,9 @@ def identify_joint(
     ----------
     others_at
         Pairs that do not identify the axis but must agree when it is called a hinge.
+    free_at
+        Those of `pairs_at` that are of a free motion. It shows a human joint's centre better than together with walks,
+        whose tissue moves in step with the steps.
     downs
         Specific forces (3,) of both sensors in standing.
     """
@@ -99,7 +107,8 @@ def identify_joint(
         if abs(rest_s) < MAX_REST_S:
             lag = replace(lag, lag_s=lag.lag_s + rest_s)
             data, others = moving_data(pairs_at(lag.lag_s)) or data, moving_data(others_at(lag.lag_s))
-    return _refined(data, others, decision, lag, is_knee, is_from_walking, downs)
+    free = moving_data(free_at(lag.lag_s))
+    return _refined(data, others, free or data, decision, lag, is_knee, is_from_walking, downs)
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,6 +182,7 @@ def _is_rival(found: Candidates, best: int, k: int) -> bool:
 def _refined(
     data: Datasets,
     others: Datasets | None,
+    free: Datasets,
     decision: Decision,
     lag: Lag,
     is_knee: bool,
@@ -212,7 +222,7 @@ def _refined(
             centre = refine_on_hinge(united(seen), j1, j2, centre) or centre
             residual = max(hinge_residual(one, j1, j2) for one in seen)
     else:
-        centre = centre_by_lengths(many, centre.unknowns)
+        centre = centre_by_lengths(free.thinned(POLISH_SAMPLES), centre.unknowns)
     return Identification(
         axis_1=j1,
         axis_2=j2,

@@ -5,7 +5,8 @@
 Each session is one leg of the project's patient: rigid or with soft tissue, moved richly or poorly, with good or biased
 sensors, on one clock or up to 30 ms apart, stopped after 3 to 25 s. The live excitation sees the samples as they come;
 the true error is that of the calibration which the offline analysis makes of the same samples. Printed: how often the
-error lies within twice the predicted standard deviation, floors included, and how often a gauge closed.
+error lies within twice the predicted standard deviation, floors included, how often a gauge closed, and whether the
+calibration then told what the gauge had promised.
 """
 
 import argparse
@@ -51,7 +52,10 @@ QUANTITIES = ("knee axis, deg", "knee centre, mm", "ankle centre, mm")
 
 @dataclass(frozen=True, slots=True)
 class Stopped:
-    """One quantity of one calibration: its true error, twice the predicted sd, the gauge, all deg or mm."""
+    """One quantity of one calibration: its true error, twice the predicted sd, the gauge, all deg or mm.
+
+    `is_told`: the calibration calls it known.
+    """
 
     quantity: str
     seed: int
@@ -61,6 +65,7 @@ class Stopped:
     predicted: float
     gauge: float
     is_closed: bool
+    is_told: bool
 
     @property
     def is_covered(self) -> bool:
@@ -104,7 +109,7 @@ def stopped_calibrations(seed: int) -> Iterator[Stopped]:
         centre = found.robust.centre
         error_m = _centre_error_m(centre.proximal_m, centre.distal_m, truth, joint.is_knee)
         axes = found.geometry.axis_1, found.geometry.axis_2
-        yield from _told(seed, stop_s, conditions, joint, state, axes, truth, error_m)
+        yield from _told(seed, stop_s, conditions, joint, state, axes, truth, error_m, found.is_centre_known)
 
 
 def _told(
@@ -116,6 +121,7 @@ def _told(
     axes: tuple[FloatArray, FloatArray],
     truth: JointTruth,
     error_m: float,
+    is_centre_told: bool,
 ) -> Iterator[Stopped]:
     said = seed, stop_s, conditions
     if joint.is_knee:
@@ -124,11 +130,12 @@ def _told(
         predicted, gauge = 2 * state.axis_sd_with_floor_rad, state.axis_sd_rad
         is_closed = gauge <= HUMAN.axis_rad
         yield Stopped(
-            "knee axis, deg", *said, error_deg, float(np.rad2deg(predicted)), float(np.rad2deg(gauge)), is_closed
+            "knee axis, deg", *said, error_deg, float(np.rad2deg(predicted)), float(np.rad2deg(gauge)), is_closed, True
         )
     quantity = "knee centre, mm" if joint.is_knee else "ankle centre, mm"
     predicted, gauge = 2 * state.centre_sd_with_floor_m, state.centre_sd_m
-    yield Stopped(quantity, *said, 1000 * error_m, 1000 * predicted, 1000 * gauge, gauge <= HUMAN.centre_m)
+    is_closed = gauge <= HUMAN.centre_m
+    yield Stopped(quantity, *said, 1000 * error_m, 1000 * predicted, 1000 * gauge, is_closed, is_centre_told)
 
 
 def _centre_error_m(o1: FloatArray, o2: FloatArray, truth: JointTruth, is_knee: bool) -> float:
@@ -174,7 +181,7 @@ def table(told: list[Stopped]) -> str:
                 groups[condition].append(one)
         lines += [f"  {condition:16s} {_line(groups[condition])}" for condition in sorted(groups)]
         closed = [one for one in mine if one.is_closed]
-        lines.append(f"  {'gauge closed':16s} {_line(closed)}")
+        lines.append(f"  {'gauge closed':16s} {_line(closed)}   told {sum(one.is_told for one in closed)}")
     return "\n".join(lines)
 
 
