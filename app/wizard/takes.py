@@ -130,6 +130,14 @@ class Takes(QObject):
             self._is_restrapped or any(take.told.is_restrapped_before for take in self.every)
         )
 
+    @property
+    def since_strapped(self) -> tuple[Take, ...]:
+        """All recordings since sensors were strapped last: what is said now of who wears what holds for these."""
+        if self._is_restrapped:
+            return ()
+        strapped = [number for number, take in enumerate(self.every) if take.told.is_restrapped_before]
+        return self.every[strapped[-1] if strapped else 0 :]
+
     def take_over(self, session: StoredSession, takes: tuple[Take, ...]) -> None:
         """Go on with a session of the library."""
         self.session, self.every = session, takes

@@ -67,7 +67,7 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return ""
-        if sensors.is_left_to_motion:
+        if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
         return tr("{count} of 6 worn").format(count=len(sensors.site_of))
 
@@ -108,7 +108,7 @@ class SensorsStep(Step):
         self._work = None
         if sensors.site_of and sensors.site_of != self._known_places:
             # other places of the same sensors: they were told wrongly; other sensors: strapped on since
-            if self._visit.takes.every and sensors.site_of.keys() == self._known_places.keys():
+            if self._visit.takes.since_strapped and sensors.site_of.keys() == self._known_places.keys():
                 self._visit.correct_placement()
             else:
                 self._visit.place_sensors()
