@@ -30,9 +30,10 @@ class WalkingCharts(Card):
         self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
         self.lanes = LiveLanes(look)
-        self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        self._simulated: list[Text] = []  # over each joint's curves: one may be cut out alone
         self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
         self._keys = {side: SideKey(look, side) for side in Side}
+        self._is_compact = False
         self._legend_pairs: list[QHBoxLayout] = []
         self._lines = Hairline(look), Hairline(look)
         self._heads: list[QHBoxLayout] = []
@@ -44,10 +45,12 @@ class WalkingCharts(Card):
         self._on_look_changed()
 
     def set_simulated(self, is_simulated: bool) -> None:
-        self._simulated.setVisible(is_simulated)
+        for mark in self._simulated:
+            mark.setVisible(is_simulated)
 
     def set_compact(self, is_compact: bool) -> None:
         """Keep the room for the curves."""
+        self._is_compact = is_compact
         for widget in (self._phases_title, *self._lines):
             widget.setVisible(not is_compact)
         self.lanes.set_compact(is_compact)
@@ -79,14 +82,13 @@ class WalkingCharts(Card):
         self._say_provisional([])
 
     def _say_provisional(self, sides: list[Side]) -> None:
-        said = tr("{sides} provisional until five strides").format(sides=", ".join(LETTERS[side] for side in sides))
-        said = said if sides else ""
+        words = tr("{sides} provisional") if self._is_compact else tr("{sides} provisional until five strides")
+        said = words.format(sides=", ".join(LETTERS[side] for side in sides)) if sides else ""
         if said != self._provisional.text():
             self._provisional.setText(said)
 
     def _build(self) -> None:
         knee = self._head(Text(self._look, tr("Knee"), size=16, weight=SEMIBOLD), tr("flexion + (°)"))
-        knee.addWidget(self._simulated)
         knee.addStretch(1)
         knee.addLayout(self._key_row)
         for key in self._keys.values():
@@ -117,13 +119,16 @@ class WalkingCharts(Card):
         self.column.addWidget(self._lines[1])
         self.column.addLayout(phases)
         self.column.addWidget(self.lanes)
-        self._simulated.hide()
+        self.set_simulated(is_simulated=False)
 
     def _head(self, title: Text, sign: str) -> QHBoxLayout:
         head = QHBoxLayout()
         head.addWidget(title)
         if sign:
             head.addWidget(Text(self._look, sign, size=12, tone="ink2"))
+            mark = Text(self._look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
+            head.addWidget(mark)
+            self._simulated.append(mark)
         self._heads.append(head)
         return head
 

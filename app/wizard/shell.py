@@ -233,7 +233,11 @@ class WizardShell(QWidget):
             return
         inside = getattr(page, "tab_order", None)
         if inside is None:
-            inside = [one for one in page.findChildren(QWidget) if one.focusPolicy() & Qt.FocusPolicy.TabFocus]
+            inside = [
+                one
+                for one in page.findChildren(QWidget)  # among them lists that fold out in windows of their own
+                if one.focusPolicy() & Qt.FocusPolicy.TabFocus and one.window() is self.window()
+            ]
         for before, after in pairwise([self.banner, *inside, *self.bar.buttons]):
             QWidget.setTabOrder(before, after)
 

@@ -219,10 +219,14 @@ def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
     assert names == ["A, Barefoot, 18 strides, kept", "B, Shoes, discarded", "C, AFO, recording"]
 
 
-def test_simulated_is_said_on_the_charts(page: WalkingPage) -> None:
+@pytest.mark.parametrize("is_compact", [False, True])
+def test_simulated_is_said_over_knee_and_ankle(page: WalkingPage, is_compact: bool) -> None:
     page.show_walks((RECORDING,))
+    page.set_compact(is_compact)
     page.set_simulated(True)
-    assert "SIMULATED" in texts(page)
+    assert texts(page).count("SIMULATED") == 2
+    page.set_simulated(False)
+    assert "SIMULATED" not in texts(page)
 
 
 def test_in_little_room_curves_and_walks_are_two_tabs(page: WalkingPage) -> None:

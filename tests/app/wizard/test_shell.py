@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.free_motion_page import FreeMotionPage
@@ -341,3 +341,17 @@ def test_no_word_of_the_frame_is_cut(
         shell.toast.offer(tr("Walk 2 discarded."))
         assert words_cut(shell) == []
         assert shell.size().toTuple() == size
+
+
+def test_tab_goes_past_a_list_that_folds_out(shell: WizardShell) -> None:
+    page = QWidget()
+    column = QVBoxLayout(page)
+    choice, button = QComboBox(), QPushButton("one")
+    choice.addItems(["a", "b"])
+    choice.view()  # Qt makes its window when it is first asked for
+    for widget in (choice, button):
+        column.addWidget(widget)
+    shell.show_page(1, page)  # Qt's warnings fail a test
+    choice.setFocus()
+    QTest.keyClick(choice, Qt.Key.Key_Tab)
+    assert button.hasFocus()
