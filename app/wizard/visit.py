@@ -303,6 +303,12 @@ class Visit(QObject):
         else:
             self.sensors.close()
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
+        idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
+        return idle and not self.takes.is_recording
+
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
         self.sensors.finish()
