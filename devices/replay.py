@@ -114,7 +114,7 @@ class ReplaySource:
         self.now_ns = now_ns if speed == 1.0 else _faster(now_ns, speed)
         self._sleep, self._faults, self._finishes = sleep, faults, finishes
         self._buffer_s = BUFFER_S * speed  # whoever reads is no faster
-        self._names = _names(session)
+        self._names = names_of(session)
         self._by_kind = {kind: [r for r in session.recordings if r.kind is kind] for kind in RecordingKind}
         self._turns = {kind: count() for kind in RecordingKind}
         self._idle = (self._by_kind[RecordingKind.STANDING] or list(session.recordings))[0]
@@ -279,10 +279,24 @@ class ReplaySource:
 
 def demonstration(settings: WalkerSettings = DEMONSTRATION_SESSION) -> ReplaySource:
     """The patient that the application shows. Takes a second or two."""
-    session = simulate(settings).session
+    return ReplaySource(labelled(simulate(settings).session), finishes=True)
+
+
+def labelled(session: Session) -> Session:
+    """The walker's session with the names that the demonstration's sensors have wherever they are shown."""
     recordings = tuple(replace(recording, imu=_renamed(recording.imu)) for recording in session.recordings)
     sensors = {site: replace(info, serial=DEMONSTRATION_NAMES[site]) for site, info in session.sensors.items()}
-    return ReplaySource(replace(session, recordings=recordings, sensors=sensors), finishes=True)
+    return replace(session, recordings=recordings, sensors=sensors)
+
+
+def names_of(session: Session) -> dict[Site, str]:
+    """What each site's sensor is called while a session is played: each name once."""
+    names: dict[Site, str] = {}
+    for recording in session.recordings:
+        for site, block in recording.imu.items():
+            if site not in names:
+                names[site] = f"{block.sensor} ({site})" if block.sensor in names.values() else block.sensor
+    return names
 
 
 def _renamed(imu: Mapping[Site, ImuBlock]) -> dict[Site, ImuBlock]:
@@ -296,16 +310,6 @@ def _has_samples(recording: Recording) -> bool:
 
 def _longest(session: Session, site: Site) -> ImuBlock:
     return max((recording.imu[site] for recording in session.recordings if site in recording.imu), key=len)
-
-
-def _names(session: Session) -> dict[Site, str]:
-    """One name for each site's sensor, and each name once."""
-    names: dict[Site, str] = {}
-    for recording in session.recordings:
-        for site, block in recording.imu.items():
-            if site not in names:
-                names[site] = f"{block.sensor} ({site})" if block.sensor in names.values() else block.sensor
-    return names
 
 
 def _told(info: SensorInfo, name: str, block: ImuBlock) -> SensorTold:

@@ -20,6 +20,7 @@ from app.pages.sensor_list import SensorList
 from app.pages.sensor_places import PlaceShown, SensorPlaces
 from app.pages.sensor_row import SensorRow
 from app.pages.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
+from app.pages.session_chooser import SessionChooser
 from app.pages.source_pages import NoSource, Searching, SourceOption
 from app.theme import Look
 from app.widgets.body_figure import SensorMark
@@ -33,7 +34,7 @@ from core.body import Site
 from core.samples import FloatArray
 
 FLASH_MS = 700
-OFFERED_AT_ONCE = 3  # sources that have a button of their own where there is none yet
+OFFERED_AT_ONCE = 4  # sources that have a button of their own where there is none yet
 FIGURE_WIDTH = (414, 560)  # as the window grows
 USUAL_WIDTH = 1016
 SCROLL_BAR = 12
@@ -104,6 +105,7 @@ class SensorsPage(QWidget):
         self.notice = Notice(look, size=16)
         self.nothing = NoSource(look)
         self.searching = Searching(look)
+        self.stored = SessionChooser(look)
         self._build()
         self._connect()
         self.show_no_source()
@@ -123,7 +125,8 @@ class SensorsPage(QWidget):
     @property
     def tab_order(self) -> list[QWidget]:
         rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
-        return [self.sources, *self.nothing.buttons, self.searching.stop, *self._tiles, *self.ways.segments, *rows]
+        before = [*self.nothing.buttons, self.searching.stop, *self.stored.tab_order]
+        return [self.sources, *before, *self._tiles, *self.ways.segments, *rows]
 
     def focus(self) -> None:
         if self._pages.currentWidget() is self.nothing and self.nothing.buttons:
@@ -131,6 +134,8 @@ class SensorsPage(QWidget):
             self._whole.ensureWidgetVisible(self.nothing.buttons[0])
         elif self._pages.currentWidget() is self.searching:
             self.searching.stop.setFocus()
+        elif self._pages.currentWidget() is self.stored:
+            self.stored.focus()
         elif row := self.list.rows.get(self.list.selection):
             row.setFocus()
 
@@ -147,7 +152,7 @@ class SensorsPage(QWidget):
 
     def show_sources(self, options: Sequence[SourceOption], chosen: str = "") -> None:
         """Offer what sensors can be heard through; `chosen` is the key of the one in force."""
-        if (tuple(options), chosen) == self._offered:
+        if (tuple(options), chosen) == self._offered or self.sources.view().isVisible():  # from which one is chosen now
             return
         self._offered = (tuple(options), chosen)
         with QSignalBlocker(self.sources):
@@ -158,7 +163,9 @@ class SensorsPage(QWidget):
             self.sources.setCurrentIndex(self.sources.findData(chosen))
         self.sources.updateGeometry()
         self.nothing.show_options(options[:OFFERED_AT_ONCE])
-        for before, after in pairwise([self.sources, *self.nothing.buttons, self.searching.stop]):
+        for before, after in pairwise(
+            [self.sources, *self.nothing.buttons, self.searching.stop, *self.stored.tab_order]
+        ):
             QWidget.setTabOrder(before, after)
 
     def show_no_source(self) -> None:
@@ -171,7 +178,16 @@ class SensorsPage(QWidget):
 
     def show_searching(self, source: str) -> None:
         """Say that sensors are looked for through `source`."""
-        self.searching.begin(source)
+        self.searching.begin(tr("Looking for sensors: {source}").format(source=source))
+        self._show(self.searching)
+
+    def show_stored(self) -> None:
+        """Ask which stored session is to be replayed."""
+        self._show(self.stored)
+
+    def show_reading(self, session: str) -> None:
+        """Say that a session is read, to be replayed."""
+        self.searching.begin(tr("Reading {name}").format(name=session))
         self._show(self.searching)
 
     def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
@@ -275,7 +291,7 @@ class SensorsPage(QWidget):
         self._body.addWidget(self.places, 0)
         self._body.addLayout(self._beside, 1)
         self._pages = QStackedWidget()
-        for page in (self.nothing, self.searching, self._lists):
+        for page in (self.nothing, self.searching, self.stored, self._lists):
             self._pages.addWidget(page)
         content = QWidget()
         self._column = QVBoxLayout(content)

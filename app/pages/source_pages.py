@@ -24,7 +24,7 @@ class SourceOption:
 
 
 class NoSource(QWidget):
-    """One sentence, and the sources that can be opened."""
+    """One sentence, the sources that can be opened, and why others are not among them."""
 
     chosen = Signal(str)
 
@@ -32,16 +32,19 @@ class NoSource(QWidget):
         super().__init__()
         self._look = look
         self.buttons: list[Button] = []
-        self._keys: list[str] = []
+        self._options: list[SourceOption] = []
         self._sentence = Text(look, tr("No sensors yet. Where should they be looked for?"), 20, SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._notice = Notice(look, size=16)
+        self._left_out = Text(look, size=14, tone="ink2", wraps=True)
+        self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
         self._row = QVBoxLayout()
         self._column = QVBoxLayout(self)
         self._column.addWidget(self._notice)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence)
         self._column.addLayout(self._row)
+        self._column.addWidget(self._left_out)
         self._column.addStretch(2)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
@@ -50,25 +53,40 @@ class NoSource(QWidget):
         """Say why nothing is connected, above the sources that may be tried instead."""
         self._notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
 
+    @property
+    def left_out(self) -> str:
+        return self._left_out.text()
+
+    def show_left_out(self, sentence: str) -> None:
+        """Say which sources are not for this patient; "" where there are none."""
+        if sentence != self._left_out.text():
+            self._left_out.setText(sentence)
+        self._left_out.setVisible(bool(sentence))
+
     def show_options(self, options: Sequence[SourceOption]) -> None:
-        if [option.key for option in options] == self._keys:
+        """Offer these; the focus stays with the source it was on."""
+        if list(options) == self._options:
             return
+        focused = next((k for k, button in enumerate(self.buttons) if button.hasFocus()), None)
+        focused_key = self._options[focused].key if focused is not None else ""
         for button in self.buttons:
             button.setParent(None)
             button.deleteLater()
-        self.buttons, self._keys = [], [option.key for option in options]
+        self.buttons, self._options = [], list(options)
         for number, option in enumerate(options):
             button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
             button.clicked.connect(self._on_clicked)
             self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
             button.show()  # at once: what is not in sight yet takes no focus
             self.buttons.append(button)
+            if option.key == focused_key:
+                button.setFocus()
         self._on_look_changed()
 
     def _on_clicked(self) -> None:
         button = self.sender()
         assert isinstance(button, Button)
-        self.chosen.emit(self._keys[self.buttons.index(button)])
+        self.chosen.emit(self._options[self.buttons.index(button)].key)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
@@ -79,7 +97,7 @@ class NoSource(QWidget):
 
 
 class Searching(QWidget):
-    """What is looked for, and the way out."""
+    """What is looked for or read, and the way out."""
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -89,7 +107,6 @@ class Searching(QWidget):
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setRange(0, 0)
-        self._line.setAccessibleName(tr("Looking for sensors"))
         self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
@@ -100,8 +117,9 @@ class Searching(QWidget):
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
-    def begin(self, source: str) -> None:
-        self._sentence.setText(tr("Looking for sensors: {source}").format(source=source))
+    def begin(self, sentence: str) -> None:
+        self._sentence.setText(sentence)
+        self._line.setAccessibleName(sentence)
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

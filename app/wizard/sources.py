@@ -1,4 +1,4 @@
-"""What can sensors be heard through? What was found at ports and on the network, a simulated patient, old sessions.
+"""What can sensors be heard through? What was found at ports and on the network, and a simulated patient.
 
 Sensors are looked for beside the screen: ports take a second or two, and some never answer.
 """
@@ -6,7 +6,6 @@ Sensors are looked for beside the screen: ports take a second or two, and some n
 import logging
 import threading
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING, overload
 
 from app.wizard.worn_sensors import SourceChoice
@@ -111,19 +110,6 @@ class Sources(Sequence[SourceChoice]):
         raise SourceRefusedError(
             tr("No sensor was found"), tr("Plug in the receiver or switch the sensors on, then search again")
         )
-
-
-def replay_of(folder: Path) -> SourceChoice:
-    """A session folder, played as if it were measured now."""
-
-    def make() -> "Acquisition":
-        from app.acquisition.acquisition import Acquisition
-        from devices.files.session_folder import read_session
-        from devices.replay import ReplaySource
-
-        return Acquisition([ReplaySource(read_session(folder), name=folder.name)])
-
-    return SourceChoice(f"replay {folder}", tr("Replay of {name}").format(name=folder.name), make, is_simulated=True)
 
 
 def _demonstration() -> "Acquisition":

@@ -3,7 +3,7 @@
 import logging
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
@@ -25,12 +25,14 @@ class SourceChoice:
     """Something that sensors can be heard through. `make` may take seconds: it is called beside the screen.
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
+    `worn` gives the site by the sensor's name where the source tells it, as a stored session does.
     """
 
     key: str
     name: str
     make: Callable[[], "Acquisition"]
     is_simulated: bool = False
+    worn: Mapping[str, Site] = field(default_factory=dict)
 
 
 class WornSensors(QObject):

@@ -1,9 +1,13 @@
 """Six sensors on, and each known: heard through a source, and told where they are worn."""
 
+import datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import UUID
 
 import numpy as np
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtWidgets import QFileDialog
 
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
@@ -11,19 +15,24 @@ from app.widgets.icons import Icon
 from app.widgets.sensor_strip import SILENT_FROM_S
 from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
+from app.wizard.replays import Replays
 from app.wizard.steps.step import Step
-from app.wording import name_of, tr
+from app.wizard.worn_sensors import SourceChoice
+from app.wording import name_of, tr, tr_n
 from core.body import Joint, Site
 from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
     from app.acquisition.placing_work import PlacingWork
+    from app.pages.home_lists import PatientLine
     from app.pages.sensor_row import SensorRow
     from app.pages.sensors_page import SensorsPage
+    from app.storage.stored import SessionLine
     from app.wizard.visit import Visit
 
-TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows four times
+REPLAY = "replay"
+TRACE_TICKS, ROW_TICKS = 3, 8  # of 30 a second: traces ten times a second, rows and sources four times
 TRACE_S, TRACE_POINTS = 5.0, 250
 TURNS_MORE = 2.0  # times the variance that another axis needs before the trace goes over to it
 
@@ -41,6 +50,13 @@ class SensorsStep(Step):
         self._without_light: set[str] = set()
         self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
         self._silent_site: Site | None = None
+        self._is_choosing = False  # which stored session is to be replayed
+        self._names: dict[UUID, str] = {}  # of stored sessions
+        self._dialog: QFileDialog | None = None
+        self._replays = Replays(visit.desk, self)
+        self._replays.listed.connect(self._on_listed)
+        self._replays.read.connect(self._on_replay_read)
+        self._replays.refused.connect(self._on_replay_refused)
         visit.sensors.changed.connect(self._on_sensors_changed)
         visit.sensors.opened.connect(self._on_opened)
 
@@ -55,7 +71,11 @@ class SensorsStep(Step):
             page.source_chosen.connect(self._on_source_chosen)
             page.identify_pressed.connect(self._on_identify_pressed)
             page.reconnect_pressed.connect(self._on_reconnect_pressed)
-            page.stop_pressed.connect(self._visit.sensors.close)
+            page.stop_pressed.connect(self._on_stop_pressed)
+            page.stored.chosen.connect(self.changed)
+            page.stored.opened.connect(self._replay)
+            page.stored.folder_pressed.connect(self._choose_folder)
+            page.stored.back_pressed.connect(self._on_stored_left)
         return self._page
 
     @property
@@ -101,7 +121,8 @@ class SensorsStep(Step):
         self.page.focus()
 
     def leave(self) -> None:
-        self._is_in_sight = False
+        self._is_in_sight = self._is_choosing = False
+        self._replays.stop()
         sensors = self._visit.sensors
         if sensors.acquisition is not None:
             sensors.acquisition.set_work(None)
@@ -115,7 +136,9 @@ class SensorsStep(Step):
 
     def tick(self) -> None:
         self._ticks += 1
-        if self._visit.sensors.acquisition is None:
+        if self._ticks % ROW_TICKS == 0:
+            self._show_sources()  # a search beside the screen may have found some
+        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading:
             return
         if self._work is not None:
             state = self._work.state
@@ -131,6 +154,11 @@ class SensorsStep(Step):
 
     def bar(self) -> BarState:
         sensors = self._visit.sensors
+        if self._replays.reading:
+            return BarState()
+        if self._is_choosing:
+            is_any = self.page.stored.session is not None
+            return BarState(primary=Verb(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
         go_on = tr("Stand still")
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
@@ -148,7 +176,10 @@ class SensorsStep(Step):
         return BarState(primary=Verb(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:
-        if self._silent_site is not None:
+        if self._is_choosing:
+            if (session := self.page.stored.session) is not None:
+                self._replay(session)
+        elif self._silent_site is not None:
             self._reconnect()
         elif self._visit.sensors.acquisition is not None:
             self.done.emit()
@@ -181,33 +212,45 @@ class SensorsStep(Step):
 
     def _show(self) -> None:
         from app.pages.sensors_page import Way
-        from app.pages.source_pages import SourceOption
 
+        self._show_sources()
         sensors, page = self._visit.sensors, self.page
-        chosen = sensors.choice.key if sensors.choice is not None else ""
-        found = len(sensors.acquisition.sensors) if sensors.acquisition is not None else 0
-        options = [
-            SourceOption(
-                choice.key,
-                choice.name,
-                tr("{count} found").format(count=found) if found and choice.key == chosen else "",
-            )
-            for choice in self._visit.choices
-        ]
-        page.show_sources(options, chosen)
-        nothing = (
-            tr("No source of sensors is at hand for this patient."),
-            tr("The simulated one is for codes that begin with DEMO."),
-        )
-        page.tell(*(("", "") if options else nothing))
-        if sensors.is_searching and sensors.choice is not None:
+        if self._replays.reading:
+            page.show_reading(self._replays.reading)
+        elif sensors.is_searching and sensors.choice is not None:
             page.show_searching(sensors.choice.name)
+        elif self._is_choosing:
+            page.show_stored()
         elif sensors.acquisition is None:
             page.show_no_source()
         else:
             if sensors.is_left_to_motion != (page.way is Way.MOTION):
                 page.show_way(Way.MOTION if sensors.is_left_to_motion else Way.DRAG)
             self._show_rows()
+
+    def _show_sources(self) -> None:
+        """Offer what there is for this patient: what was found, what is simulated, and what is played at the moment."""
+        from app.pages.source_pages import SourceOption
+
+        visit, sensors = self._visit, self._visit.sensors
+        options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
+        if visit.may_simulate:
+            options.append(SourceOption(REPLAY, tr("Replay of a stored session")))
+        chosen = sensors.choice
+        if chosen is not None:
+            found = len(sensors.acquisition.sensors) if sensors.acquisition is not None else 0
+            note = tr("{count} found").format(count=found) if found else ""
+            keys = [option.key for option in options]
+            at = keys.index(chosen.key) if chosen.key in keys else len(options)
+            options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note)]
+        page = self.page
+        page.show_sources(options, chosen.key if chosen is not None else "")
+        page.tell("" if options else tr("No source of sensors is at hand for this patient."))
+        apart = tr(
+            "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
+            "so that they never pass for a real patient's."
+        )
+        page.nothing.show_left_out("" if visit.may_simulate else apart)
 
     def _show_rows(self) -> None:
         sensors = self._visit.sensors
@@ -273,11 +316,13 @@ class SensorsStep(Step):
     def _on_opened(self) -> None:
         sensors = self._visit.sensors
         assert sensors.acquisition is not None
-        wanted = self._wanted or self._known_places or self._visit.placement_before
+        told = sensors.choice.worn if sensors.choice is not None else {}
+        for wanted in (self._wanted or self._known_places or self._visit.placement_before, told):
+            known = {name: site for name, site in wanted.items() if name in sensors.acquisition.sensors}
+            if known:
+                sensors.assign_all(known)
+                break
         self._wanted = {}
-        known = {name: site for name, site in wanted.items() if name in sensors.acquisition.sensors}
-        if known:
-            sensors.assign_all(known)
         self._begin_work()
         if self._is_in_sight:
             self._show()
@@ -296,9 +341,88 @@ class SensorsStep(Step):
             self._visit.sensors.leave_to_motion(is_left)
 
     def _on_source_chosen(self, key: str) -> None:
-        choice = next((one for one in self._visit.choices if one.key == key), None)
+        if key == REPLAY:
+            self._choose_stored()
+            return
+        sensors = self._visit.sensors
+        known = (*self._visit.choices, *([sensors.choice] if sensors.choice is not None else []))
+        choice = next((one for one in known if one.key == key), None)
         if choice is not None:
-            self._visit.sensors.search(choice)
+            self._is_choosing = False
+            sensors.search(choice)
+
+    def _on_stop_pressed(self) -> None:
+        if self._replays.reading:
+            self._replays.stop()
+            self._show()
+            self.changed.emit()
+        else:
+            self._visit.sensors.close()
+
+    # replay of a stored session
+
+    def _choose_stored(self) -> None:
+        """Ask which: what sends now goes on doing so meanwhile."""
+        self._is_choosing = True
+        self.page.stored.tell("")
+        session = self._visit.session
+        self._replays.list_sessions(session.id if session is not None else None)
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_listed(self, lines: "list[SessionLine]") -> None:
+        now = datetime.datetime.now().astimezone()
+        shown = [_stored_line(line, now) for line in lines]
+        self._names = {line.id: tr("{code}, {when}").format(code=line.code, when=line.when) for line in shown}
+        page = self.page
+        page.stored.show_sessions(shown)
+        if self._is_in_sight and self._is_choosing:
+            page.focus()
+            self.changed.emit()
+
+    def _choose_folder(self) -> None:
+        dialog = QFileDialog(self.page, tr("Replay a session folder"))
+        dialog.setFileMode(QFileDialog.FileMode.Directory)
+        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
+        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        dialog.fileSelected.connect(self._on_folder_selected)
+        self._dialog = dialog
+        dialog.open()
+
+    def _on_folder_selected(self, folder: str) -> None:
+        self.replay_folder(Path(folder))
+
+    def replay_folder(self, folder: Path) -> None:
+        """Let a session folder be the sensors."""
+        self._replays.read_folder(folder)
+        self._show()
+        self.changed.emit()
+
+    def _replay(self, session_id: UUID) -> None:
+        self._replays.read_session(session_id, self._names[session_id])
+        self._show()
+        self.changed.emit()
+
+    def _on_stored_left(self) -> None:
+        self._is_choosing = False
+        self._show()
+        self.page.focus()
+        self.changed.emit()
+
+    def _on_replay_read(self, choice: SourceChoice) -> None:
+        if not self._is_in_sight:
+            return
+        self._is_choosing = False
+        self._visit.sensors.search(choice)
+
+    def _on_replay_refused(self, what: str, then: str) -> None:
+        if not self._is_in_sight:
+            return
+        self.page.stored.tell(what, then)
+        self._show()
+        self.page.focus()
+        self.changed.emit()
 
     def _on_identify_pressed(self, sensor: str) -> None:
         acquisition = self._visit.sensors.acquisition
@@ -309,3 +433,12 @@ class SensorsStep(Step):
 
     def _on_reconnect_pressed(self, _sensor: str) -> None:
         self._reconnect()
+
+
+def _stored_line(line: "SessionLine", now: datetime.datetime) -> "PatientLine":
+    from app.home.words import when
+    from app.pages.home_lists import PatientLine
+
+    amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
+    conditions = ", ".join(line.conditions)
+    return PatientLine(line.id, line.patient_code, conditions, when(line.started, now), amount, searched="")

@@ -129,6 +129,24 @@ def sensors(look: Look) -> QWidget:
     return page
 
 
+def stored_sessions(look: Look) -> QWidget:
+    page = SensorsPage(look)
+    lines = [
+        PatientLine(UUID(int=k), f"P-01{k:02d}", "Alignment A, B, C", "20 Nov 2026", "3 recordings", "")
+        for k in range(12)
+    ]
+    page.stored.show_sessions(lines)
+    page.stored.tell("walk_1/left_thigh.csv: there is no column acc_x_m_s2.", "Write the file as FORMATS says it.")
+    page.show_stored()
+    return page
+
+
+def no_stored_session(look: Look) -> QWidget:
+    page = SensorsPage(look)
+    page.show_stored()
+    return page
+
+
 def no_sensors(look: Look) -> QWidget:
     page = SensorsPage(look)
     page.show_sources([SourceOption("serial", tr("Serial ports"))])
@@ -195,6 +213,8 @@ PAGES: dict[str, Callable[[Look], QWidget]] = {
     "patient": patient,
     "sensors": sensors,
     "no sensors": no_sensors,
+    "stored sessions": stored_sessions,
+    "no stored session": no_stored_session,
     "ready to stand": standing(StandPhase.READY),
     "counting": standing(StandPhase.COUNTING),
     "moved": standing(StandPhase.COUNTING, moved=(Site.LEFT_SHANK, Site.RIGHT_SHANK), restarts=3),

@@ -12,6 +12,7 @@ from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.visit import Visit
+from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
 from core.samples import Patient, Session
 from devices.replay import ReplaySource
@@ -57,7 +58,7 @@ def tick(step: SensorsStep) -> bool:
 
 def test_without_a_source_the_choices_stand_in_the_page(step: SensorsStep) -> None:
     assert step.page.nothing.isVisible()
-    assert [button.text() for button in step.page.nothing.buttons] == ["Fast patient"]
+    assert [button.text() for button in step.page.nothing.buttons] == ["Fast patient", "Replay of a stored session"]
     assert step.bar().primary is None
     assert step.state is StepState.TODO
 
@@ -165,3 +166,16 @@ def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Vis
     assert step.page.nothing.buttons == []
     step.leave()
     step.deleteLater()
+
+
+def test_what_a_search_finds_while_the_page_is_in_sight_is_offered(
+    qtbot: QtBot, visit: Visit, step: SensorsStep
+) -> None:
+    found = SourceChoice("ximu3", "x-io x-IMU3, 6 sensors", visit._choices[0].make)
+    step.page.activateWindow()
+    step.page.nothing.buttons[0].setFocus()
+    visit._choices = (found, *visit._choices)  # as the thread of the search does it
+    tick(step)
+    assert [button.text() for button in step.page.nothing.buttons][:2] == [found.name, "Fast patient"]
+    assert step.page.sources.itemText(0) == found.name
+    qtbot.waitUntil(step.page.nothing.buttons[1].hasFocus)

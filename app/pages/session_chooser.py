@@ -1,0 +1,114 @@
+"""Which stored session is to be replayed? One of the library's, or a session folder."""
+
+from collections.abc import Sequence
+from uuid import UUID
+
+from PySide6.QtCore import Signal
+from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+
+from app.pages.home_lists import LineList, PatientLine
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.icons import Icon
+from app.widgets.notice import Notice
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import tr
+
+LINES_AT_LEAST = 2.2  # in sight, so that it is seen that there are more
+LINE = 72
+
+
+class SessionChooser(QWidget):
+    """
+    Signals
+    -------
+    chosen
+        Another session is chosen: its id, or None.
+    opened
+        The id of a session that is to be replayed.
+    folder_pressed
+        A session folder is wanted instead.
+    back_pressed
+        No session is wanted after all.
+    """
+
+    chosen = Signal(object)
+    opened = Signal(object)
+    folder_pressed = Signal()
+    back_pressed = Signal()
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._title = Text(look, tr("Which session should be replayed?"), 20, SEMIBOLD, wraps=True)
+        self._why = Text(
+            look,
+            tr("It plays as if it were measured now. It was not: all that is made of it is marked SIMULATED."),
+            14,
+            tone="ink2",
+            wraps=True,
+        )
+        self.notice = Notice(look, size=16)
+        self.sessions = LineList(look, tr("Stored sessions"))
+        self._none = Text(look, tr("No other session with recordings is stored in this library."), 15, wraps=True)
+        self.folder = Button(look, tr("Choose a session folder"), Kind.SECONDARY, Icon.FOLDER)
+        self.back = Button(look, tr("Other sources"), Kind.QUIET)
+        self._lists = QStackedWidget()
+        self._lists.addWidget(self.sessions)
+        self._lists.addWidget(self._none)
+        self._card = Card(look, padding=0)
+        self._heading = QVBoxLayout()
+        self._heading.addWidget(self._title)
+        self._heading.addWidget(self._why)
+        self._heading.addWidget(self.notice)
+        self._card.column.addLayout(self._heading)
+        self._card.column.addWidget(self._lists, 1)
+        self._verbs = QHBoxLayout()
+        self._verbs.addWidget(self.folder)
+        self._verbs.addWidget(self.back)
+        self._verbs.addStretch(1)
+        self._column = QVBoxLayout(self)
+        self._column.setContentsMargins(0, 0, 0, 0)
+        self._column.addWidget(self._card, 1)
+        self._column.addLayout(self._verbs)
+        self.sessions.chosen.connect(self.chosen)
+        self.sessions.opened.connect(self.opened)
+        self.folder.clicked.connect(self.folder_pressed)
+        self.back.clicked.connect(self.back_pressed)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self.show_sessions(())
+        self.tell("")
+
+    @property
+    def session(self) -> UUID | None:
+        """The one that is chosen."""
+        line = self.sessions.line
+        return line.id if line is not None else None
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.sessions, self.folder, self.back]
+
+    def focus(self) -> None:
+        (self.sessions if self.sessions.lines.lines else self.folder).setFocus()
+
+    def show_sessions(self, lines: Sequence[PatientLine]) -> None:
+        """Offer these, latest first; the one that was chosen stays chosen."""
+        self.sessions.show_lines(lines, self.session)
+        self._lists.setCurrentWidget(self.sessions if lines else self._none)
+
+    def tell(self, what: str, then: str = "") -> None:
+        """Say why a session cannot be replayed, above those that may be tried instead; "" takes it back."""
+        self.notice.tell(Icon.WARNING if what else None, what, then, is_caution=bool(what))
+        self.notice.setVisible(bool(what))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._column.setSpacing(px(12))
+        self._verbs.setSpacing(px(12))
+        self._heading.setContentsMargins(px(24), px(16), px(24), px(4))
+        self._heading.setSpacing(px(4))
+        self._none.setContentsMargins(px(24), px(8), px(24), px(16))
+        self.sessions.setMinimumHeight(px(round(LINE * LINES_AT_LEAST)))
