@@ -238,7 +238,8 @@ class StepRail(QWidget):
         self._mark.setGeometry(px(x) - left, px(y), side.width(), side.height())
         self._name.setGeometry(px(50) - left, 0, px(self._form.value - 50), px(56))
         self._column.setContentsMargins(left, 0, 0, px(6 if is_compact else 20))
-        self._note_row.setContentsMargins(px(31) - left, px(12), px(12), px(8))
+        beside_note = (px(31) - left, px(12), px(12), px(8))
+        self._note_row.setContentsMargins(*((0, 0, 0, 0) if is_compact else beside_note))
         for row in self._all():
             row.set_form(self._form)
         self._tag.hide()
@@ -298,7 +299,7 @@ class _Row(QAbstractButton):
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
         if self._form is RailForm.COMPACT:
-            return QSize(px(44), px(50 if self._is_step else 44))
+            return QSize(px(44), px(48 if self._is_step else 44))
         title, note = self._heights()
         return QSize(px(150), max(title + note + px(14), px(56 if self._is_step else 44)))
 
