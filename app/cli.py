@@ -274,7 +274,7 @@ def _devices(wanted: argparse.Namespace) -> None:
     from app.device_commands import emulate, list_devices
 
     if wanted.emulate:
-        emulate(wanted.emulate, wanted.count, wanted.seconds, lambda line: print(line, flush=True))
+        emulate(wanted.emulate, wanted.count, wanted.seconds, lambda line: print(line, flush=True), sys.stdin)
         return
     for line in list_devices():
         print(line)

@@ -2,20 +2,20 @@
 
 import os
 import tempfile
+import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from core.samples import FloatArray
-    from devices.emulators.transports import Emulation, Voice
+    from devices.emulators.patient import EmulatedPatient
+    from devices.emulators.transports import Emulation
 
-EMULATED = ("ximu3", "witmotion")
-SITES = 6
-RATE_HZ = 100
+EMULATED = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")  # as devices.emulators.patient has them
+MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
 def list_devices() -> Iterator[str]:
@@ -39,21 +39,30 @@ def list_devices() -> Iterator[str]:
         yield f"- {driver.name}: {driver.proof}"
 
 
-def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None]) -> None:
+def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None], asked: Iterable[str] = ()) -> None:
     """Play so many sensors at pseudo-terminals until interrupted or `seconds` are over; tells their ports first.
+
+    Parameters
+    ----------
+    asked
+        Lines, whenever they come, of what the patient is to do; see `MOVEMENTS`.
 
     Raises
     ------
     OSError
         There are no pseudo-terminals on this system.
     """
+    from devices.emulators.patient import EmulatedPatient
     from devices.ports import MORE_PORTS
 
-    with _emulations(kind, count) as emulations:
+    patient = EmulatedPatient()
+    with _emulations(patient, kind, count) as emulations:
         places = [emulation.place for emulation in emulations]
-        for emulation in emulations:
-            tell(emulation.place)
+        for place in places:
+            tell(place)
         tell(f"Let the application look there: {MORE_PORTS}={os.pathsep.join(places)}")
+        tell("The patient stands. Type f and Enter for a free motion, w for a walk.")
+        threading.Thread(target=_ask, args=(patient, asked, tell), daemon=True).start()  # it waits for the keyboard
         until_s = time.monotonic() + seconds
         try:
             while time.monotonic() < until_s:
@@ -62,48 +71,28 @@ def emulate(kind: str, count: int, seconds: float, tell: Callable[[str], None]) 
             tell("Ended.")
 
 
+def _ask(patient: "EmulatedPatient", asked: Iterable[str], tell: Callable[[str], None]) -> None:
+    from core.samples import RecordingKind
+
+    for line in asked:
+        if (kind := MOVEMENTS.get(line.strip())) is not None:
+            clip = patient.ask(RecordingKind(kind))
+            tell(f"{clip.recording.name}: {(clip.end_ns - clip.start_ns) / 1e9:.0f} s")
+
+
 @contextmanager
-def _emulations(kind: str, count: int) -> "Iterator[list[Emulation]]":
+def _emulations(patient: "EmulatedPatient", kind: str, count: int) -> "Iterator[list[Emulation]]":
+    from devices.emulators.patient import EmulatedSensor
     from devices.emulators.transports import Emulation, Terminal
 
     with tempfile.TemporaryDirectory(prefix="gaitwright-ports-") as folder:
         emulations: list[Emulation] = []
         try:
-            for number, values in enumerate(_walk(count)):
+            for number in range(count):
                 link = Path(folder) / f"{kind}-{number + 1}"
-                emulations.append(Emulation(_voice(kind, number, values), partial(Terminal, link)))
+                voice = EmulatedSensor(patient, kind, number).voice
+                emulations.append(Emulation(voice, partial(Terminal, link)))
             yield emulations
         finally:
             for emulation in emulations:
                 emulation.close()
-
-
-def _voice(kind: str, number: int, values: "FloatArray") -> "Voice":
-    from devices.emulators.witmotion import WitVoice
-    from devices.emulators.ximu3 import Ximu3Voice
-
-    def motion(sample: int) -> Sequence[float]:
-        row: list[float] = values[sample % len(values)].tolist()
-        return row
-
-    if kind == "witmotion":
-        return WitVoice(f"{number + 1:04d}", motion, rate_hz=RATE_HZ)
-    return Ximu3Voice(f"EMU{number + 1:05d}", motion, rate_hz=RATE_HZ)
-
-
-def _walk(count: int) -> "list[FloatArray]":
-    """What the simulated patient's sensors measure, site by site: deg/s (3) and g (3) of each sample."""
-    import numpy as np
-
-    from core.body import Site
-    from devices.walker import DEMONSTRATION, simulate
-    from devices.ximu3 import G
-
-    recordings = simulate(DEMONSTRATION).session.recordings
-    found = []
-    for number in range(count):
-        site = list(Site)[number % SITES]
-        blocks = [recording.imu[site] for recording in recordings if site in recording.imu]
-        whole = np.concatenate([np.hstack([np.degrees(one.gyr_rad_s), one.acc_m_s2 / G]) for one in blocks])
-        found.append(np.clip(np.nan_to_num(whole), [-1999] * 3 + [-15.9] * 3, [1999] * 3 + [15.9] * 3))
-    return found

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from devices.csv_serial import DRIVER as CSV
 from devices.csv_serial import CsvSerial
 from devices.shimmer3 import DRIVER as SHIMMER3
+from devices.shimmer3 import KNOCK as KNOCK_SHIMMER3
 from devices.shimmer3 import Shimmer3
 from devices.source import StreamDecoder
 from devices.stream import Decoder, Dialect
@@ -14,6 +15,7 @@ from devices.witmotion import WitMotion
 from devices.ximu3 import DRIVER as XIMU3
 from devices.ximu3 import Ximu3
 from devices.xsens_mti import DRIVER as XSENS_MTI
+from devices.xsens_mti import KNOCK as KNOCK_XSENS_MTI
 from devices.xsens_mti import XsensMti
 
 
@@ -33,6 +35,8 @@ class Driver:
         Of its serial ports, the likeliest first.
     hint
         What a port's description says where one of these is plugged in, so that it is spoken to although it is silent.
+    knock
+        Harmless to anything else; what is silent until it is told to send answers with `knocked`.
     """
 
     key: str
@@ -42,6 +46,8 @@ class Driver:
     dialect: Callable[[], Dialect] | None = None
     bauds: tuple[int, ...] = ()
     hint: str = ""
+    knock: bytes = b""
+    knocked: bytes = b""
 
 
 DRIVERS = (
@@ -79,6 +85,7 @@ DRIVERS = (
         XsensMti,
         (115200, 921600),
         "MTi",
+        *KNOCK_XSENS_MTI,
     ),
     Driver(
         SHIMMER3,
@@ -89,5 +96,6 @@ DRIVERS = (
         Shimmer3,
         (115200,),
         "Shimmer3",
+        *KNOCK_SHIMMER3,
     ),
 )

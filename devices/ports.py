@@ -16,6 +16,8 @@ from devices.channels import MOST_BYTES, READ_S
 from devices.live import SourceLostError, SourceRefusedError
 
 MORE_PORTS = "GAITWRIGHT_PORTS"  # further ports, such as emulators', by their paths
+# names of Bluetooth ports that are worth the seconds they take: bound by hand on Linux, made by pairing on macOS
+SENSORS_RADIO = ("rfcomm", "Shimmer3")
 LOOK_S = 0.5  # a port that is gone is missed so soon, whatever its driver says
 
 
@@ -29,6 +31,11 @@ class PortInfo:
     usb: tuple[int, int] | None = None
     is_told: bool = False
     """Somebody named it, so that it is looked at whatever it is."""
+
+    @property
+    def is_likely(self) -> bool:
+        """Whether a sensor may be there: most other ports of a machine are empty, or another's and slow to open."""
+        return bool(self.usb or self.is_told or any(name in self.device for name in SENSORS_RADIO))
 
     def is_same(self, other: "PortInfo") -> bool:
         """Whether the same thing is plugged in, at whichever port it is now."""

@@ -19,6 +19,7 @@ from devices.ximu3 import Ximu3
 
 LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
 LEAST = 3  # messages
+ANSWER_S, MOST_ANSWER = 0.3, 4096  # what says more is something else
 ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
@@ -56,9 +57,10 @@ class Found:
 def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCED_AT) -> Found:
     """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
 
-    Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open.
+    Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open, but for
+    those that somebody bound or that are a sensor's by their name.
     """
-    looked_at = [port for port in (list_ports() if ports is None else ports) if port.usb or port.is_told]
+    looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
     heard: list[FoundSensor | Passed] = []
     works = [threading.Thread(target=lambda port=port: heard.append(_at_port(port)), daemon=True) for port in looked_at]
     on_network: list[FoundSensor] = []
@@ -81,7 +83,7 @@ def _at_port(port: PortInfo) -> FoundSensor | Passed:
         channel = SerialPort(port, baud)
         try:
             channel.open()
-            driver = _recognised(channel, port)
+            driver = _recognised(channel, port) or _answering(channel)
             if driver is not None and driver.dialect is not None:
                 info, _ = driver.dialect().greet(channel)
                 return FoundSensor(
@@ -119,6 +121,20 @@ def _recognised(channel: Channel, port: PortInfo) -> Driver | None:
     if understood:
         return max(understood, key=lambda one: one[0])[1]
     return next((driver for driver in DRIVERS if driver.hint and driver.hint in port.description), None)
+
+
+def _answering(channel: SerialPort) -> Driver | None:
+    """Who answers a question that only one maker's sensors understand."""
+    for driver in DRIVERS:
+        if not driver.knock or channel.baud not in driver.bauds:
+            continue
+        said, until_s = b"", time.monotonic() + ANSWER_S
+        channel.write(driver.knock)
+        while time.monotonic() < until_s and len(said) < MOST_ANSWER:
+            said += channel.read()
+            if driver.knocked in said:
+                return driver
+    return None
 
 
 def _making(driver: Driver, port: PortInfo, baud: int) -> Callable[[], LiveSource]:

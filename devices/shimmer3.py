@@ -24,7 +24,7 @@ from devices.source import SourceInfo
 from devices.stream import Heard
 
 DRIVER, VERSION = "shimmer3", "1"
-EMULATED = "emulated Shimmer3"  # what our own emulator is called
+EMULATED = "emulated Shimmer3"  # how the names of our own emulators begin
 TICK_HZ, TIME_BITS = 32768, 24
 TURN = 1 << TIME_BITS
 RATE_HZ = 102.4  # of the round divisions of its clock, the one next to 100
@@ -55,6 +55,8 @@ class Command:
     REFUSED, DONE = 0xFE, 0xFF
 
 
+# it is silent until it is told to stream; this asks for its firmware, and is answered so where that is LogAndStream
+KNOCK = bytes([Command.FIRMWARE]), bytes([Command.DONE, Command.FIRMWARE_ANSWER, 3, 0])
 # wide-range accelerometer, angular rate, battery, as three bytes of switches
 SENSORS = bytes([0x40, 0x30, 0x00])
 ACC_RANGE = 3  # 16 g on boards of the first generations, 8 g on later ones: a landing foot brings more than 4 g
@@ -294,7 +296,7 @@ class Shimmer3:
             talk.told(bytes([Command.SET_CHECKSUM, 2]))
         channel.write(bytes([Command.START]))
         version = f"LogAndStream {major}.{minor}.{internal}" if kind == 3 else f"{major}.{minor}.{internal}"
-        info = SourceInfo(DRIVER, VERSION, name, (name,), settings, is_simulated=name == EMULATED)
+        info = SourceInfo(DRIVER, VERSION, name, (name,), settings, is_simulated=name.startswith(EMULATED))
         return info, SensorTold("Shimmer3", name, version, TICK_HZ / self._period, RateKind.INSTANTANEOUS)
 
     def identifying(self) -> bytes:

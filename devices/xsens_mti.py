@@ -35,6 +35,8 @@ FINE_HZ, FINE_BITS, COUNTER_BITS = 10_000.0, 32, 16
 FINE_TURN_S = 2**FINE_BITS / FINE_HZ
 ANSWERS_S = 0.5
 TRIES = 4  # a sensor that is measuring hears the first request late
+# one that was left in its configuration is silent; this asks for its number
+KNOCK = message(Mid.DEVICE_ID, b""), bytes([0xFA, 0xFF, Mid.DEVICE_ID + 1])
 ALWAYS = 0xFFFF  # in place of a frequency: with every message
 SETTING = struct.Struct(">HH")  # an item's identifier and its frequency
 MOST_LAYOUTS = 64  # of messages; a sensor has a handful, noise any

@@ -64,6 +64,10 @@ class Shimmer3Voice:
         self.period = 640
         self._rest = b""
 
+    def sampled_ns(self, number: int) -> float:
+        """When the sample of this number is taken, by the host's clock."""
+        return self._begin_ns + (number + 1) * 1e9 * self.period / TICK_HZ
+
     def say(self) -> bytes:
         if not self.is_streaming:
             return b""

@@ -32,7 +32,7 @@ USUAL_CONTENT = 0b1110  # force, rate, angles; no time
 
 
 class WitVoice:
-    """The `Voice` of one sensor; `number` has up to four characters and follows `EMULATED`."""
+    """The `Voice` of one sensor; `number` has up to four characters and follows `name`."""
 
     def __init__(
         self,
@@ -41,11 +41,12 @@ class WitVoice:
         *,
         rate_hz: float = 100.0,
         content: int = USUAL_CONTENT,
+        name: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
         self._motion, self._now_ns, self._begin_ns = motion, now_ns, now_ns()
         self._sent, self._is_unlocked, self._rest = 0, False, b""
-        self.number = f"{EMULATED}{number}"[:12]
+        self.number = f"{name}{number}"[:12]
         padded = self.number.encode().ljust(16, b"\0")
         self.registers = {NUMBER_AT + k: int.from_bytes(padded[2 * k : 2 * k + 2], "little") for k in range(8)}
         self.registers |= {
@@ -56,6 +57,10 @@ class WitVoice:
     @property
     def rate_hz(self) -> float:
         return RATES[self.registers[RATE_AT]]
+
+    def sampled_ns(self, number: int) -> float:
+        """When the sample of this number is taken, by the host's clock."""
+        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
 
     def say(self) -> bytes:
         due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)

@@ -44,6 +44,7 @@ class Ximu3Voice:
         *,
         rate_hz: int = 100,
         is_binary: bool = True,
+        name: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
         self._motion, self._now_ns = motion, now_ns
@@ -52,7 +53,7 @@ class Ximu3Voice:
         self._rest = b""
         self.strobed = 0
         self.settings: dict[str, object] = {
-            "ping": {"interface": "USB", "name": EMULATED, "sn": serial},
+            "ping": {"interface": "USB", "name": name, "sn": serial},
             "inertial_message_rate_divisor": BASE_HZ // rate_hz,
             "ahrs_message_rate_divisor": 0,
             "binary_mode_enabled": is_binary,
@@ -69,6 +70,10 @@ class Ximu3Voice:
     def rate_hz(self) -> float:
         divisor = self.settings["inertial_message_rate_divisor"]
         return BASE_HZ / divisor if isinstance(divisor, int) and divisor else 0.0
+
+    def sampled_ns(self, number: int) -> float:
+        """When the sample of this number is taken, by the host's clock."""
+        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
 
     def say(self) -> bytes:
         if not self.rate_hz:

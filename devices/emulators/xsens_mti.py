@@ -36,10 +36,11 @@ class MtiVoice:
         motion: Motion = still,
         *,
         has_orientation: bool = True,
+        product: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
     ) -> None:
         self._motion, self._now_ns, self._has_orientation = motion, now_ns, has_orientation
-        self._serial = serial
+        self._serial, self._product = serial, product
         self._framer = Framer(REQUESTS)
         self._begin_ns, self._sent = now_ns(), 0
         self.is_measuring = True
@@ -55,6 +56,10 @@ class MtiVoice:
     @property
     def rate_hz(self) -> int:
         return self.settings.get(Item.RATE, 0)
+
+    def sampled_ns(self, number: int) -> float:
+        """When the sample of this number is taken, by the host's clock."""
+        return self._begin_ns + (number + 1) * 1e9 / self.rate_hz
 
     def say(self) -> bytes:
         due = int((self._now_ns() - self._begin_ns) / 1e9 * self.rate_hz)
@@ -81,7 +86,7 @@ class MtiVoice:
             case Mid.DEVICE_ID:
                 answer = bytes.fromhex(self._serial)
             case Mid.PRODUCT:
-                answer = EMULATED.ljust(20).encode()
+                answer = self._product.ljust(20).encode()
             case Mid.FIRMWARE:
                 answer = FIRMWARE + bytes(8)
             case Mid.OUTPUT if not self.is_measuring:

@@ -13,12 +13,15 @@ import pytest
 
 from devices import ports as ports_module
 from devices.catalogue import DRIVERS
+from devices.emulators.shimmer3 import Shimmer3Voice
 from devices.emulators.transports import Emulation, Terminal, Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
+from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceRefusedError
 from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
 from devices.search import announcement, search
+from devices.shimmer3 import EMULATED as SHIMMER3
 
 
 def motion(number: int) -> tuple[float, ...]:
@@ -38,11 +41,19 @@ def emulated(tmp_path: Path) -> Iterator[list[PortInfo]]:
         "b": Ximu3Voice("0000000B", motion, is_binary=False),
         "c": WitVoice("000C", motion),
         "d": Silence(),
+        "e": Shimmer3Voice(name=f"{SHIMMER3} E"),
+        "f": left_in_configuration(),
     }
     emulations = [Emulation(voice, partial(Terminal, tmp_path / name)) for name, voice in voices.items()]
     yield [PortInfo(emulation.place, is_told=True) for emulation in emulations]
     for emulation in emulations:
         emulation.close()
+
+
+def left_in_configuration() -> MtiVoice:
+    voice = MtiVoice()
+    voice.is_measuring = False
+    return voice
 
 
 class Silence:
@@ -59,6 +70,8 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
         ("ximu3", "0000000A"),
         ("ximu3", "0000000B"),
         ("witmotion", "EMULATED000C"),
+        ("shimmer3", f"{SHIMMER3} E"),
+        ("xsens-mti", "MTi 0280A1B2"),
     }
     assert all(one.is_simulated for one in found.sensors)
     assert [one.what for one in found.passed] == [

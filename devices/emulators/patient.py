@@ -1,0 +1,201 @@
+"""A patient who is not there wears emulated sensors, and does what is asked.
+
+The motion is that of `devices.walker`; each sensor measures it whenever its own clock says so, and the truth is known.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from core.body import Joint, Site
+from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
+from devices.emulators.csv_lines import LineVoice
+from devices.emulators.shimmer3 import ACC_CALIBRATION, GYR_CALIBRATION, Shimmer3Voice
+from devices.emulators.transports import Voice
+from devices.emulators.witmotion import WitVoice
+from devices.emulators.ximu3 import Ximu3Voice
+from devices.emulators.xsens_mti import MtiVoice
+from devices.host_clock import host_time_ns
+from devices.shimmer3 import EMULATED as SHIMMER3
+from devices.shimmer3 import calibrating
+from devices.walker import FreeMotion, SimulatedSession, Standing, Walk, WalkerSettings, simulate
+from devices.witmotion import EMULATED as WITMOTION
+from devices.ximu3 import EMULATED as XIMU3
+from devices.ximu3 import G
+from devices.xsens_mti import EMULATED as XSENS_MTI
+
+KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
+FINE_HZ = 500.0  # of the table that sensors measure from: between its rows the motion is straight to a thousandth
+MOST_DEG_S, MOST_G, MOST_RAW = 1999.0, 15.9, 32767
+SESSION = WalkerSettings(
+    seed=8,
+    rate_hz=FINE_HZ,
+    is_tissue_steady=True,
+    recordings=(
+        Standing(duration_s=10.0),
+        FreeMotion(duration_s=24.0),
+        *(Walk(name=f"walk {number}", strides=14, standing_before_s=2.0) for number in (1, 2, 3)),
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Clip:
+    """A recording that is performed: its time 0 is at `start_ns` of the host's clock."""
+
+    recording: Recording
+    start_ns: int
+    end_ns: int
+
+
+class EmulatedPatient:
+    """Stands, and performs the next recording of the kind that is asked for. One thread asks, any measure.
+
+    Noise is added to each sample as a sensor of that rate has it; bias and scale are those of the walker.
+    """
+
+    def __init__(self, settings: WalkerSettings = SESSION, now_ns: Callable[[], int] = host_time_ns) -> None:
+        self._errors, self._now_ns = settings.errors, now_ns
+        quiet = replace(settings.errors, gyro_noise_rad_s=0.0, acc_noise_m_s2=0.0)
+        self.simulated: SimulatedSession = simulate(replace(settings, errors=quiet))
+        recordings = self.simulated.session.recordings
+        self._tables = {
+            (recording.name, site): _table(recording.imu[site]) for recording in recordings for site in recording.imu
+        }
+        self._waiting = list(recordings)
+        self._standing = next(one for one in recordings if one.kind is RecordingKind.STANDING)
+        self.clips = [self._clip(self._standing, now_ns())]
+
+    def ask(self, kind: RecordingKind) -> Clip:
+        """Perform the next recording of this kind, once the present one has ended; then stand."""
+        wanted = next(one for one in self._waiting if one.kind is kind)
+        self._waiting.remove(wanted)
+        self._waiting.append(wanted)
+        present = self.clips[-1]
+        start_ns = self._now_ns()
+        if present.recording.kind is not RecordingKind.STANDING:
+            start_ns = max(start_ns, present.end_ns)
+        self.clips = [*self.clips, self._clip(wanted, start_ns)]  # others are looking at the old ones
+        return self.clips[-1]
+
+    def measured(self, site: Site, at_ns: float, rate_hz: float, chance: np.random.Generator) -> FloatArray:
+        """Rate in rad/s and force in m/s2 (6,) of a sample taken then."""
+        recording, passed_ns = self._performed(at_ns)
+        value = _between(self._tables[recording.name, site], passed_ns)
+        density = np.repeat([self._errors.gyro_noise_rad_s, self._errors.acc_noise_m_s2], 3)
+        noisy: FloatArray = value + density * np.sqrt(0.5 * rate_hz) * chance.normal(size=6)
+        return noisy
+
+    def angle_rad(self, joint: Joint, at_ns: float) -> float:
+        """The truth: how far the joint is bent then, 0 in the anatomical neutral position."""
+        recording, passed_ns = self._performed(at_ns)
+        return float(_between(self.simulated.truth.recordings[recording.name].joints[joint].angle_rad, passed_ns))
+
+    def _performed(self, at_ns: float) -> tuple[Recording, float]:
+        """Which recording is performed then, and for how long already; the standing over and over in between."""
+        clip = next((one for one in reversed(self.clips) if one.start_ns <= at_ns), self.clips[0])
+        if at_ns < clip.end_ns:
+            return clip.recording, at_ns - clip.start_ns
+        return self._standing, at_ns - clip.end_ns
+
+    def _clip(self, recording: Recording, start_ns: int) -> Clip:
+        length_s = min((len(block) - 1) / FINE_HZ for block in recording.imu.values())
+        return Clip(recording, start_ns, start_ns + round(length_s * 1e9))
+
+
+class EmulatedSensor:
+    """One sensor that the patient wears.
+
+    Parameters
+    ----------
+    says_so
+        Tells whoever asks that it is emulated, so that what is recorded of it counts as simulated.
+
+    Attributes
+    ----------
+    sent, sent_ns
+        What it measured, sample by sample: rate in rad/s and force in m/s2 (6,); and when, by the host's clock.
+    """
+
+    def __init__(
+        self, patient: EmulatedPatient, kind: str, number: int, rate_hz: int = 100, *, says_so: bool = True
+    ) -> None:
+        self.site = list(Site)[number % len(Site)]
+        self.sent: list[FloatArray] = []
+        self.sent_ns: list[float] = []
+        self._patient, self._rate_hz = patient, rate_hz
+        self._chance = np.random.default_rng(number)
+        self.voice: EmulatedVoice = self._voice(kind, number, says_so)
+
+    def _voice(self, kind: str, number: int, says_so: bool) -> "EmulatedVoice":
+        rate_hz = self._rate_hz
+        match kind:
+            case "ximu3":
+                name = XIMU3 if says_so else "x-IMU3"
+                return Ximu3Voice(f"EMU{number + 1:05d}", self._in_degrees, rate_hz=rate_hz, name=name)
+            case "witmotion":
+                return WitVoice(
+                    f"{number + 1:04d}", self._in_degrees, rate_hz=rate_hz, name=WITMOTION if says_so else "WT"
+                )
+            case "csv":
+                return LineVoice(self._in_degrees, rate_hz=rate_hz)
+            case "xsens-mti":
+                product = XSENS_MTI if says_so else "MTi-3"
+                return MtiVoice(
+                    f"028000{number + 1:02X}",
+                    lambda at: self._measured(at).tolist(),
+                    has_orientation=False,
+                    product=product,
+                )
+            case "shimmer3":
+                return Shimmer3Voice(self._raw, name=f"{SHIMMER3 if says_so else 'Shimmer3'} {number + 1:04X}")
+        raise ValueError(f"{kind} is none of {KINDS}")
+
+    def _measured(self, number: int) -> FloatArray:
+        at_ns = self.voice.sampled_ns(number)
+        row = self._patient.measured(self.site, at_ns, self._rate_hz, self._chance)
+        self.sent.append(row)
+        self.sent_ns.append(at_ns)
+        return row
+
+    def _in_degrees(self, number: int) -> Sequence[float]:
+        row = self._measured(number)
+        rate = np.degrees(row[:3]).clip(-MOST_DEG_S, MOST_DEG_S)
+        return [*rate.tolist(), *(row[3:] / G).clip(-MOST_G, MOST_G).tolist()]
+
+    def _raw(self, number: int) -> Sequence[int]:
+        row = self._measured(number)
+        parts = zip((row[:3], row[3:]), RAW, strict=True)
+        raw = [matrix @ values + offset for values, (matrix, offset) in parts]
+        whole: list[int] = np.concatenate(raw).round().clip(-MOST_RAW, MOST_RAW).astype(int).tolist()
+        return whole
+
+
+class EmulatedVoice(Voice, Protocol):
+    """Knows when its samples are taken."""
+
+    def sampled_ns(self, number: int) -> float: ...
+
+
+def _uncalibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
+    """Matrix and offset that make raw numbers: the other way round than `calibrating`."""
+    offset, matrix = calibrating(block, scale)
+    return np.linalg.inv(matrix), offset
+
+
+RAW = (_uncalibrating(GYR_CALIBRATION, 100.0 * np.pi / 180), _uncalibrating(ACC_CALIBRATION, 1.0))
+
+
+def _between(table: FloatArray, passed_ns: float) -> FloatArray:
+    """What a table (n, ...) says of a moment; it begins anew after its end."""
+    at = passed_ns / 1e9 * FINE_HZ % (len(table) - 1)
+    row = int(at)
+    value: FloatArray = table[row] + (at - row) * (table[row + 1] - table[row])
+    return value
+
+
+def _table(block: ImuBlock) -> FloatArray:
+    """Rate and force (n, 6), one row every `1 / FINE_HZ`; the walker loses none."""
+    return np.hstack([block.gyr_rad_s, block.acc_m_s2])
