@@ -4,7 +4,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
@@ -12,43 +12,34 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QScrollArea,
-    QSizePolicy,
     QVBoxLayout,
     QWidget,
 )
 
-from app.pages.label_chooser import LabelChooser
 from app.pages.walk_list import WalkList, WalkRow, WalkState
-from app.pages.walking_charts import Hairline, WalkingCharts, last_angles_in_words
+from app.pages.walking_cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
+from app.pages.walking_charts import WalkingCharts, last_angles_in_words
 from app.plots.live_lanes import LiveLane
 from app.plots.live_strip import LiveTrace
 from app.theme import Look
-from app.widgets.button import Button, Kind
-from app.widgets.card import Card
-from app.widgets.chip import Chip
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
-from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import tr, tr_n
+from app.wording import tr
 from core.body import Side
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
 NOTICE = 64  # reserved above the charts while a walk is recorded, so that nothing jumps when something is to be said
 SIDE_WIDTH, SIDE_WIDTH_WIDE = 244, 320
-FIGURE, FIGURE_WIDE, FIGURE_COMPACT = 60, 72, 36
+FIGURE_WIDE, FIGURE_COMPACT = 72, 36
 NARROW_BELOW = 660  # of the page: a question stands above its answers, a word above its figure
 WIDE_FROM = 1400  # of the page
 MOST_WIDTH = 1600
 SECONDS, SECONDS_WIDE = 8.0, 12.0
 DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
-UNDER_FIGURES = 0.14  # of their size lies below the line that the unit shares
-NO_FIGURE = "\N{EN DASH}"
 ANY_WIDTH = 16777215  # what Qt calls no limit
-
-_ACROSS, _DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,12 +89,12 @@ class WalkingPage(QWidget):
         self._has_message = False
         self._message: tuple[str, str] | None = None
         self.tabs = Segmented(look, tr("What is shown"), [("walks", tr("Walks"), ""), ("curves", tr("Curves"), "")])
-        self.stopped = _StoppedCard(look)
-        self.empty = _EmptyCard(look)
+        self.stopped = StoppedCard(look)
+        self.empty = EmptyCard(look)
         self.charts = WalkingCharts(look)
-        self.figures = _Figures(look)
+        self.figures = WalkFigures(look)
         self.walks = WalkList(look)
-        self.next = _NextCard(look)
+        self.next = NextCard(look)
         self._inside = QWidget()
         self._scroll = QScrollArea()
         self._build()
@@ -170,14 +161,14 @@ class WalkingPage(QWidget):
         """Choose the label whose cap shows `digit`; False where it means nothing now."""
         return not self.is_recording and self.next.chooser.choose_digit(digit)
 
-    def show_message(self, what: str, then: str = "") -> None:
-        """Say what happened and what to do or what follows; nothing takes it back."""
+    def show_message(self, what: str, then: str = "", *, is_caution: bool = True) -> None:
+        """Say what happened and what to do or what follows; nothing takes it back. No caution: it is as was told."""
         if (what, then) == self._message:
             return
         self._message = what, then
         self._has_message = bool(what)
         if what:
-            self.notice.tell(Icon.WARNING, what, then, is_caution=True)
+            self.notice.tell(Icon.WARNING if is_caution else Icon.INFO, what, then, is_caution=is_caution)
         else:
             self.notice.tell(
                 Icon.INFO,
@@ -220,7 +211,7 @@ class WalkingPage(QWidget):
         self._left.addWidget(self.charts, 1)
         self._right.addWidget(self.figures)
         self._right.addWidget(self.walks, 1)
-        self._middle = QBoxLayout(_ACROSS)
+        self._middle = QBoxLayout(ACROSS)
         self._middle.addLayout(self._left, 1)
         self._middle.addLayout(self._right)
         self._column = QVBoxLayout(self._inside)
@@ -265,7 +256,7 @@ class WalkingPage(QWidget):
         self._place(self.figures, self._column if self._is_compact else self._right, 0)
         after_stopped = self._column.indexOf(self.stopped) + 1
         self._place(self.next, self._column, after_stopped if self._is_compact else -1)
-        self._middle.setDirection(_DOWN if self._is_compact else _ACROSS)
+        self._middle.setDirection(DOWN if self._is_compact else ACROSS)
         self._fit()
         if was_on_region and QApplication.focusWidget() not in self._regions:
             self.focus()  # else it is on the next button, which Space would press
@@ -318,187 +309,6 @@ class WalkingPage(QWidget):
         self._middle.setSpacing(between if self._is_compact else px(16))
         self.notice.setMinimumHeight(px(44 if self._is_compact else NOTICE))
         self._fit()
-
-
-class _Figures(Card):
-    """Strides and cadence, to be read from across the room."""
-
-    def __init__(self, look: Look) -> None:
-        self._strides = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
-        self._cadence = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
-        self._counts = {side: Text(look, "0", size=18, weight=MEDIUM) for side in Side}
-        self._chips = {side: Chip(look, side) for side in Side}
-        self._line = Hairline(look)
-        self._unit = Text(look, tr("steps/min"), size=14, tone="ink2")
-        self._stride_row, self._cadence_row, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(_DOWN)
-        self._both = QBoxLayout(_DOWN)
-        self._pairs: list[QHBoxLayout] = []
-        self._parts: list[QBoxLayout] = []
-        self.in_words = ""
-        super().__init__(look, spacing=0)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        for side in Side:
-            pair = QHBoxLayout()
-            pair.addWidget(self._chips[side])
-            pair.addWidget(self._counts[side])
-            self._pairs.append(pair)
-            self._sides.addLayout(pair)
-        self._stride_row.addWidget(self._strides)
-        self._stride_row.addStretch(1)
-        self._stride_row.addLayout(self._sides)
-        self._cadence_row.addWidget(self._cadence)
-        self._cadence_row.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
-        self._cadence_row.addStretch(1)
-        for title, row in ((tr("Strides"), self._stride_row), (tr("Cadence"), self._cadence_row)):
-            part = QBoxLayout(_DOWN)
-            part.addWidget(Text(look, title, size=14, tone="ink2"))
-            part.addLayout(row)
-            self._parts.append(part)
-        self._both.addLayout(self._parts[0], 1)
-        self._both.addWidget(self._line)
-        self._both.addLayout(self._parts[1], 1)
-        self.column.addLayout(self._both)
-        self._on_look_changed()
-
-    def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
-        shown = str(max(strides.values())) if strides else NO_FIGURE
-        cadence = f"{cadence_steps_min:.0f}" if math.isfinite(cadence_steps_min) else NO_FIGURE
-        for label, text in ((self._strides, shown), (self._cadence, cadence)):
-            if label.text() != text:
-                label.setText(text)
-        for side in Side:
-            self._chips[side].setVisible(side in strides)
-            self._counts[side].setVisible(side in strides)
-            count = str(strides.get(side, 0))
-            if self._counts[side].text() != count:
-                self._counts[side].setText(count)
-        said = [tr("{count} strides.").format(count=shown)] if strides else []
-        words = {Side.LEFT: tr("Left {count}."), Side.RIGHT: tr("Right {count}.")}
-        said += [words[side].format(count=strides[side]) for side in Side if side in strides]
-        if math.isfinite(cadence_steps_min):
-            said.append(tr("Cadence {cadence} steps per minute.").format(cadence=cadence))
-        self.in_words = " ".join(said)
-
-    def set_size(self, size: float) -> None:
-        self._strides.set_size(size)
-        self._cadence.set_size(size)
-        self._reserve_room()
-        self._unit.setContentsMargins(0, 0, 0, self._look.theme.px(size * UNDER_FIGURES))
-
-    def set_compact(self, is_compact: bool, is_narrow: bool) -> None:
-        """Stand in one line; where it is narrow, with the words above the figures."""
-        self._both.setDirection(_ACROSS if is_compact else _DOWN)
-        self._sides.setDirection(_ACROSS if is_compact else _DOWN)
-        for part in self._parts:
-            part.setDirection(_ACROSS if is_compact and not is_narrow else _DOWN)
-        self._line.setVisible(not is_compact)
-        self._padding = 8.0 if is_compact else 16.0
-        self._on_look_changed()
-
-    def _reserve_room(self) -> None:
-        """As wide as the figures get, so that nothing jumps."""
-        for label in (self._strides, self._cadence):
-            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-        for label in self._counts.values():
-            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
-
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        px = self._look.theme.px
-        for row in (self._stride_row, self._cadence_row, *self._pairs):
-            row.setSpacing(px(8))
-        self._sides.setSpacing(px(8))
-        self._both.setSpacing(px(32) if self._both.direction() is _ACROSS else px(4))
-        for part in self._parts:
-            part.setSpacing(px(12) if part.direction() is _ACROSS else 0)
-        self._reserve_room()
-
-
-class _StoppedCard(Card):
-    """What was just recorded, and the one question about it."""
-
-    def __init__(self, look: Look) -> None:
-        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self._facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.keep = Button(look, "", Kind.PRIMARY, key="K")
-        self.discard = Button(look, tr("Discard"), Kind.SECONDARY, key="D")
-        self._row, self._verbs = QBoxLayout(_ACROSS), QHBoxLayout()
-        super().__init__(look)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        words = QVBoxLayout()
-        words.setSpacing(0)
-        words.addWidget(self._title)
-        words.addWidget(self._facts)
-        self._row.addLayout(words, 1)
-        self._verbs.addStretch(1)
-        self._verbs.addWidget(self.discard)
-        self._verbs.addWidget(self.keep)
-        self._row.addLayout(self._verbs)
-        self.column.addLayout(self._row)
-
-    def show_walk(self, walk: WalkRow | None, facts: str) -> None:
-        if walk is None:
-            return
-        is_recovered = walk.state is WalkState.RECOVERED
-        title = tr("{label}: recovered") if is_recovered else tr("{label}: stopped")
-        self._title.setText(title.format(label=f"{walk.letter}  {walk.label}"))
-        self._facts.setText(facts)
-        self._facts.setVisible(bool(facts))
-        keep = tr("Keep walk")
-        if walk.strides:
-            keep = tr_n("Keep {count} stride", "Keep {count} strides", walk.strides).format(count=walk.strides)
-        self.keep.setText(keep)
-        self.keep.setAccessibleName(keep)
-        self.keep.updateGeometry()
-
-    def set_narrow(self, is_narrow: bool) -> None:
-        """Put the buttons below the words where the width is too small for both."""
-        self._row.setDirection(_DOWN if is_narrow else _ACROSS)
-
-    def _on_look_changed(self) -> None:
-        super()._on_look_changed()
-        for row in (self._row, self._verbs):
-            row.setSpacing(self._look.theme.px(12))
-
-
-class _EmptyCard(Card):
-    """Before the first walk: what to do, and why to stand a moment."""
-
-    def __init__(self, look: Look) -> None:
-        self._what = Text(look, tr("Choose a label, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
-        self._then = Text(
-            look,
-            tr("Two seconds of standing first make the ankle's line right from the start."),
-            size=16,
-            tone="ink2",
-            wraps=True,
-        )
-        super().__init__(look)
-        self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
-        for text in (self._what, self._then):
-            text.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.column.addStretch(1)
-        self.column.addWidget(self._what)
-        self.column.addWidget(self._then)
-        self.column.addStretch(1)
-
-
-class _NextCard(Card):
-    """What the next walk is called, beside the button that starts it."""
-
-    def __init__(self, look: Look) -> None:
-        self._title = Text(look, size=14, weight=MEDIUM, tone="ink2")
-        self.chooser = LabelChooser(look)
-        super().__init__(look)
-        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self.column.addWidget(self._title)
-        self.column.addWidget(self.chooser)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
-
-    def name(self, letter: str) -> None:
-        self._title.setText(tr("Next condition: {letter}").format(letter=letter) if letter else tr("Next condition"))
 
 
 def _next_letter(rows: tuple[WalkRow, ...]) -> str:

@@ -44,7 +44,10 @@ class TileState(Enum):
 
 @dataclass(frozen=True, slots=True)
 class SensorTile:
-    """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1."""
+    """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1.
+
+    `is_awaited`: none is known to be worn here, and the free motion is still to tell.
+    """
 
     site: Site
     name: str
@@ -54,6 +57,7 @@ class SensorTile:
     silent_s: float
     is_moving: bool
     is_worn: bool
+    is_awaited: bool = False
 
     @property
     def state(self) -> TileState:
@@ -77,7 +81,7 @@ class SensorTile:
         """What its tile says under the name."""
         match self.state:
             case TileState.NOT_WORN:
-                return tr("not used")
+                return tr("found later") if self.is_awaited else tr("not used")
             case TileState.SILENT:
                 return tr("silent {seconds} s").format(seconds=int(self.silent_s))
             case TileState.LOSS:

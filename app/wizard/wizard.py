@@ -1,6 +1,7 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
 from uuid import UUID
 
@@ -235,7 +236,8 @@ class Wizard(QWidget):
             return
         self.shell.header.show_elapsed(visit.elapsed_s)
         status, worn = visit.sensors.status, visit.sensors.sensor_at
-        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status) for site in Site})
+        is_awaited = visit.sensors.is_left_to_motion and not worn
+        self.shell.strip.show_tiles({site: _tile(site, worn.get(site), status, is_awaited) for site in Site})
 
     def _tell(self, what: str, then: str) -> None:
         if what:
@@ -389,9 +391,10 @@ _STRIP = {
 }
 
 
-def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]") -> SensorTile:
+def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", is_awaited: bool = False) -> SensorTile:
     if sensor is None or sensor not in status:
-        return SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
+        nothing = SensorTile(site, sensor or "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)
+        return replace(nothing, is_awaited=is_awaited)
     heard = status[sensor]
     return SensorTile(
         site,

@@ -17,7 +17,15 @@ from app.wizard.keys import Action, Intent
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.steps.step import Step
 from app.wizard.walk_labels import label_after, labels_for, letters_of
-from app.wording import name_of, tr
+from app.wizard.walk_messages import (
+    clock,
+    few_strides_message,
+    no_angles_message,
+    no_foot_message,
+    recovered_message,
+    slip_message,
+)
+from app.wording import tr
 from core.body import Joint, Side
 from core.live.walking import STRIDES_FOR_ANKLE
 from core.samples import Recording, RecordingKind
@@ -29,7 +37,6 @@ if TYPE_CHECKING:
     from app.wizard.visit import Visit
 
 STAND_STILL = 2  # the step that sensors strapped anew begin with
-STRIDES_FOR_SPREAD = 10
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
 LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second more
 
@@ -326,7 +333,11 @@ class WalkingStep(Step):
             sounds.play(Sound.LOSS)
             for site in news:
                 self._visit.takes.mark(f"{site} silent")
-        self.page.show_message(*self._message(acquisition.now_s))
+        message = self._message(acquisition.now_s)
+        if message == NOTHING and self._visit.takes.is_recording:
+            self.page.show_message(*no_foot_message(sensors.sensor_at), is_caution=False)
+        else:
+            self.page.show_message(*message)
 
     def _message(self, now_s: float) -> Message:
         """Give the gravest of what is to be said."""
@@ -337,35 +348,20 @@ class WalkingStep(Step):
             if message != NOTHING:
                 return message
         if is_recording:
-            return self._slip_message()
-        return self._recovered_message() or self._few_strides_message()
+            return self._message_of_ongoing()
+        asked = self._asked
+        if asked is not None and asked.stored.state is RecordingState.RECOVERED:
+            return recovered_message(asked.told.name, _length_s(asked))
+        return self._few_strides_message()
 
-    def _slip_message(self) -> Message:
-        ongoing, view = self._visit.takes.ongoing, self._shown
+    def _message_of_ongoing(self) -> Message:
+        ongoing, view, sensors = self._visit.takes.ongoing, self._shown, self._visit.sensors
         if ongoing is None or view is None:
             return NOTHING
-        slips = [slip for slip in view.slips if slip.from_s > ongoing.began_s]
-        if not slips:
-            if not view.joints and self._visit.sensors.joints:
-                return tr("Angles are not shown yet."), tr("They come after five strides of each leg.")
-            return NOTHING
-        slip = slips[-1]
-        what = tr("The {site} strap slipped at {time}.").format(
-            site=name_of(slip.site), time=_clock(slip.from_s - ongoing.began_s)
-        )
-        left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
-        right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
-        return what, left if slip.site.side is Side.LEFT else right
-
-    def _recovered_message(self) -> Message | None:
-        asked = self._asked
-        if asked is None or asked.stored.state is not RecordingState.RECOVERED:
-            return None
-        recovered = tr("{time} of {walk} was recovered up to the last 0.1 s. Look at it, then keep or discard.")
-        return (
-            tr("The program was closed while recording."),
-            recovered.format(time=_clock(_length_s(asked)), walk=asked.told.name),
-        )
+        message = slip_message(view.slips, ongoing.began_s)
+        if message == NOTHING and not view.joints and sensors.joints:
+            return no_angles_message(sensors.sensor_at)
+        return message
 
     def _few_strides_message(self) -> Message:
         """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
@@ -378,16 +374,7 @@ class WalkingStep(Step):
             if take.told.condition == condition:
                 for side, count in self._strides_of(take).items():
                     counts[side] = counts.get(side, 0) + count
-        left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
-        if min(left, right) >= STRIDES_FOR_SPREAD:
-            return NOTHING
-        said = tr("Only {left} left and {right} right strides, {wanted} make a spread.")
-        if left >= STRIDES_FOR_SPREAD:
-            said = tr("Only {right} right strides, {wanted} make a spread.")
-        elif right >= STRIDES_FOR_SPREAD:
-            said = tr("Only {left} left strides, {wanted} make a spread.")
-        what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
-        return what, tr("Walk once more, or go on without a spread.")
+        return few_strides_message(counts)
 
     # what is shown
 
@@ -450,7 +437,7 @@ class WalkingStep(Step):
         cadence = self._at_stop.cadence_steps_min if self._at_stop is not None and not take.is_decided else None
         if cadence is not None and math.isfinite(cadence):
             said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
-        said.append(_clock(_length_s(take)))
+        said.append(clock(_length_s(take)))
         return " · ".join(said)
 
     # what the page and the visit tell
@@ -496,10 +483,6 @@ class WalkingStep(Step):
 
 
 _LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
-
-
-def _clock(seconds: float) -> str:
-    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
 
 
 def _length_s(take: "Take") -> float:

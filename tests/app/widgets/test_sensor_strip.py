@@ -1,5 +1,7 @@
 """The strip of sensors: its states, its words, how often it paints, and the button it folds into."""
 
+from dataclasses import replace
+
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPaintEvent
@@ -37,6 +39,7 @@ STATES = [
     (tile(lost_share=0.01), TileState.FINE, "100 Hz · 1.0 % lost"),
     (tile(silent_s=3.4, lost_share=0.2, battery=0.05), TileState.SILENT, "silent 3 s"),
     (tile(silent_s=9.0, is_worn=False), TileState.NOT_WORN, "not used"),
+    (replace(tile(is_worn=False), is_awaited=True), TileState.NOT_WORN, "found later"),
 ]
 
 

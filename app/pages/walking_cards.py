@@ -1,0 +1,204 @@
+"""What stands beside and between the live curves: strides and cadence, the walk just stopped, and the one to come."""
+
+import math
+from collections.abc import Mapping
+
+from PySide6.QtCore import QSize, Qt
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
+
+from app.pages.label_chooser import LabelChooser
+from app.pages.walk_list import WalkRow, WalkState
+from app.pages.walking_charts import Hairline
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.chip import Chip
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr, tr_n
+from core.body import Side
+
+FIGURE = 60
+UNDER_FIGURES = 0.14  # of their size lies below the line that the unit shares
+NO_FIGURE = "\N{EN DASH}"
+ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBottom
+
+
+class WalkFigures(Card):
+    """Strides and cadence, to be read from across the room."""
+
+    def __init__(self, look: Look) -> None:
+        self._strides = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
+        self._cadence = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
+        self._counts = {side: Text(look, "0", size=18, weight=MEDIUM) for side in Side}
+        self._chips = {side: Chip(look, side) for side in Side}
+        self._line = Hairline(look)
+        self._unit = Text(look, tr("steps/min"), size=14, tone="ink2")
+        self._stride_row, self._cadence_row, self._sides = QHBoxLayout(), QHBoxLayout(), QBoxLayout(DOWN)
+        self._both = QBoxLayout(DOWN)
+        self._pairs: list[QHBoxLayout] = []
+        self._parts: list[QBoxLayout] = []
+        self.in_words = ""
+        super().__init__(look, spacing=0)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        for side in Side:
+            pair = QHBoxLayout()
+            pair.addWidget(self._chips[side])
+            pair.addWidget(self._counts[side])
+            self._pairs.append(pair)
+            self._sides.addLayout(pair)
+        self._stride_row.addWidget(self._strides)
+        self._stride_row.addStretch(1)
+        self._stride_row.addLayout(self._sides)
+        self._cadence_row.addWidget(self._cadence)
+        self._cadence_row.addWidget(self._unit, 0, Qt.AlignmentFlag.AlignBottom)
+        self._cadence_row.addStretch(1)
+        for title, row in ((tr("Strides"), self._stride_row), (tr("Cadence"), self._cadence_row)):
+            part = QBoxLayout(DOWN)
+            part.addWidget(Text(look, title, size=14, tone="ink2"))
+            part.addLayout(row)
+            self._parts.append(part)
+        self._both.addLayout(self._parts[0], 1)
+        self._both.addWidget(self._line)
+        self._both.addLayout(self._parts[1], 1)
+        self.column.addLayout(self._both)
+        self._on_look_changed()
+
+    def show_figures(self, strides: Mapping[Side, int], cadence_steps_min: float) -> None:
+        shown = str(max(strides.values())) if strides else NO_FIGURE
+        cadence = f"{cadence_steps_min:.0f}" if math.isfinite(cadence_steps_min) else NO_FIGURE
+        for label, text in ((self._strides, shown), (self._cadence, cadence)):
+            if label.text() != text:
+                label.setText(text)
+        for side in Side:
+            self._chips[side].setVisible(side in strides)
+            self._counts[side].setVisible(side in strides)
+            count = str(strides.get(side, 0))
+            if self._counts[side].text() != count:
+                self._counts[side].setText(count)
+        said = [tr("{count} strides.").format(count=shown)] if strides else []
+        words = {Side.LEFT: tr("Left {count}."), Side.RIGHT: tr("Right {count}.")}
+        said += [words[side].format(count=strides[side]) for side in Side if side in strides]
+        if math.isfinite(cadence_steps_min):
+            said.append(tr("Cadence {cadence} steps per minute.").format(cadence=cadence))
+        self.in_words = " ".join(said)
+
+    def set_size(self, size: float) -> None:
+        self._strides.set_size(size)
+        self._cadence.set_size(size)
+        self._reserve_room()
+        self._unit.setContentsMargins(0, 0, 0, self._look.theme.px(size * UNDER_FIGURES))
+
+    def set_compact(self, is_compact: bool, is_narrow: bool) -> None:
+        """Stand in one line; where it is narrow, with the words above the figures."""
+        self._both.setDirection(ACROSS if is_compact else DOWN)
+        self._sides.setDirection(ACROSS if is_compact else DOWN)
+        for part in self._parts:
+            part.setDirection(ACROSS if is_compact and not is_narrow else DOWN)
+        self._line.setVisible(not is_compact)
+        self._padding = 8.0 if is_compact else 16.0
+        self._on_look_changed()
+
+    def _reserve_room(self) -> None:
+        """As wide as the figures get, so that nothing jumps."""
+        for label in (self._strides, self._cadence):
+            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
+        for label in self._counts.values():
+            label.setMinimumWidth(label.fontMetrics().horizontalAdvance("000"))
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        px = self._look.theme.px
+        for row in (self._stride_row, self._cadence_row, *self._pairs):
+            row.setSpacing(px(8))
+        self._sides.setSpacing(px(8))
+        self._both.setSpacing(px(32) if self._both.direction() is ACROSS else px(4))
+        for part in self._parts:
+            part.setSpacing(px(12) if part.direction() is ACROSS else 0)
+        self._reserve_room()
+
+
+class StoppedCard(Card):
+    """What was just recorded, and the one question about it."""
+
+    def __init__(self, look: Look) -> None:
+        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self._facts = Text(look, size=14, tone="ink2", wraps=True)
+        self.keep = Button(look, "", Kind.PRIMARY, key="K")
+        self.discard = Button(look, tr("Discard"), Kind.SECONDARY, key="D")
+        self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
+        super().__init__(look)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        words = QVBoxLayout()
+        words.setSpacing(0)
+        words.addWidget(self._title)
+        words.addWidget(self._facts)
+        self._row.addLayout(words, 1)
+        self._verbs.addStretch(1)
+        self._verbs.addWidget(self.discard)
+        self._verbs.addWidget(self.keep)
+        self._row.addLayout(self._verbs)
+        self.column.addLayout(self._row)
+
+    def show_walk(self, walk: WalkRow | None, facts: str) -> None:
+        if walk is None:
+            return
+        is_recovered = walk.state is WalkState.RECOVERED
+        title = tr("{label}: recovered") if is_recovered else tr("{label}: stopped")
+        self._title.setText(title.format(label=f"{walk.letter}  {walk.label}"))
+        self._facts.setText(facts)
+        self._facts.setVisible(bool(facts))
+        keep = tr("Keep walk")
+        if walk.strides:
+            keep = tr_n("Keep {count} stride", "Keep {count} strides", walk.strides).format(count=walk.strides)
+        self.keep.setText(keep)
+        self.keep.setAccessibleName(keep)
+        self.keep.updateGeometry()
+
+    def set_narrow(self, is_narrow: bool) -> None:
+        """Put the buttons below the words where the width is too small for both."""
+        self._row.setDirection(DOWN if is_narrow else ACROSS)
+
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
+        for row in (self._row, self._verbs):
+            row.setSpacing(self._look.theme.px(12))
+
+
+class EmptyCard(Card):
+    """Before the first walk: what to do, and why to stand a moment."""
+
+    def __init__(self, look: Look) -> None:
+        self._what = Text(look, tr("Choose a label, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
+        self._then = Text(
+            look,
+            tr("Two seconds of standing first make the ankle's line right from the start."),
+            size=16,
+            tone="ink2",
+            wraps=True,
+        )
+        super().__init__(look)
+        self.setAccessibleName(f"{self._what.text()} {self._then.text()}")
+        for text in (self._what, self._then):
+            text.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self.column.addStretch(1)
+        self.column.addWidget(self._what)
+        self.column.addWidget(self._then)
+        self.column.addStretch(1)
+
+
+class NextCard(Card):
+    """What the next walk is called, beside the button that starts it."""
+
+    def __init__(self, look: Look) -> None:
+        self._title = Text(look, size=14, weight=MEDIUM, tone="ink2")
+        self.chooser = LabelChooser(look)
+        super().__init__(look)
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self.chooser)
+
+    def sizeHint(self) -> QSize:
+        return self.minimumSizeHint()
+
+    def name(self, letter: str) -> None:
+        self._title.setText(tr("Next condition: {letter}").format(letter=letter) if letter else tr("Next condition"))

@@ -1,0 +1,70 @@
+"""What is to be said of a walk, while it goes on and once it has stopped, apart from sensors that fall silent."""
+
+from collections.abc import Collection, Mapping, Sequence
+
+from app.wizard.losses import NOTHING, Message
+from app.wording import name_of, tr
+from core.body import Segment, Side, Site
+from core.strap import Slip
+
+STRIDES_FOR_SPREAD = 10
+
+
+def slip_message(slips: Sequence[Slip], began_s: float) -> Message:
+    """Tell of the latest strap that slipped since the walk began."""
+    since = [slip for slip in slips if slip.from_s > began_s]
+    if not since:
+        return NOTHING
+    slip = since[-1]
+    what = tr("The {site} strap slipped at {time}.").format(site=name_of(slip.site), time=clock(slip.from_s - began_s))
+    left = tr("Strides after it are left out; tighten it and repeat free motion for the left leg.")
+    right = tr("Strides after it are left out; tighten it and repeat free motion for the right leg.")
+    return what, left if slip.site.side is Side.LEFT else right
+
+
+def no_angles_message(worn: Collection[Site]) -> Message:
+    """Say when the angles come that were not known when the walk began."""
+    then = tr("They come after five strides of each leg.")
+    if not any(site.segment is Segment.FOOT for site in worn):
+        then = tr("They come once the walk is stopped.")  # nothing counts strides before
+    return tr("Angles are not shown yet."), then
+
+
+def no_foot_message(worn: Collection[Site]) -> Message:
+    """Say why strides of a leg are not counted, nor its phases shown, while it walks."""
+    blind = [
+        side for side in Side if Site(f"{side}_{Segment.SHANK}") in worn and Site(f"{side}_{Segment.FOOT}") not in worn
+    ]
+    if not blind:
+        return NOTHING
+    what = tr("No foot sensors: strides are counted after the walk.")
+    if blind == [Side.LEFT]:
+        what = tr("No left foot sensor: left strides are counted after the walk.")
+    elif blind == [Side.RIGHT]:
+        what = tr("No right foot sensor: right strides are counted after the walk.")
+    return what, tr("Steps come from the shank. It will be printed.")
+
+
+def recovered_message(walk: str, seconds: float) -> Message:
+    recovered = tr("{time} of {walk} was recovered up to the last 0.1 s. Look at it, then keep or discard.")
+    return tr("The program was closed while recording."), recovered.format(time=clock(seconds), walk=walk)
+
+
+def few_strides_message(counts: Mapping[Side, int]) -> Message:
+    """Say what one condition's walks are short of a spread together; a side without a count is not asked for."""
+    left, right = (counts.get(side, STRIDES_FOR_SPREAD) for side in Side)
+    if min(left, right) >= STRIDES_FOR_SPREAD:
+        return NOTHING
+    said = tr("Only {left} left and {right} right strides, {wanted} make a spread.")
+    if left >= STRIDES_FOR_SPREAD:
+        said = tr("Only {right} right strides, {wanted} make a spread.")
+    elif right >= STRIDES_FOR_SPREAD:
+        said = tr("Only {left} left strides, {wanted} make a spread.")
+    what = said.format(left=left, right=right, wanted=STRIDES_FOR_SPREAD)
+    return what, tr("Walk once more, or go on without a spread.")
+
+
+def clock(seconds: float) -> str:
+    """ "0:41" """
+    minutes, rest = divmod(max(0, int(seconds)), 60)
+    return f"{minutes}:{rest:02d}"

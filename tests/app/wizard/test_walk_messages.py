@@ -1,0 +1,65 @@
+"""What is said of a walk: what is not counted for want of a sensor, when its angles come, and what it lacks."""
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.theme import Look
+from app.wizard.losses import NOTHING
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.visit import Visit
+from app.wizard.walk_messages import clock, few_strides_message, no_angles_message, no_foot_message
+from core.body import Side, Site
+from core.samples import RecordingKind
+from tests.app.wizard.test_visit import begin, record
+
+FEET = frozenset((Site.LEFT_FOOT, Site.RIGHT_FOOT))
+ALL = frozenset(Site)
+
+
+@pytest.mark.parametrize(
+    ("worn", "said"),
+    [
+        (ALL, ""),
+        (ALL - FEET, "No foot sensors: strides are counted after the walk."),
+        (ALL - {Site.LEFT_FOOT}, "No left foot sensor: left strides are counted after the walk."),
+        ({Site.RIGHT_THIGH, Site.RIGHT_SHANK}, "No right foot sensor: right strides are counted after the walk."),
+        ({Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT}, ""),  # nobody asks for a leg that wears none
+    ],
+)
+def test_strides_that_are_not_counted_live_are_told(worn: frozenset[Site], said: str) -> None:
+    assert no_foot_message(worn)[0] == said
+
+
+def test_angles_are_promised_for_when_they_come() -> None:
+    assert "five strides" in no_angles_message(ALL)[1]
+    assert "once the walk is stopped" in no_angles_message(ALL - FEET)[1]
+
+
+def test_only_what_is_short_of_a_spread_is_told() -> None:
+    assert few_strides_message({Side.LEFT: 12}) == NOTHING
+    assert few_strides_message({Side.LEFT: 12, Side.RIGHT: 4})[0] == "Only 4 right strides, 10 make a spread."
+    assert few_strides_message({Side.LEFT: 9})[0] == "Only 9 left strides, 10 make a spread."
+
+
+def test_a_clock_shows_minutes_and_no_negative_time() -> None:
+    assert (clock(41.9), clock(605.0), clock(-3.0)) == ("0:41", "10:05", "0:00")
+
+
+def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(visit, "evaluate", lambda: None)
+    begin(qtbot, visit, worn)
+    visit.sensors.assign_all({name: site for name, site in worn.items() if site not in FEET})
+    for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION):
+        record(qtbot, visit, kind, 0.5)
+    step = WalkingStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.enter()
+    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+        step.on_primary()
+    step.tick()
+    assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
+    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+        step.on_primary()
+    step.leave()
