@@ -167,6 +167,7 @@ SENTENCES = {
         "all strides found ({count}) were left out, most of them {reason}, so there are no averages. Put that right "
         "and record the walk again."
     ),
+    "strides_left_out_by_hand": "{count} of {of} {side} strides left out by hand.",
     "no_mean": (
         "usable strides on the {side}: {count}; {wanted} make a mean. Walk once more, or read single strides only."
     ),
@@ -225,6 +226,7 @@ NAMES = {
         "stop": "stopping",
         "outlier": "unlike the others",
         "strap_slipped": "after a strap slipped",
+        "left_out_by_hand": "left out by hand",
     },
     "peak": {
         "knee_loading_peak": "loading peak",

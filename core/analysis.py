@@ -12,6 +12,7 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
+from core.chosen_strides import leave_out
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
@@ -114,7 +115,7 @@ def analyse(
     findings += about_missing_joints(session, quality.unusable, recordings)
     findings += about_prosthesis(recordings, session.patient)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
-    return Analysis(
+    whole = Analysis(
         method=method,
         is_simulated=session.is_simulated,
         calibrations=tuple(calibrations),
@@ -122,6 +123,7 @@ def analyse(
         findings=tuple(unique.values()),
         affected_side=_affected_side(session.patient),
     )
+    return leave_out(whole, session.recordings)
 
 
 def _affected_side(patient: Patient) -> Side | None:

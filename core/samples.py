@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Finding
 
 # any precision: NumPy's operators on float64 are typed so
@@ -118,6 +118,8 @@ class Recording:
     """All sensors from one start to one stop.
 
     `imu` says which site each block of samples was worn at; the sites share one clock up to a small lag.
+    `left_out_s` holds, for each side, one time inside of each stride that a person has left out, ascending, seconds on
+    the recording's clock: a time goes on naming the same stride when its events are found a little earlier or later.
     """
 
     name: str
@@ -129,6 +131,7 @@ class Recording:
     is_kept: bool = True
     note: str = ""
     is_restrapped_before: bool = False
+    left_out_s: Mapping[Side, tuple[float, ...]] = field(default_factory=dict)
     unknown: Mapping[str, object] = field(default_factory=dict)
 
     def holds(self, *sites: Site) -> bool:

@@ -11,7 +11,7 @@ from app.storage.corrections import apply, differences
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
 from app.storage.database.models import JournalRow, RecordingRow, SessionRow
-from app.storage.database.values import RECORDING_FIELDS, stored_recording
+from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
 from app.storage.desk import Desk
 from app.storage.stored import (
     Action,
@@ -60,6 +60,7 @@ class Recordings:
                 number=max((other.number for other in visit.recordings), default=0) + 1,
                 is_simulated=is_simulated,
                 state=RecordingState.OPEN,
+                left_out=left_out_in_row(told.left_out_s),
                 **{name: getattr(told, name) for name in RECORDING_FIELDS},
             )
             session.add(row)
@@ -139,7 +140,7 @@ class Recordings:
             note(self._desk, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def change(self, recording: StoredRecording, told: Recording) -> StoredRecording:
-        """Correct what was told of a recording: condition, kept, re-strapped and so on; undone from the history.
+        """Correct what was told of a recording: condition, kept, strides left out and so on; undone from the history.
 
         Raises
         ------
@@ -153,7 +154,8 @@ class Recordings:
             visit = session.get_one(SessionRow, row.session_id)
             if told.name != row.name:
                 _refuse_taken(visit, told.name)
-            changes = differences(row, {name: getattr(told, name) for name in CORRECTABLE})
+            wanted = {name: getattr(told, name) for name in CORRECTABLE}
+            changes = differences(row, wanted | {"left_out": left_out_in_row(told.left_out_s)})
             apply(self._desk, session, changes, visit.patient_id, visit.id)
             session.flush()
             return stored_recording(row)

@@ -34,6 +34,7 @@ class Reason(StrEnum):
     STOP = "stop"
     OUTLIER = "outlier"
     SLIPPED = "strap_slipped"
+    BY_HAND = "left_out_by_hand"
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,9 +75,17 @@ class Strides:
     def speed_m_s(self) -> FloatArray:
         return self.length_m / self.time_s
 
+    def left_out_at(self, times_s: Sequence[float]) -> "Strides":
+        """The same strides; those used so far in which one of the times lies are left out by hand."""
+        at = np.asarray(times_s, dtype=np.float64)[:, None]
+        is_meant = ((self.start_s <= at) & (at < self.end_s)).any(axis=0)
+        return self._without(self.is_used & is_meant, Reason.BY_HAND)
+
     def left_out_from(self, time_s: float, reason: Reason) -> "Strides":
         """The same strides; those used so far that end after `time_s` are left out."""
-        is_out = self.is_used & (self.end_s > time_s)
+        return self._without(self.is_used & (self.end_s > time_s), reason)
+
+    def _without(self, is_out: BoolArray, reason: Reason) -> "Strides":
         return replace(self, reason=tuple(reason if out else r for out, r in zip(is_out, self.reason, strict=True)))
 
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import tomli_w
 
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files.refusal import FileRefusedError, quoted
@@ -110,6 +110,19 @@ def _site_list(value: object) -> frozenset[Site]:
     """Where rates were derived; empty when the key holds something else, which is then unknown."""
     is_ours = isinstance(value, list) and all(site in list(Site) for site in value)
     return frozenset(Site(site) for site in value) if isinstance(value, list) and is_ours else frozenset()
+
+
+def _left_out(value: object) -> dict[Side, tuple[float, ...]]:
+    """Which strides were left out by hand; empty when the key holds something else, which is then unknown."""
+    if not isinstance(value, dict) or not set(value) <= set(Side):
+        return {}
+    if not all(isinstance(times, list) and all(_is_time(one) for one in times) for times in value.values()):
+        return {}
+    return {Side(side): tuple(sorted(float(one) for one in times)) for side, times in value.items() if times}
+
+
+def _is_time(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
 
 
 # Key in the file -> name of the attribute and check. The order is the order of writing.
@@ -272,7 +285,9 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         rates_derived = _site_list(unknown.get("rates_derived"))
         unknown = {key: value for key, value in unknown.items() if not (key == "sensors" and sensors)}
         unknown = {key: value for key, value in unknown.items() if not (key == "rates_derived" and rates_derived)}
-        recording = Recording(imu={}, unknown=unknown, **values)
+        left_out_s = _left_out(unknown.get("strides_left_out"))
+        unknown = {key: value for key, value in unknown.items() if not (key == "strides_left_out" and left_out_s)}
+        recording = Recording(imu={}, left_out_s=left_out_s, unknown=unknown, **values)
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):
                 if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
@@ -326,6 +341,9 @@ def _render_plan(plan: Plan) -> dict[str, object]:
         table["sensors"] = {site.value: plan.sensors[site] for site in Site if site in plan.sensors}
     if plan.rates_derived:
         table["rates_derived"] = [site.value for site in Site if site in plan.rates_derived]
+    left_out_s = plan.recording.left_out_s
+    if any(left_out_s.values()):
+        table["strides_left_out"] = {side.value: list(left_out_s[side]) for side in Side if left_out_s.get(side)}
     return table | dict(plan.recording.unknown)
 
 

@@ -213,7 +213,10 @@ class PlacedSensorRow(Base):
 
 
 class RecordingRow(Versioned, Base):
-    """`judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then."""
+    """`judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then.
+
+    `left_out`: the strides that were left out by hand, as `values` writes them.
+    """
 
     __tablename__ = "recordings"
     __table_args__ = (UniqueConstraint("session_id", "number"), UniqueConstraint("session_id", "name"))
@@ -230,6 +233,7 @@ class RecordingRow(Versioned, Base):
     is_kept: Mapped[bool]
     note: Mapped[str]
     is_restrapped_before: Mapped[bool]
+    left_out: Mapped[str] = mapped_column(default="", server_default="")
     is_simulated: Mapped[bool]
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
     judged_by: Mapped[str] = mapped_column(default="", server_default="")

@@ -1,5 +1,7 @@
 """How do rows become the plain values that leave `app.storage`?"""
 
+import json
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 
 from sqlalchemy import ColumnElement, func, select
@@ -17,13 +19,13 @@ from app.storage.stored import (
     StoredResult,
     StoredSession,
 )
-from core.body import Site
+from core.body import Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, Recording, SensorInfo, Session
 
 PATIENT_FIELDS = tuple(field.name for field in fields(Patient))
 SENSOR_FIELDS = tuple(field.name for field in fields(SensorInfo))
-RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name != "imu")
+RECORDING_FIELDS = tuple(field.name for field in fields(Recording) if field.name not in ("imu", "left_out_s"))
 SESSION_FIELDS = ("started", "operator", "surface", "notes", "software", "is_simulated", "unknown")
 
 
@@ -67,13 +69,26 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
         row.id,
         row.version,
         row.session_id,
-        Recording(imu={}, **{name: getattr(row, name) for name in RECORDING_FIELDS}),
+        Recording(
+            imu={}, left_out_s=left_out_of(row.left_out), **{name: getattr(row, name) for name in RECORDING_FIELDS}
+        ),
         row.state,
         row.is_simulated,
         placement_of(row.placement) if row.placement is not None else None,
         tuple(StoredJournal(j.segment, j.file, j.wrapped_key, j.sha256) for j in row.journals),
         row.judged_by,
     )
+
+
+def left_out_in_row(left_out_s: Mapping[Side, Sequence[float]]) -> str:
+    """Which strides were left out, as the row and its history hold it; empty where none was."""
+    named = {side.value: sorted(left_out_s[side]) for side in Side if left_out_s.get(side)}
+    return json.dumps(named, separators=(",", ":")) if named else ""
+
+
+def left_out_of(in_row: str) -> dict[Side, tuple[float, ...]]:
+    """What `left_out_in_row` was given."""
+    return {Side(side): tuple(times_s) for side, times_s in json.loads(in_row or "{}").items()}
 
 
 def stored_session(row: SessionRow) -> StoredSession:

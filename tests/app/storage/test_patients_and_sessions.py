@@ -27,7 +27,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.samples import Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 
@@ -335,10 +335,19 @@ def test_recordings_of_one_session_have_names_of_their_own(
 
 
 def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Library, walk: StoredRecording) -> None:
-    told = replace(WALK, condition="barefoot", is_kept=False, kind=RecordingKind.FREE_MOTION, is_restrapped_before=True)
+    told = replace(
+        WALK,
+        condition="barefoot",
+        is_kept=False,
+        kind=RecordingKind.FREE_MOTION,
+        is_restrapped_before=True,
+        left_out_s={Side.LEFT: (1 / 3, 7.25), Side.RIGHT: (4.0,)},
+    )
     changed = library.recordings.change(walk, told)
     assert changed.told == told
     (correction,) = library.corrections.of_session(walk.session_id)
+    assert "left_out" in {change.field for change in correction.changes}
+    assert "left_out" in library.audit.entries(f"session:{walk.session_id}")[-1].details
     library.corrections.undo(correction.id)
     found = library.recordings.find(walk.id)
     assert found is not None

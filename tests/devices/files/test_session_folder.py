@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Severity
 from core.samples import ImuBlock, Patient, RateKind, Recording, RecordingKind, SensorInfo, Session
 from devices.files import session_folder, site_files
@@ -205,6 +205,7 @@ folder = "walk_1"
 speed = "slow"
 sensors = 6
 rates_derived = ["hip"]
+strides_left_out = {left = [3.5, "late"]}
 """
 
 
@@ -223,6 +224,7 @@ def test_unknown_keys_are_told_and_survive(make_session: MakeSession, tmp_path: 
             ("unknown_key", "walk 1", "speed"),
             ("unknown_key", "walk 1", "sensors"),
             ("unknown_key", "walk 1", "rates_derived"),
+            ("unknown_key", "walk 1", "strides_left_out"),
         ]
     )
     grave = {f.where for f in session.findings if f.severity is not Severity.INFO}
@@ -423,6 +425,7 @@ def blocks(draw: st.DrawFn) -> ImuBlock:
 
 @st.composite
 def sessions(draw: st.DrawFn) -> Session:
+    times = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=3).map(sorted).map(tuple)
     folders = draw(st.lists(st.sampled_from(["standing", "walk_1", "a/b", "ünì 2"]), min_size=1, unique=True))
     recordings = tuple(
         Recording(
@@ -434,6 +437,7 @@ def sessions(draw: st.DrawFn) -> Session:
             is_kept=draw(st.booleans()),
             note=draw(st.text(max_size=9).filter(str.isprintable)),
             is_restrapped_before=draw(st.booleans()),
+            left_out_s=draw(st.dictionaries(st.sampled_from(Side), times)),
         )
         for folder in folders
     )
