@@ -15,6 +15,7 @@ from core.samples import FloatArray
 
 ROWS_PER_BLOCK = 100_000  # some 20 MB of table: ten hours pass through without ever being in memory as text
 DECIMALS = 5
+FORMULA = ("=", "+", "-", "@")
 DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns needs 14
 
 
@@ -46,8 +47,13 @@ def write_table(header: Sequence[str], rows: Iterable[Sequence[str]], path: Path
     OSError
         The file cannot be written.
     """
-    with path.open("w", encoding="utf-8", newline="") as file:
+    with path.open("w", encoding="utf-8", errors="backslashreplace", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([header, *rows])
+
+
+def typed_cell(text: str) -> str:
+    """What somebody typed, as a cell that no spreadsheet works out: where it begins as a formula, ' goes before it."""
+    return f"'{text}" if text.lstrip().startswith(FORMULA) or text.startswith(("\t", "\r", "\n")) else text
 
 
 def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:

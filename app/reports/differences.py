@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, SideRow, conditions_of
-from app.reports.csv_report import write_table
+from app.reports.csv_report import typed_cell, write_table
 from app.reports.gait_csv import PARAMETERS
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
@@ -161,11 +161,10 @@ def _of_both(part: Part, against: Part) -> Iterator[Row]:
 
 
 def _cells(row: Row) -> list[str]:
-    parts = [
-        cell
-        for part in (row.part, row.against)
-        for cell in (part.letter, part.name, "; ".join(w.name for w in part.walks))
-    ]
+    parts = []
+    for part in (row.part, row.against):
+        walks = "; ".join(walk.name for walk in part.walks)
+        parts += [part.letter, typed_cell(part.name), typed_cell(walks)]
     side = "both" if row.side is None else str(row.side)
     judged = [_cell(row.difference), _cell(row.error), row.verdict]
     return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged]

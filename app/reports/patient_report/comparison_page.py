@@ -92,9 +92,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
 def _legend_entry(comparison: Comparison, k: int) -> tuple[Picture, str]:
     looks = [(side, *panels.condition_look(k, len(comparison.parts), side)) for side in comparison.sides]
     part = comparison.parts[k]
-    strides = ", ".join(f"{side[0].upper()}\u00a0{part.strides(side)}" for side in part.sides)
-    said = tr("{name}: {strides} strides").format(name=typed(part.name, CONDITION_LENGTH), strides=strides)
-    return panels.pair_swatch(part.letter, looks), said
+    return panels.pair_swatch(part.letter, looks), typed(part.name, CONDITION_LENGTH)
 
 
 def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Picture:
@@ -164,7 +162,8 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
             columns += [Column(f"{part.letter} − {first.letter}"), Column(against, is_number=False)]
     rows: list[Row] = []
     for side in sides:
-        rows.append(role(shown, side))
+        counts = ", ".join(f"{part.letter}\u00a0{part.strides(side)}" for part in comparison.parts)
+        rows.append(tr("{side}: strides {counts}").format(side=role(shown, side), counts=counts))
         for measure in MEASURES:
             joint = measure.joint(side)
             if joint is None or joint in comparison.joints:

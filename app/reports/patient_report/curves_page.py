@@ -16,7 +16,7 @@ PLOT_WIDTH = 112 * MM
 def curves_page(facts: Facts, condition: str) -> list[Block]:
     counts = {side[0].upper(): facts.strides(side) for side in facts.gait}
     said = [
-        tr("{condition}. Mean over strides, {counts}; each leg on its own stride.").format(
+        tr("Shown: {condition}. Mean over strides, {counts}; each leg on its own stride.").format(
             condition=condition, counts=", ".join(f"{letter} n = {n}" for letter, n in counts.items())
         ),
         tr("Axes are the same in every report."),

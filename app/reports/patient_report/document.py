@@ -99,7 +99,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "brand": "Gaitwright",
             "kind": tr("Gait report"),
             "simulated": tr("SIMULATED DATA, not a person") if facts.is_simulated else "",
-            "code": isolated(shortened(code, CODE_LENGTH)),
+            "code": isolated(shortened(code, CODE_LENGTH)) or tr("no patient code"),
             "date": recorded if session.started else "",
         },
         "foot": {

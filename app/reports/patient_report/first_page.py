@@ -35,6 +35,7 @@ def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
     side = patient.prosthetic_side if is_prosthetic else patient.affected_side
     height = f"{fixed(patient.height_m, 2)} m" if patient.height_m is not None else ""
     mass = f"{fixed(patient.mass_kg, 0)} kg" if patient.mass_kg is not None else ""
+    aids = tr("no aids") if patient.aids == "none" else patient.aids
     born = str(patient.birth_year) if patient.birth_year is not None else ""
     condition = request.visit.recording(facts.walk.name).condition or facts.walk.name
     return [
@@ -42,7 +43,10 @@ def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
         (tr("Birth year, sex"), typed(", ".join(filter(None, [born, _sex(patient.sex)])))),
         (tr("Height, mass"), typed(", ".join(filter(None, [height, mass])))),
         (tr("Prosthetic side") if is_prosthetic else tr("Affected side"), _side_in_words(side)),
-        (tr("Device, aids"), typed(", ".join(filter(None, [patient.device, patient.aids])))),
+        (
+            tr("Device, aids"),
+            typed(", ".join(filter(None, [patient.device, aids]))),
+        ),
         (tr("Surface"), typed(session.surface)),
         (tr("Condition shown"), typed(condition)),
         (tr("Recorded"), moment(request.visit.recording(facts.walk.name).started or session.started)),

@@ -54,21 +54,28 @@ def peaks_page(facts: Facts) -> list[Block]:
         Column(tr("Against the band"), "29mm", is_number=False),
     ]
     rows: list[Row] = []
+    has_score = False
     for kind in KINDS:
         if not facts.has_joint(kind):
             continue
         rows.append(tr("Knee (flexion +)") if kind == "knee" else tr("Ankle (dorsiflexion +)"))
-        rows += [_row(facts, column) for column in COLUMNS[kind]]
-        if facts.curves_group is not None and not facts.has_no_zero(kind):
+        has_zero = not facts.has_no_zero(kind)
+        # without a zero its height, which is all there is to tell at initial contact, says nothing
+        rows += [_row(facts, column) for column in COLUMNS[kind] if has_zero or "initial_contact" not in column]
+        if facts.curves_group is not None and has_zero:
             rows.append(_score_row(facts, kind))
+            has_score = True
     said = [
         tr(
             "Differences are formed before rounding; in words: against the measurement error between legs, {error}°."
         ).format(error=fixed(KNEE_NEW_ATTACHMENT_DEG, 1)),
         tr("For the ankle no such figure is known, so it is not judged."),
-        tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero."),
     ]
-    if facts.values_group is not None:
+    if has_score:
+        said.append(
+            tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero.")
+        )
+    if _is_beside_band_two(facts, "knee_swing_peak_deg"):
         said.append(tr("[2] marks what stands against band [2]."))
     if any(quality.is_weak_axis(facts, joint) for joint in facts.calibrated):
         said.append(tr("{mark}: the joint's axis is uncertain; read timing, not height.").format(mark=WEAK))
@@ -93,9 +100,13 @@ def measure(facts: Facts, column: str) -> str:
     if column.endswith("_range_deg"):
         return tr("Range over the stride")
     window = WINDOWS[column]
-    number = " [2]" if facts.is_band_two(column) else ""
+    number = " [2]" if _is_beside_band_two(facts, column) else ""
     name = capitalised(peak_name(column)).replace(", ", ",\n")  # else a line ends within the window
     return f"{name} ({window.first}–{window.last}\u00a0%){number}"
+
+
+def _is_beside_band_two(facts: Facts, column: str) -> bool:
+    return facts.is_band_two(column) and facts.has_joint("knee") and not facts.has_no_zero("knee")
 
 
 def _row(facts: Facts, column: str) -> list[Cell | str]:

@@ -2,7 +2,7 @@
 
 import math
 
-from app.reports.comparison import MEASURES, Comparison, Kind
+from app.reports.comparison import MEASURES, Compared, Comparison, Kind
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading
 from app.reports.patient_report.facts import Facts, joint_of, role
@@ -10,7 +10,7 @@ from app.reports.patient_report.first_page import symmetry_in_words
 from app.reports.patient_report.numbers_in_words import against_band, fixed, in_a_sentence, signed
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, plain, typed
 from app.reports.walk_figures import is_mean_enough
-from app.wording import capitalised, name_of, sentence, side_name, tr
+from app.wording import capitalised, name_of, sentence, tr
 from core.body import Side
 from core.norms import Verdict
 
@@ -45,35 +45,48 @@ def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
 
 
 def _comparison_sentences(facts: Facts, comparison: Comparison) -> list[str]:
-    """The knee's swing peak and range of the first side, the last part against the first."""
-    side = facts.first_and_second[0]
+    """The knee's swing peak of the first side, the last part against the first; then what differs most of all else.
+
+    Without a difference beyond the measurement error, the knee's range is told as second.
+    """
+    side, shown = facts.first_and_second[0], comparison.parts[-1]
+    measures = {measure.column: measure for measure in MEASURES}
+    swing, span = (
+        comparison.compare(measures[column], side, shown) for column in ("knee_swing_peak_deg", "knee_range_deg")
+    )
+    beyond = [row for row in comparison.rows if row.exceeds and not _is_of(row, swing)]
+    most = max(beyond, key=lambda row: abs(row.difference.difference_deg) / row.difference.error_deg, default=span)
+    return [_compared(facts, comparison, row) for row in (swing, most) if row.is_told]
+
+
+def _is_of(row: Compared, other: Compared) -> bool:
+    return (row.measure.column, row.side, row.part.letter) == (other.measure.column, other.side, other.part.letter)
+
+
+def _compared(facts: Facts, comparison: Comparison, row: Compared) -> str:
+    """One figure of one part, and how far it is from the first."""
     names = {
-        "knee_swing_peak_deg": tr("{side} knee in swing"),
-        "knee_range_deg": tr("{side} knee range over the stride"),
+        "knee_loading_peak_deg": tr("{side}, knee while loading"),
+        "knee_swing_peak_deg": tr("{side}, knee in swing"),
+        "knee_range_deg": tr("{side}, knee range over the stride"),
+        "ankle_stance_dorsiflexion_deg": tr("{side}, ankle dorsiflexion in stance"),
+        "ankle_push_off_plantarflexion_deg": tr("{side}, ankle at push\u2011off"),
+        "ankle_range_deg": tr("{side}, ankle range over the stride"),
+        "stance_percent": tr("{side}, stance, share of the stride"),
     }
-    said = []
-    for measure in MEASURES:
-        if measure.column not in names:
-            continue
-        compared = comparison.compare(measure, side, comparison.parts[-1])
-        if not compared.is_told:
-            continue
-        found = compared.difference
-        is_visits = comparison.kind is Kind.VISITS
-        since = tr("since the earlier visit {change}°") if is_visits else tr("{this} against {first} {change}°")
-        parts = {"this": compared.part, "first": compared.against}
-        said_of = {key: typed(part.name, CONDITION_LENGTH) for key, part in parts.items()}
-        error = f" ({fixed(found.error_deg, 1)}°)" if math.isfinite(found.error_deg) else ""
-        said.append(
-            tr("{measure}: {value}°; {change}: {verdict}{error}.").format(
-                measure=names[measure.column].format(side=capitalised(side_name(side))),
-                value=fixed(compared.value.mean, 0),
-                change=since.format(change=signed(found.difference_deg, 1), **said_of),
-                verdict=in_a_sentence(found.verdict),
-                error=error,
-            )
-        )
-    return said
+    is_angle = row.measure.unit == "°"
+    unit = "°" if is_angle else "\u00a0%"
+    is_visits = comparison.kind is Kind.VISITS
+    since = tr("since the earlier visit {change}") if is_visits else tr("{this} against {first} {change}")
+    named = {key: typed(part.name, CONDITION_LENGTH) for key, part in (("this", row.part), ("first", row.against))}
+    error = f" ({fixed(row.difference.error_deg, 1)}{unit})" if math.isfinite(row.difference.error_deg) else ""
+    return tr("{measure}: {value}; {change}: {verdict}{error}.").format(
+        measure=names[row.measure.column].format(side=role(facts, row.side)),
+        value=fixed(row.value.mean, 0 if is_angle else 1) + unit,
+        change=since.format(change=signed(row.difference.difference_deg, 1) + unit, **named),
+        verdict=in_a_sentence(row.difference.verdict),
+        error=error,
+    )
 
 
 def _knee_sentence(facts: Facts, side: Side) -> list[str]:

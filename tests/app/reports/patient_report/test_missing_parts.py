@@ -73,7 +73,7 @@ def test_without_a_zero_no_height_is_told(request_of_demonstration: ReportReques
     assert "Peak knee flexion in swing" not in pages[0]
     assert "degrees from the mean of the stride" in pages[1]
     assert "Band mean" not in pages[1]
-    assert "At initial contact – – – – – –" in pages[2]
+    assert "At initial contact" not in pages[2]
     assert "Knee range, degrees, every stride" in pages[3]
 
 
