@@ -249,7 +249,7 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         return pen
 
 
-def _runs(values: FloatArray) -> list[slice]:
+def runs(values: FloatArray) -> list[slice]:
     """Give the stretches without a gap."""
     known = np.concatenate([[False], np.isfinite(values), [False]]).astype(np.int8)
     borders = np.flatnonzero(np.diff(known))
@@ -262,7 +262,7 @@ def _polygon(x: FloatArray, y: FloatArray) -> QPolygonF:
 
 def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
     path = QPainterPath()
-    for run in _runs(values):
+    for run in runs(values):
         path.addPolygon(_polygon(time_s[run], values[run]))
     return path
 
@@ -270,7 +270,7 @@ def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
 def _band_paths(time_s: FloatArray, low: FloatArray, high: FloatArray, most: int) -> list[QPainterPath]:
     """Give the band in pieces of at most `most` points: the time to fill one grows with the square of its points."""
     paths = []
-    for run in _runs(low):
+    for run in runs(low):
         for first in range(run.start, max(run.stop - 1, run.start + 1), max(most, 1)):
             part = slice(first, min(first + most + 1, run.stop))  # pieces meet on one point
             path = QPainterPath()

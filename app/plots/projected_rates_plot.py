@@ -1,0 +1,146 @@
+"""Do the two axes of a joint point the same way? The turning beside the axis, as paired and with one axis reversed."""
+
+import numpy as np
+import pyqtgraph as pg
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.reports.how_found import parts_deg_s
+from app.theme import Look
+from app.widgets.painted_text import CENTRE, PaintedText
+from app.widgets.text import MEDIUM
+from app.wording import tr
+from core.body import Side
+from core.published.figures import ProjectedRates
+from core.samples import ComplexArray, FloatArray
+
+LEAST_PANEL, MOST_PANEL, BETWEEN = 150, 300, 16
+TITLE, SCALE = 44, 22
+CURVE_PX, OTHER_PX = 2.5, 1.25
+START = 4
+FOOT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom
+STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
+
+
+class ProjectedRatesPlot(QWidget):
+    """Two panels of one size and one scale."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._side = Side.LEFT
+        self._shown: ProjectedRates | None = None
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        look.changed.connect(self._on_look_changed)
+
+    def show_rates(self, shown: ProjectedRates | None, side: Side) -> None:
+        """Draw both pairings; None where no second showed them."""
+        self._shown, self._side = shown, side
+        self.setAccessibleName(tr("Turning beside the axis"))
+        self.setAccessibleDescription(". ".join(self._titles()) if shown is not None else "")
+        self._on_look_changed()
+
+    @property
+    def reach_deg_s(self) -> int:
+        """Half the width of a panel."""
+        if self._shown is None:
+            return STEPS[0]
+        curves = (self._shown.proximal, self._shown.distal, self._shown.reversed_distal)
+        most = float(np.rad2deg(max(np.abs(curve).max() for curve in curves)))
+        return next((step for step in STEPS if most <= step), STEPS[-1])
+
+    def curves_deg_s(self) -> list[tuple[FloatArray, FloatArray]]:
+        """Both coordinates (k,) of the curves: the nearer sensor's, the farther one's as paired, and reversed."""
+        if self._shown is None:
+            return []
+        return [parts_deg_s(z) for z in (self._shown.proximal, self._shown.distal, self._shown.reversed_distal)]
+
+    def near_pen(self) -> QPen:
+        """The pen of the nearer sensor's curve."""
+        return self._look.theme.side_pen(self._side, CURVE_PX)
+
+    def far_pen(self) -> QPen:
+        return self._look.theme.pen(self._look.theme.colours.ink, OTHER_PX)
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        width = px(2 * LEAST_PANEL + BETWEEN)
+        return QSize(width, self._height_for(width))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.setFixedHeight(self._height_for(event.size().width()))
+
+    def _height_for(self, width: int) -> int:
+        px = self._look.theme.px
+        return min((width - px(BETWEEN)) // 2, px(MOST_PANEL)) + px(TITLE + SCALE)
+
+    def painted_texts(self) -> list[PaintedText]:
+        if self._shown is None:
+            return []
+        theme = self._look.theme
+        texts = []
+        for (panel, title), tone in zip(zip(self._panels(), self._titles(), strict=True), ("ink", "ink2"), strict=True):
+            box = QRectF(panel.left(), 0, panel.width(), theme.px(TITLE - 4))
+            texts.append(PaintedText(title, box, self._font(MEDIUM), tone, FOOT, wraps=True))
+            below = QRectF(panel.left(), panel.bottom() + 2, panel.width(), theme.px(SCALE - 2))
+            words = tr("edge: {reach} °/s").format(reach=self.reach_deg_s)
+            texts.append(PaintedText(words, below, theme.font(12), "ink2", CENTRE))
+        return texts
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        if self._shown is None:
+            return
+        theme = self._look.theme
+        c = theme.colours
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        for panel, distal in zip(self._panels(), (self._shown.distal, self._shown.reversed_distal), strict=True):
+            painter.setPen(theme.pen(c.line, 1))
+            painter.drawRect(panel)
+            middle = panel.center()
+            painter.drawLine(QPointF(panel.left(), middle.y()), QPointF(panel.right(), middle.y()))
+            painter.drawLine(QPointF(middle.x(), panel.top()), QPointF(middle.x(), panel.bottom()))
+            near, far = self._polygon(self._shown.proximal, panel), self._polygon(distal, panel)
+            painter.setPen(self.near_pen())
+            painter.drawPolyline(near)
+            painter.setPen(self.far_pen())
+            painter.drawPolyline(far)
+            painter.setBrush(theme.curve(self._side))
+            painter.setPen(theme.pen(c.surface, 1))
+            painter.drawEllipse(near.at(0), theme.px(START), theme.px(START))
+            painter.setBrush(QColor(c.ink))
+            painter.drawEllipse(far.at(0), theme.px(START) - 1, theme.px(START) - 1)
+            painter.setBrush(Qt.BrushStyle.NoBrush)
+        for text in self.painted_texts():
+            text.paint(painter, c)
+
+    def _polygon(self, z: ComplexArray, panel: QRectF) -> QPolygonF:
+        x, y = parts_deg_s(z)
+        scale = panel.width() / 2 / self.reach_deg_s
+        return pg.functions.arrayToQPolygonF(panel.center().x() + scale * x, panel.center().y() - scale * y)
+
+    def _panels(self) -> tuple[QRectF, QRectF]:
+        px = self._look.theme.px
+        side = min((self.width() - px(BETWEEN)) / 2, self.height() - px(TITLE + SCALE)) - 1
+        return QRectF(0.5, px(TITLE), side, side), QRectF(side + px(BETWEEN) + 0.5, px(TITLE), side, side)
+
+    def _titles(self) -> tuple[str, str]:
+        assert self._shown is not None
+        paired, turned = (100 * share for share in (self._shown.congruence, self._shown.reversed_congruence))
+        return (
+            tr("As paired: {percent} % alike").format(percent=f"{paired:.0f}"),
+            tr("One axis reversed: {percent} % alike").format(percent=f"{turned:.0f}"),
+        )
+
+    def _font(self, weight: QFont.Weight) -> QFont:
+        return self._look.theme.font(14, weight)
+
+    def _on_look_changed(self) -> None:
+        self.setMinimumWidth(self.sizeHint().width())
+        self.setFixedHeight(self._height_for(max(self.width(), self.minimumWidth())))
+        self.update()

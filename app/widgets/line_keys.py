@@ -1,0 +1,50 @@
+"""What is which line of a picture? Each line as it is drawn, with its name behind it."""
+
+from collections.abc import Callable, Sequence
+
+from PySide6.QtCore import QSize
+from PySide6.QtGui import QPainter, QPaintEvent, QPen
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+
+from app.theme import Look
+from app.widgets.text import Text
+
+KEY = 28
+
+
+class LineKeys(QWidget):
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._row = QHBoxLayout(self)
+        self._row.setContentsMargins(0, 0, 0, 0)
+
+    def show_keys(self, keys: Sequence[tuple[Callable[[], QPen], str]]) -> None:
+        """Show each line, whose pen is asked for whenever it is painted, and its name."""
+        while (item := self._row.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for pen_of, name in keys:
+            self._row.addWidget(_Line(self._look, pen_of))
+            self._row.addWidget(Text(self._look, name, size=12, tone="ink2"))
+            self._row.addSpacing(self._look.theme.px(8))
+        self._row.addStretch(1)
+
+
+class _Line(QWidget):
+    """A piece of a line as it is drawn in the picture."""
+
+    def __init__(self, look: Look, pen_of: Callable[[], QPen]) -> None:
+        super().__init__()
+        self._look, self._pen_of = look, pen_of
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
+        look.changed.connect(self.updateGeometry)
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._look.theme.px(KEY), self._look.theme.px(16))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        painter.setPen(self._pen_of())
+        painter.drawLine(0, self.height() // 2, self.width(), self.height() // 2)

@@ -1,0 +1,162 @@
+"""Who answers "How was this found?" One joint at a time, computed beside the screen, shown, and saved as files."""
+
+import logging
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtWidgets import QFileDialog
+
+from app.pages.found_page import FoundPage
+from app.reports.comparison import calibrated_for
+from app.reports.how_found import write_how_found
+from app.wording import tr
+from app.workers.background import Background, Report, Work
+from core.body import Joint
+from core.how_found import HowFound, how_found
+from core.results import Analysis, JointCalibration, RecordingAnalysis
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+    from core.findings import Finding
+    from core.samples import Session
+
+_log = logging.getLogger(__name__)
+
+FOLDER = "gaitwright-how-found"
+
+
+class HowFoundDesk(QObject):
+    """Works for one page; a newer question takes the older one's place.
+
+    Signals
+    -------
+    refused
+        What could not be shown, and what follows.
+    writing
+        The folder that was chosen, and the call that writes the files into it: whoever shows the page knows on which
+        thread, and who must be told of an export.
+    """
+
+    refused = Signal(str, str)
+    writing = Signal(object, object)
+
+    def __init__(self, page: FoundPage, background: Background, parent: QObject) -> None:
+        super().__init__(parent)
+        self._page, self._background = page, background
+        self._session: Session | None = None
+        self._analysis: Analysis | None = None
+        self._recording: RecordingAnalysis | None = None
+        self._calibrated: Mapping[Joint, JointCalibration] = {}
+        self._joint = Joint.LEFT_KNEE
+        self._found: HowFound | None = None
+        self._dialog: QFileDialog | None = None
+        self._background.done.connect(self._on_done)
+        self._background.failed.connect(self._on_failed)
+        page.joint_chosen.connect(self._on_joint_chosen)
+        page.save_wished.connect(self._on_save_wished)
+
+    def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
+        """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""
+        self._session, self._analysis, self._recording = session, analysis, recording
+        calibrated = calibrated_for(analysis, recording)
+        self._calibrated = {joint: calibrated[joint] for joint in recording.joints if joint in calibrated}
+        if self._joint not in self._calibrated:
+            self._joint = next(iter(self._calibrated), self._joint)
+        self._page.show_joints(list(self._calibrated), self._joint)
+        self._begin()
+
+    def stop(self) -> None:
+        """Nobody looks any more."""
+        self._background.stop()
+
+    def _begin(self) -> None:
+        self._found = None
+        calibration = self._calibrated.get(self._joint)
+        if calibration is None or self._session is None or self._recording is None:
+            self._background.stop()
+            self._page.show_nothing(self._joint)
+            return
+        self._page.show_working(self._joint)
+        self._background.start(_finding(self._session, calibration, self._recording.name))
+
+    def _noticed(self) -> "list[Finding]":
+        """What the analysis noticed about the joint: everywhere, or in this recording."""
+        assert self._analysis is not None
+        assert self._recording is not None
+        others = {recording.name for recording in self._analysis.recordings} - {self._recording.name}
+        placed = [(finding, set(finding.where.split(", "))) for finding in self._analysis.findings]
+        return [finding for finding, where in placed if str(self._joint) in where and not where & others]
+
+    def _on_joint_chosen(self, joint: str) -> None:
+        self._joint = Joint(joint)
+        self._begin()
+
+    def _on_done(self, found: HowFound | None) -> None:
+        self._found = found
+        if found is None:
+            self._page.show_nothing(self._joint)
+        else:
+            assert self._session is not None
+            self._page.show_found(found, self._noticed(), self._session.is_simulated)
+
+    def _on_failed(self, error: Exception) -> None:
+        _log.error("how a joint was found could not be shown", exc_info=error)
+        self._page.show_nothing(self._joint)
+        self.refused.emit(tr("How this joint was found cannot be shown."), tr("The log holds the details."))
+
+    def _on_save_wished(self) -> None:
+        if self._found is None:
+            return
+        self._dialog = QFileDialog(self._page, tr("Save these figures into a new folder"))
+        self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+        self._dialog.selectFile(FOLDER)
+        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._dialog.fileSelected.connect(self._on_folder_selected)
+        self._dialog.open()
+
+    def _on_folder_selected(self, folder: str) -> None:
+        if self._found is not None and self._session is not None:
+            out = Path(folder)
+            self.writing.emit(out, _writing(self._found, self._session.is_simulated, out))
+
+
+def saved_from_library(opened: "OpenedLibrary", session_id: UUID, folder: Path, write: Callable[[], None]) -> Path:
+    """Note an export of a session's figures and make it, on the library's thread.
+
+    Raises
+    ------
+    LibraryError
+        It cannot be noted, or the folder cannot be written.
+    """
+    from app.storage.audit import about
+    from app.storage.stored import Action, LibraryError
+
+    opened.library.audit.note(Action.EXPORT, about("session", session_id), format="how found")
+    try:
+        write()
+    except OSError as problem:
+        raise LibraryError(*cannot_write(folder)) from problem
+    return folder
+
+
+def cannot_write(folder: Path) -> tuple[str, str]:
+    """What is said of a folder that takes no files."""
+    return tr("{folder} cannot be written").format(folder=folder.name), tr("Choose another folder; nothing is lost")
+
+
+def _finding(session: "Session", calibration: JointCalibration, recording: str) -> Work:
+    def work(_report: Report) -> object:
+        return how_found(session, calibration, recording)
+
+    return work
+
+
+def _writing(found: HowFound, is_simulated: bool, folder: Path) -> Callable[[], None]:
+    def write() -> None:
+        write_how_found(found, is_simulated, folder)
+
+    return write
