@@ -226,7 +226,8 @@ class MainWindow(QWidget):
 
     def _show_help(self, topic: str) -> None:
         """Open the manual at a topic; Back leads to where it was opened, and what is recorded there goes on."""
-        from app.pages.help_page import HelpPage, Topic
+        from app.pages.help_page import HelpPage
+        from app.pages.help_topics import Topic
 
         if self._help is None:
             self._help = HelpPage(self._look)

@@ -1,29 +1,12 @@
 """What is this page for, and what does that message mean? The manual, in the window and without leaving the session."""
 
-from enum import StrEnum
-from functools import cache
-from importlib.resources import files
-from pathlib import Path
-
-from PySide6.QtCore import QRectF, QSize, Qt, QUrl, Signal
+from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QFont,
     QFontMetrics,
     QKeyEvent,
     QPainter,
     QPaintEvent,
-    QPalette,
-    QResizeEvent,
-    QTextBlock,
-    QTextBlockFormat,
-    QTextCharFormat,
-    QTextCursor,
-    QTextDocument,
-    QTextFrameFormat,
-    QTextLength,
-    QTextTable,
-    QTextTableFormat,
 )
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -32,12 +15,12 @@ from PySide6.QtWidgets import (
     QFrame,
     QScrollArea,
     QSizePolicy,
-    QTextBrowser,
-    QTextEdit,
     QVBoxLayout,
     QWidget,
 )
 
+from app.pages.help_reader import HelpReader
+from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -47,58 +30,10 @@ from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.wording import tr, tr_n
 
-FOLDER = files("resources") / "help"
 LIST_WIDTH = 248
 ROW = 44
 PADDING = 12
-LINE_PERCENT = 145  # of the height of a line: for reading, not for finding
-LONGEST_LINE = 760  # some 100 letters; longer lines lose the eye on its way back
-TIGHT_LINE_PERCENT = 120  # of headings and tables
-HEADING_SIZES = {1: 26, 2: 20, 3: 16}
-BODY = 16
 SHORTEST_SEARCH = 2
-
-
-class Topic(StrEnum):
-    """The pages of the manual in their order; each is a file of `resources/help`, and a step names it as its topic."""
-
-    HOME = "home"
-    PATIENT = "patient"
-    SENSORS = "sensors"
-    STAND_STILL = "stand-still"
-    FREE_MOTION = "free-motion"
-    WALKING = "walking"
-    RESULTS = "results"
-    REPORT = "report"
-    MESSAGES = "messages"
-    KEYS = "keys"
-    SENSORS_XIMU3 = "sensors-ximu3"
-    SENSORS_WITMOTION = "sensors-witmotion"
-    SENSORS_CSV = "sensors-csv"
-    SENSORS_XSENS_MTI = "sensors-xsens-mti"
-    SENSORS_SHIMMER3 = "sensors-shimmer3"
-    SENSORS_LSL = "sensors-lsl"
-
-
-def topic_title(topic: Topic) -> str:
-    return {
-        Topic.HOME: tr("Patients"),
-        Topic.PATIENT: tr("Patient"),
-        Topic.SENSORS: tr("Sensors"),
-        Topic.STAND_STILL: tr("Stand still"),
-        Topic.FREE_MOTION: tr("Free motion"),
-        Topic.WALKING: tr("Walking"),
-        Topic.RESULTS: tr("Results"),
-        Topic.REPORT: tr("Report"),
-        Topic.MESSAGES: tr("What messages mean"),
-        Topic.KEYS: tr("Keys"),
-        Topic.SENSORS_XIMU3: "x-IMU3",
-        Topic.SENSORS_WITMOTION: "WitMotion",
-        Topic.SENSORS_CSV: tr("Lines of numbers"),
-        Topic.SENSORS_XSENS_MTI: tr("Xsens MTi"),
-        Topic.SENSORS_SHIMMER3: "Shimmer3",
-        Topic.SENSORS_LSL: tr("Lab Streaming Layer"),
-    }[topic]
 
 
 class HelpPage(QWidget):
@@ -115,7 +50,7 @@ class HelpPage(QWidget):
         self.topics = _TopicList(look)
         self.choice = Choice(look, tr("Topic"))
         self.choice.addItems([topic_title(topic) for topic in Topic])
-        self.text = _Reader(look)
+        self.text = HelpReader(look)
         self.back = Button(look, tr("Back"), Kind.SECONDARY, Icon.BACK, tr("Esc"))
         self._build()
         self.topics.chosen.connect(self.show_topic)
@@ -139,7 +74,7 @@ class HelpPage(QWidget):
     def show_topic(self, topic: Topic) -> None:
         """Open the manual at `topic`, with what is searched for marked in it."""
         self._topic = topic
-        self.text.show_markdown(_markdown(topic), topic_title(topic))
+        self.text.show_markdown(markdown_of(topic), topic_title(topic))
         self.topics.choose(topic)
         self.choice.blockSignals(True)
         self.choice.setCurrentIndex(list(Topic).index(topic))
@@ -203,7 +138,7 @@ class HelpPage(QWidget):
         """Mark what is searched for, and tell every topic how often it has it."""
         words = self.search.text.strip()
         wanted = words if len(words) >= SHORTEST_SEARCH else ""
-        counts = {topic: _plain(topic).count(wanted.casefold()) if wanted else None for topic in Topic}
+        counts = {topic: plain_words_of(topic).count(wanted.casefold()) if wanted else None for topic in Topic}
         self.topics.show_counts(counts)
         self.text.mark(wanted)
         total = sum(count or 0 for count in counts.values())
@@ -223,7 +158,7 @@ class HelpPage(QWidget):
         here = topics.index(self._topic)
         later = [*topics[here + 1 :], *topics[: here + 1]]
         wanted = self.search.text.strip().casefold()
-        following = next((topic for topic in later if wanted and wanted in _plain(topic)), None)
+        following = next((topic for topic in later if wanted and wanted in plain_words_of(topic)), None)
         if following is not None:
             self.show_topic(following)
             self.text.go_to_next()
@@ -348,172 +283,3 @@ class _TopicRow(QAbstractButton):
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.update()
-
-
-class _Reader(QTextBrowser):
-    """The text of a topic in the type of the house."""
-
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look, self._markdown = look, ""
-        self._wanted = ""
-        self._marks: list[QTextCursor] = []
-        self._at = -1
-        self.setFrameShape(QFrame.Shape.NoFrame)
-        self.setLineWrapMode(QTextEdit.LineWrapMode.FixedPixelWidth)
-        self.setOpenLinks(False)  # nothing leads out of this computer
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.document().setBaseUrl(QUrl.fromLocalFile(f"{Path(str(FOLDER))}/"))
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
-
-    @property
-    def has_marks(self) -> bool:
-        return bool(self._marks)
-
-    def show_markdown(self, markdown: str, name: str) -> None:
-        self._markdown = markdown
-        self.setAccessibleName(name)
-        self._set_text()
-        self.moveCursor(QTextCursor.MoveOperation.Start)
-        self.verticalScrollBar().setValue(0)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._wrap()
-
-    def _wrap(self) -> None:
-        self.setLineWrapColumnOrWidth(min(self.viewport().width(), self._look.theme.px(LONGEST_LINE)))
-
-    def mark(self, wanted: str) -> None:
-        """Mark every place of `wanted`; none when it is empty."""
-        self._wanted, self._marks, self._at = wanted, [], -1
-        cursor = QTextCursor(self.document())
-        while wanted:
-            cursor = self.document().find(wanted, cursor)
-            if cursor.isNull():
-                break
-            self._marks.append(QTextCursor(cursor))
-        self._show_marks()
-
-    def go_to_next(self) -> bool:
-        """Bring the next mark into sight; False where there is none behind the present one."""
-        if self._at + 1 >= len(self._marks):
-            return False
-        self._at += 1
-        cursor = QTextCursor(self._marks[self._at])
-        cursor.setPosition(cursor.selectionStart())
-        self.setTextCursor(cursor)
-        self.ensureCursorVisible()
-        self._show_marks()
-        return True
-
-    def _show_marks(self) -> None:
-        """What is found lies on caution's ground; where the reading is, on ink."""
-        c = self._look.theme.colours
-        selections = []
-        for i, cursor in enumerate(self._marks):
-            selection = QTextEdit.ExtraSelection()
-            selection.cursor = cursor
-            ground, ink = (c.inv, c.inv_ink) if i == self._at else (c.caution_mark, c.caution_mark_ink)
-            form = QTextCharFormat()
-            form.setBackground(QColor(ground))
-            form.setForeground(QColor(ink))
-            selection.format = form
-            selections.append(selection)
-        self.setExtraSelections(selections)
-
-    def _set_text(self) -> None:
-        document = self.document()
-        document.setDefaultFont(self._look.theme.font(BODY))
-        document.setDocumentMargin(self._look.theme.px(8))
-        document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
-        whole = QTextCursor(document)
-        whole.beginEditBlock()  # else every cell would lay the document out anew
-        self._set_blocks()
-        self._set_tables()
-        whole.endEditBlock()
-
-    def _set_blocks(self) -> None:
-        theme, block = self._look.theme, self.document().begin()
-        cursor = QTextCursor(self.document())
-        while block.isValid():
-            cursor.setPosition(block.position())
-            level, is_in_table = block.blockFormat().headingLevel(), cursor.currentTable() is not None
-            form = QTextBlockFormat(block.blockFormat())
-            height = LINE_PERCENT if not level and not is_in_table else TIGHT_LINE_PERCENT
-            form.setLineHeight(height, QTextBlockFormat.LineHeightTypes.ProportionalHeight.value)
-            form.setTopMargin(theme.px(20) if level > 1 else 0)
-            form.setBottomMargin(0 if is_in_table else theme.px(4 if block.textList() is not None else 10))
-            cursor.setBlockFormat(form)
-            self._set_letters(block, theme.font(HEADING_SIZES[level], SEMIBOLD) if level else None)
-            block = block.next()
-
-    def _set_letters(self, block: QTextBlock, heading: QFont | None) -> None:
-        """Give a heading its size, and what is bold the weight that is bundled."""
-        pieces, parts = [], block.begin()
-        while not parts.atEnd():
-            piece = parts.fragment()
-            pieces.append((piece.position(), piece.length(), piece.charFormat().fontWeight()))
-            parts += 1
-        cursor = QTextCursor(self.document())
-        for start, length, weight in pieces:
-            if heading is None and weight <= MEDIUM:
-                continue
-            letters = QTextCharFormat()
-            letters.setFont(heading or self._look.theme.font(BODY, SEMIBOLD))
-            cursor.setPosition(start)
-            cursor.setPosition(start + length, QTextCursor.MoveMode.KeepAnchor)
-            cursor.mergeCharFormat(letters)
-
-    def _set_tables(self) -> None:
-        """Rows under hairlines, as everywhere; no cages."""
-        theme = self._look.theme
-        for frame in self.document().rootFrame().childFrames():
-            if not isinstance(frame, QTextTable):
-                continue
-            form = QTextTableFormat(frame.format())
-            form.setBorder(0)
-            form.setBorderCollapse(True)
-            form.setCellPadding(theme.px(8))
-            form.setCellSpacing(0)
-            form.setWidth(QTextLength(QTextLength.Type.PercentageLength, 100))
-            form.setTopMargin(theme.px(4))
-            form.setBottomMargin(theme.px(12))
-            frame.setFormat(form)
-            for row in range(frame.rows()):
-                for column in range(frame.columns()):
-                    cell = frame.cellAt(row, column)
-                    under = cell.format().toTableCellFormat()
-                    under.setBottomBorder(1)
-                    under.setBottomBorderStyle(QTextFrameFormat.BorderStyle.BorderStyle_Solid)
-                    under.setBottomBorderBrush(QColor(theme.colours.line))
-                    cell.setFormat(under)
-
-    def _on_look_changed(self) -> None:
-        theme = self._look.theme
-        palette = self.palette()
-        for role, colour in (
-            (QPalette.ColorRole.Base, theme.colours.surface),
-            (QPalette.ColorRole.Text, theme.colours.ink),
-        ):
-            palette.setColor(role, QColor(colour))
-        for one in (self, self.viewport()):  # under a style sheet the viewport keeps the colours it was made with
-            one.setPalette(palette)
-        at = self.verticalScrollBar().value()
-        self._wrap()
-        self._set_text()
-        self.mark(self._wanted)
-        self.verticalScrollBar().setValue(at)
-
-
-def _markdown(topic: Topic) -> str:
-    return (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
-
-
-@cache
-def _plain(topic: Topic) -> str:
-    """Give the words of a topic alone, in small letters, to search in."""
-    document = QTextDocument()
-    document.setMarkdown(_markdown(topic), QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
-    return document.toPlainText().casefold()

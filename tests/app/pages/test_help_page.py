@@ -5,18 +5,20 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QColor
+from PySide6.QtCore import Qt, QUrl
+from PySide6.QtGui import QColor, QTextDocument
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.pages.help_page import HelpPage, Topic, topic_title
+from app.pages.help_page import HelpPage
+from app.pages.help_topics import Topic, topic_title
 from app.theme import Look, load_fonts
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
 STEPS = Path(__file__).parents[3] / "app" / "wizard" / "steps"
+PICTURE = "pictures/walking.png"
 FORBIDDEN = re.compile(
     r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|heel strikes?|you|your)\b|!", re.IGNORECASE
 )
@@ -67,7 +69,7 @@ def test_every_step_of_the_wizard_has_its_topic() -> None:
 
 @pytest.mark.parametrize("topic", Topic)
 def test_a_topic_keeps_the_tone_of_the_house(topic: Topic) -> None:
-    text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8")
+    text = (FOLDER / f"{topic}.md").read_text(encoding="utf-8").replace("![", "[")
     assert text.startswith(f"# {topic_title(topic)}\n")
     assert FORBIDDEN.findall(text.replace("measurement error", "")) == []
 
@@ -181,3 +183,15 @@ def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: Look
         look.set_dark(is_dark)
         corner = page.text.grab().toImage().pixelColor(5, 5)
         assert corner.name() == QColor(look.theme.colours.surface).name()
+
+
+def test_a_picture_is_as_wide_as_the_lines_and_follows_the_theme(page: HelpPage, look: Look) -> None:
+    page.show_topic(Topic.WALKING)
+    pictures = []
+    for is_dark in (False, True):
+        look.set_dark(is_dark)
+        image = page.text.document().resource(QTextDocument.ResourceType.ImageResource.value, QUrl(PICTURE))
+        pictures.append(image.deviceIndependentSize().width())
+        assert (image.pixelColor(4, 4).lightness() < 128) == is_dark
+    column = page.text.lineWrapColumnOrWidth()
+    assert all(column - 40 < width <= column for width in pictures)

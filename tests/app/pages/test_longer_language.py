@@ -10,7 +10,8 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.first_start_page import FirstStartPage
 from app.pages.free_motion_page import FreeMotionPage, FreeMotionView
-from app.pages.help_page import HelpPage, Topic
+from app.pages.help_page import HelpPage
+from app.pages.help_topics import Topic
 from app.pages.home_lists import PatientLine, SessionLine
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
