@@ -17,6 +17,7 @@ import numpy as np
 from app.storage.analysis_content import FORMAT, DamagedContentError, packed, unpacked
 from app.storage.results import Results
 from app.storage.stored import AnalysedRecording, AnalysisInputs, LibraryError, ResultKind
+from core.body import Site
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, Recording, SensorInfo, Session
 
@@ -27,7 +28,10 @@ FIGURES_FROM = ("gaitwright", "numpy", "scipy", "vqf")  # whose next version may
 
 
 def bare(session: Session) -> Session:
-    """The session with all that an analysis reads, and without what was said to people: names, notes, conditions."""
+    """The session with all that an analysis reads, and without what was said to people: names, notes, conditions.
+
+    Nor with the strides that were left out by hand: they are left out of what was found (`core.chosen_strides`).
+    """
     patient, told = session.patient, session.sensors
     return Session(
         recordings=tuple(
@@ -48,6 +52,16 @@ def bare(session: Session) -> Session:
         is_simulated=session.is_simulated,
         findings=session.findings,
     )
+
+
+def is_same_question(one: Session, other: Session) -> bool:
+    """Whether both give an analysis the very same: the same samples, not only equal ones, and the same said of them."""
+    both = (one, other)
+    blocks = [[block for recording in session.recordings for block in recording.imu.values()] for session in both]
+    if len(blocks[0]) != len(blocks[1]) or any(a is not b for a, b in zip(*blocks, strict=True)):
+        return False
+    told = [_told(session) for session in both]
+    return told[0] == told[1]
 
 
 def find_analysis(results: Results, session_id: UUID, session: Session) -> Analysis | None:
@@ -74,6 +88,13 @@ def keep_analysis(results: Results, session_id: UUID, session: Session, analysis
         results.keep(session_id, ResultKind.ANALYSIS, inputs_of(session), FORMAT, packed(analysis))
     except LibraryError as error:
         _log.info("an analysis was not kept", exc_info=error)
+
+
+def _told(session: Session) -> tuple[Session, list[list[Site]]]:
+    """What an analysis is told besides the samples, and at which sites they were measured."""
+    given = bare(session)
+    without_samples = tuple(replace(recording, imu={}) for recording in given.recordings)
+    return replace(given, recordings=without_samples), [list(recording.imu) for recording in session.recordings]
 
 
 def inputs_of(session: Session) -> AnalysisInputs:

@@ -22,7 +22,8 @@ class Evaluation(QObject):
     Signals
     -------
     computed
-        A session and its analysis, which nobody knew before; `done` follows.
+        A session and what was found of it, which nobody knew before; strides left out by hand are still in it. `done`
+        follows.
     """
 
     done = Signal()
@@ -35,6 +36,7 @@ class Evaluation(QObject):
         self.session: Session | None = None
         self.analysis: Analysis | None = None
         self._asked: Session | None = None
+        self._found: Analysis | None = None  # with the strides that were left out by hand
         self._background = Background(self)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
@@ -62,26 +64,35 @@ class Evaluation(QObject):
         return {side: len(found.strides) for of_both in gait for side, found in of_both.items()}
 
     def ask(self, session: "Session") -> None:
-        """Find out what `session` tells; `done` follows."""
+        """Find out what `session` tells; `done` follows, at once where only words or chosen strides have changed."""
+        from app.storage.kept_analyses import is_same_question
+
+        if self._found is not None and self.session is not None and is_same_question(self.session, session):
+            self.take_over(session, self._found)
+            return
         self._asked = session
         self._background.start(_analysing(session))
 
-    def take_over(self, session: "Session", analysis: "Analysis") -> None:
-        """Go on with what is known of `session` already; `done` follows."""
+    def take_over(self, session: "Session", found: "Analysis") -> None:
+        """Go on with what `computed` told of `session` before; `done` follows."""
         self._background.stop()
         self._asked = session
-        self._settle(analysis)
+        self._settle(found)
 
     def finish(self) -> None:
         """Wait for the last thread, at the end of the program."""
         self._background.finish()
 
-    def _on_done(self, analysis: "Analysis") -> None:
-        self.computed.emit(self._asked, analysis)
-        self._settle(analysis)
+    def _on_done(self, found: "Analysis") -> None:
+        self.computed.emit(self._asked, found)
+        self._settle(found)
 
-    def _settle(self, analysis: "Analysis") -> None:
-        self.session, self.analysis = self._asked, analysis
+    def _settle(self, found: "Analysis") -> None:
+        from core.chosen_strides import leave_out
+
+        assert self._asked is not None  # what was found was asked for
+        self._found, self.session = found, self._asked
+        self.analysis = leave_out(found, self._asked.recordings)
         self.done.emit()
 
     def _on_failed(self, error: Exception) -> None:

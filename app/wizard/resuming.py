@@ -36,9 +36,10 @@ def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
 
 
 def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "Analysis":
-    """What came of a session: as it is kept, else computed now, and kept."""
+    """What came of a session: as it is kept, else computed now, and kept; without the strides left out by hand."""
     from app.storage.kept_analyses import bare, find_analysis, keep_analysis
     from core.analysis import analyse
+    from core.chosen_strides import leave_out
 
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
     told = evaluated(stored, read_takes(opened, stored))
@@ -46,7 +47,7 @@ def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "A
     if known is None:
         known = analyse(bare(told), progress=report)
         keep_analysis(results, session_id, told, known)
-    return known
+    return leave_out(known, told.recordings)
 
 
 def evaluated(session: StoredSession, takes: Sequence[Take]) -> Session:

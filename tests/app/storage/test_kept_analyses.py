@@ -11,12 +11,12 @@ import pytest
 
 from app.storage import kept_analyses
 from app.storage.analysis_content import DamagedContentError, packed, unpacked
-from app.storage.kept_analyses import bare, find_analysis, inputs_of, keep_analysis
+from app.storage.kept_analyses import bare, find_analysis, inputs_of, is_same_question, keep_analysis
 from app.storage.library import DEMONSTRATOR, Library
 from app.storage.results import key_of
 from app.storage.stored import ResultKind
 from core.analysis import analyse
-from core.body import Joint, Site
+from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.samples import ImuBlock, Patient, RateKind, Recording, SensorInfo, Session
@@ -124,7 +124,10 @@ def test_anything_that_an_analysis_is_given_makes_it_another_one(session: Sessio
         with_walk(session, lambda walk: replace(walk, condition="AFO", note="n", started="s", unknown={"a": 1})),
         with_block(session, lambda block: replace(block, sensor="other", unknown={"t": np.ones(len(block))})),
     ]
+    same.append(with_walk(session, lambda walk: replace(walk, left_out_s={Side.LEFT: (2.0,)})))
     assert {key_of(inputs_of(one)) for one in same} == {keys[0]}
+    assert [is_same_question(session, one) for one in same] == [True, True, False, True]  # other blocks may be others
+    assert not any(is_same_question(session, one) for one in changed)
     assert all(str(bare(one).recordings[1].imu[SHANK]) == str(bare(session).recordings[1].imu[SHANK]) for one in same)
     assert all(bare(one).patient == Patient(affected_side="left") for one in same)
 
