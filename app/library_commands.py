@@ -39,7 +39,9 @@ Report = Callable[[float, str], None]
 def _new_decoder(driver: str) -> "StreamDecoder":
     from devices.catalogue import DRIVERS
 
-    return next(one for one in DRIVERS if one.key == driver).decoder()
+    decoder = next(one for one in DRIVERS if one.key == driver).decoder
+    assert decoder is not None  # BYTE_DRIVERS are those that have one
+    return decoder()
 
 
 DECODERS: "Decoders" = {driver: partial(_new_decoder, driver) for driver in BYTE_DRIVERS}

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from devices.csv_serial import DRIVER as CSV
 from devices.csv_serial import CsvSerial
+from devices.lsl import DRIVER as LSL
 from devices.shimmer3 import DRIVER as SHIMMER3
 from devices.shimmer3 import KNOCK as KNOCK_SHIMMER3
 from devices.shimmer3 import Shimmer3
@@ -29,6 +30,8 @@ class Driver:
         As journals name it.
     proof
         Against what it was tried, and against what not.
+    decoder
+        Of the bytes in a journal; None: samples are kept, and need none.
     dialect
         A new one as a search uses it; None: it has to be told more first.
     bauds
@@ -42,7 +45,7 @@ class Driver:
     key: str
     name: str
     proof: str
-    decoder: Callable[[], StreamDecoder]
+    decoder: Callable[[], StreamDecoder] | None
     dialect: Callable[[], Dialect] | None = None
     bauds: tuple[int, ...] = ()
     hint: str = ""
@@ -75,6 +78,13 @@ DRIVERS = (
         "lines of numbers over a serial port",
         "By an emulator on a pseudo-terminal and damaged streams. What the columns mean has to be told.",
         lambda: Decoder(CsvSerial()),
+    ),
+    Driver(
+        LSL,
+        "Lab Streaming Layer",
+        "By real streams on this machine whose clock was off by 3 s and 200 ppm: stamps right to 2 ms. Streams of "
+        "other makers' programs were not at hand.",
+        None,
     ),
     Driver(
         XSENS_MTI,

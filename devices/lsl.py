@@ -43,6 +43,10 @@ RATE_WORDS, FORCE_WORDS = ("gyr", "rate", "angvel", "angular"), ("acc",)
 WIDE = "wr"  # of a Shimmer's two accelerometers the one with the wide range
 
 
+class OtherStreamError(SourceRefusedError):
+    """A stream of something else than motion."""
+
+
 @dataclass(frozen=True, slots=True)
 class LslSensor:
     """Which channels of a stream are one sensor's: columns of rate and force, and what makes SI units of them."""
@@ -73,6 +77,22 @@ def find_streams(wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
         return ()
     found = [one for one in pylsl.resolve_streams(wait_s) if one.channel_format() != pylsl.cf_string]
     return tuple(sorted((_stream(one) for one in found), key=lambda one: (one.name, one.host)))
+
+
+def told_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
+    """Ask a stream what its channels are.
+
+    Raises
+    ------
+    SourceRefusedError
+        It does not answer, or has no sensors that can be understood.
+    """
+    source = LslSource(stream)
+    try:
+        source.open()
+        return source.sensors
+    finally:
+        source.close()
 
 
 def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tuple[LslSensor, ...]:
@@ -108,7 +128,7 @@ def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tupl
                 )
             )
     if not sensors:
-        raise SourceRefusedError(
+        raise OtherStreamError(
             f"The stream {stream} has no channels of angular rate and acceleration that are called so",
             "Label them gyr_x to gyr_z and acc_x to acc_z where they are sent, or send both",
         )
@@ -167,6 +187,11 @@ class LslSource:
         names = tuple(sensor.name for sensor in self._sensors)
         settings = {"stream": self._stream.name, "host": self._stream.host, "rate_hz": self._stream.rate_hz}
         return SourceInfo(DRIVER, VERSION, self._stream.source, names, settings)
+
+    @property
+    def sensors(self) -> tuple[LslSensor, ...]:
+        """Known once it is open."""
+        return self._sensors
 
     @property
     def clock_residual_s(self) -> float:

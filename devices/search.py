@@ -1,4 +1,4 @@
-"""Which sensors can be heard now? Every port is listened to, and the network for what x-IMU3s announce there."""
+"""Which sensors can be heard now? At ports, on the network where x-IMU3s announce themselves, in streams."""
 
 import json
 import socket
@@ -6,11 +6,14 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from devices.catalogue import DRIVERS, Driver
 from devices.channels import Channel, TcpChannel, UdpChannel
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
+from devices.lsl import DRIVER as LSL
+from devices.lsl import LslSource, OtherStreamError, find_streams, told_sensors
 from devices.ports import PortInfo, SerialPort, list_ports
 from devices.source import SourceInfo
 from devices.stream import ByteSource
@@ -27,13 +30,17 @@ MOST_DATAGRAM = 2048
 
 @dataclass(frozen=True, slots=True)
 class FoundSensor:
-    """A sensor that was heard. `make` gives a source of it; nothing is open until that is opened."""
+    """A sensor that was heard, or `count` of them in one stream.
+
+    `make` gives a source of it; nothing is open until that is opened.
+    """
 
     driver: str
     name: str
     place: str
     make: Callable[[], LiveSource]
     is_simulated: bool = False
+    count: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +62,7 @@ class Found:
 
 
 def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCED_AT) -> Found:
-    """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
+    """Listen to all ports at once, to the network and for streams; takes a second or two. Each sensor is named once.
 
     Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open, but for
     those that somebody bound or that are a sensor's by their name.
@@ -65,6 +72,7 @@ def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCE
     works = [threading.Thread(target=lambda port=port: heard.append(_at_port(port)), daemon=True) for port in looked_at]
     on_network: list[FoundSensor] = []
     works.append(threading.Thread(target=lambda: on_network.extend(_announced(announced_at)), daemon=True))
+    works.append(threading.Thread(target=lambda: heard.extend(_streamed()), daemon=True))
     for work in works:
         work.start()
     for work in works:
@@ -165,6 +173,23 @@ def _announced(at_port: int) -> list[FoundSensor]:
             if (one := announcement(datagram, address)) is not None:
                 found[one.name] = one
     return list(found.values())
+
+
+def _streamed() -> list[FoundSensor | Passed]:
+    """The sensors among the streams of Lab Streaming Layer; none where that is not installed."""
+    if not _has_network():
+        return []
+    found: list[FoundSensor | Passed] = []
+    for stream in find_streams():
+        place = f"Lab Streaming Layer, {stream.name}"
+        try:
+            names = [sensor.name for sensor in told_sensors(stream)]
+            found.append(FoundSensor(LSL, ", ".join(names), place, partial(LslSource, stream), count=len(names)))
+        except OtherStreamError:  # of a heart or a brain
+            continue
+        except SourceRefusedError as refusal:
+            found.append(Passed(PortInfo(place), refusal.what, refusal.remedy))
+    return found
 
 
 def _has_network() -> bool:

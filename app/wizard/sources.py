@@ -89,14 +89,15 @@ class Sources(Sequence[SourceChoice]):
         return [self._choice(driver.key, driver.name, sensors) for driver, sensors in by_driver.items() if sensors]
 
     def _choice(self, key: str, name: str, sensors: "Sequence[FoundSensor]") -> SourceChoice:
-        words = tr_n("{name}, {count} sensor", "{name}, {count} sensors", len(sensors))
+        count = sum(sensor.count for sensor in sensors)
+        words = tr_n("{name}, {count} sensor", "{name}, {count} sensors", count)
 
         def make() -> "Acquisition":
             self.wait()  # a search that goes on holds the ports
             return _opening(sensors)
 
         is_simulated = all(sensor.is_simulated for sensor in sensors)
-        return SourceChoice(key, words.format(name=name, count=len(sensors)), make, is_simulated)
+        return SourceChoice(key, words.format(name=name, count=count), make, is_simulated)
 
     def _open_all(self) -> "Acquisition":
         """Search anew, and take all sensors that are heard."""

@@ -29,13 +29,14 @@ from devices.xsens_mti import EMULATED as XSENS_MTI
 KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
 FINE_HZ = 500.0  # of the table that sensors measure from: between its rows the motion is straight to a thousandth
 MOST_DEG_S, MOST_G, MOST_RAW = 1999.0, 15.9, 32767
+# each begins and ends with the patient's pose while standing, so that one goes on where the one before has ended
 SESSION = WalkerSettings(
     seed=8,
     rate_hz=FINE_HZ,
     is_tissue_steady=True,
     recordings=(
         Standing(duration_s=10.0),
-        FreeMotion(duration_s=24.0),
+        *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in (1, 2, 3)),
         *(Walk(name=f"walk {number}", strides=14, standing_before_s=2.0) for number in (1, 2, 3)),
     ),
 )

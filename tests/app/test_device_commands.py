@@ -23,7 +23,7 @@ pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 
 def test_every_driver_that_records_bytes_has_its_decoder() -> None:
-    assert set(BYTE_DRIVERS) == {driver.key for driver in DRIVERS}
+    assert set(BYTE_DRIVERS) == {driver.key for driver in DRIVERS if driver.decoder is not None}
     for driver, make in DECODERS.items():
         decoder = make()
         assert decoder is not make(), "each journal has one of its own"
@@ -44,7 +44,7 @@ def test_what_is_played_is_listed(kind: str, monkeypatch: pytest.MonkeyPatch) ->
     lines = list(list_devices())
     playing.join()
     assert lines[0] == "Sensors that were heard:"
-    assert "free motion: 24 s" in told
+    assert "free motion 1: 6 s" in told
     assert sum(line.startswith("- ") and line.endswith(", simulated") for line in lines) == 2
     assert sum(driver.proof in line for driver in DRIVERS for line in lines) == len(DRIVERS)
     assert not any(Path(place).exists() for place in told[:2])

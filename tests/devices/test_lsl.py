@@ -15,6 +15,7 @@ from core.samples import FloatArray
 from devices.host_clock import host_time_ns
 from devices.live import SourceLostError, SourceRefusedError
 from devices.lsl import LslSensor, LslSource, LslStream, find_streams, sensors_of
+from devices.search import search
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -176,6 +177,16 @@ def test_a_stream_by_the_common_clock_and_one_three_seconds_wrong_are_stamped_al
 def test_a_clock_that_drifts_is_followed_for_a_minute(outlets: list[Outlet]) -> None:
     outlets += [Outlet(), Outlet(offset_s=3.0, skew=200e-6), Outlet(offset_s=-3.0, skew=-200e-6, per_chunk=8)]
     assert_stamped(outlets, 60.0)
+
+
+def test_a_stream_is_found_by_the_search_and_its_sensors_are_counted(outlets: list[Outlet]) -> None:
+    outlets.append(Outlet())
+    (found,) = [one for one in search([], 0).of("lsl") if one.name == outlets[0].name]
+    assert found.count == 1
+    source = found.make()
+    source.open()
+    assert source.info.sensors == (outlets[0].name,)
+    source.close()
 
 
 def test_a_stream_that_ends_is_lost_and_then_not_there(outlets: list[Outlet], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -19,6 +19,7 @@ from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceRefusedError
+from devices.lsl import LslSensor, LslStream, sensors_of
 from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
 from devices.search import announcement, search
 from devices.shimmer3 import EMULATED as SHIMMER3
@@ -32,6 +33,14 @@ def free_port() -> int:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])
+
+
+@pytest.fixture(autouse=True)
+def streams(monkeypatch: pytest.MonkeyPatch) -> list[LslStream]:
+    """What is streamed; nothing that others stream on this network."""
+    there: list[LslStream] = []
+    monkeypatch.setattr("devices.search.find_streams", lambda: tuple(there))
+    return there
 
 
 @pytest.fixture
@@ -110,6 +119,27 @@ def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPat
     thread.join()
     (one,) = found.sensors
     assert (one.driver, one.name, one.place) == ("ximu3", "655782F7", "TCP 127.0.0.1:7000")
+
+
+def test_streams_of_motion_are_found_and_others_say_why_not(
+    monkeypatch: pytest.MonkeyPatch, streams: list[LslStream]
+) -> None:
+    monkeypatch.setattr("devices.search._has_network", lambda: True)
+    told = {
+        "Consensys": ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"],
+        "heart": ["ECG"],
+        "no units": ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"],
+    }
+    streams += [LslStream(name, "", name, "here", 100.0) for name in told]
+
+    def sensors(stream: LslStream) -> tuple[LslSensor, ...]:
+        units = ["deg/s"] * 3 + ["g"] * 3 if stream.name != "no units" else []
+        return sensors_of(stream.name, told[stream.name], units)
+
+    monkeypatch.setattr("devices.search.told_sensors", sensors)
+    found = search([], free_port())
+    assert [(one.driver, one.name, one.count) for one in found.sensors] == [("lsl", "Consensys", 1)]
+    assert [one.what for one in found.passed] == ["The stream no units does not tell its units"]
 
 
 def test_where_there_is_no_network_no_port_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:
