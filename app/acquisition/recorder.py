@@ -1,10 +1,12 @@
 """How does a recording get into the library, whatever the database is doing, and out of its journal again?
 
-Its row comes first, where the database answers within a second. Where it does not, the journal is begun all the same:
-the row follows, at the latest on stop; if the program ends before that, the journal is found at the next start.
+Its row comes first, where the database answers within a second. Where it does not, whatever is the matter with it, the
+journal is begun all the same and says itself which session it is of: the row follows, at the latest on stop; if the
+program ends before that, the journal is found at the next start and put into its session.
 """
 
 import logging
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
@@ -14,10 +16,11 @@ from app.acquisition.acquisition import Acquisition
 from app.library_commands import DECODERS
 from app.storage.exchange import recording_with_samples
 from app.storage.journal.disk import ROOM, Room, Trouble
+from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
-from app.storage.stored import LibraryBusyError, LibraryError, RecordingState, StoredJournal, StoredRecording
+from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
 from core.samples import Recording
 
 ROW_WAIT_S = 1.0
@@ -38,6 +41,12 @@ class Recorder:
         self._acquisition, self._writer, self._entry = acquisition, writer, entry
         self.id = writer.header.recording_id
         self.summary: JournalSummary | None = None
+        self._stopping = threading.Lock()
+
+    @property
+    def has_row(self) -> bool:
+        """Whether the library knows of it. Where it does not, the journal is all there is, and enough."""
+        return self._entry.has_row
 
     @classmethod
     def begin(
@@ -47,12 +56,14 @@ class Recorder:
         session_id: UUID,
         told: Recording,
         on_trouble: Callable[[Trouble], None] | None = None,
+        turn: "Future[None] | None" = None,
         *,
         room: Room = ROOM,
     ) -> "Recorder":
         """Record from now on, worn as the session's latest placement says.
 
-        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words.
+        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words. The row waits for `turn`:
+        until then the session's placement may not be there. The recording waits a second for both, and no longer.
 
         Raises
         ------
@@ -64,7 +75,7 @@ class Recorder:
             The folder of the recordings cannot be written.
         """
         entry = _Entry(opened, session_id, told, acquisition.is_simulated)
-        entry.start()
+        entry.start(turn)
         try:
             writer = JournalWriter.create(
                 opened.recordings,
@@ -77,6 +88,7 @@ class Recorder:
         except BaseException:
             entry.withdraw()
             raise
+        writer.mark(Belonging(session_id, told).text())
         acquisition.record(writer)
         entry.add(writer)
         return cls(acquisition, writer, entry)
@@ -84,6 +96,14 @@ class Recorder:
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
         self._writer.mark(text)
+
+    def halt(self) -> None:
+        """Stop, and no more: what was recorded is whole on the disk, and is read back by `stop`."""
+        with self._stopping:
+            if self.summary is None:
+                with suppress(RuntimeError):  # the sources were closed, and the recording with them
+                    self._acquisition.stop_recording()
+                self.summary = self._writer.stop()
 
     def stop(self, opened: OpenedLibrary) -> tuple[StoredRecording, Recording]:
         """Stop, see that the library knows of it, and read what the journal holds. May be tried again.
@@ -95,10 +115,8 @@ class Recorder:
         JournalRefusedError, OSError
             The journal cannot be read.
         """
-        if self.summary is None:
-            with suppress(RuntimeError):  # the sources were closed, and the recording with them
-                self._acquisition.stop_recording()
-            self.summary = self._writer.stop()
+        self.halt()
+        assert self.summary is not None  # halted
         stored = self._entry.close(opened, self.summary, self._writer.header.segment)
         recording, _ = recording_with_samples(opened, stored, DECODERS)
         return stored, recording
@@ -114,22 +132,32 @@ class _Entry:
         self._thread = ThreadPoolExecutor(1, "recording's row")
         self._steps: list[Future[object]] = []
 
-    def start(self) -> None:
-        """Enter the row.
+    def start(self, turn: "Future[None] | None") -> None:
+        """Enter the row, in its turn.
 
         Raises
         ------
         LibraryError
-            The library refuses it, rather than being busy.
+            The library refuses it, rather than being busy or out of order.
         """
-        self._do(self._recordings.start, self._session_id, self._told, self._is_simulated, self.id)
+        self._do(self._enter, turn)
         try:
             self._steps[0].result(ROW_WAIT_S)
-        except (TimeoutError, LibraryBusyError):
-            _log.warning("the library does not answer: the recording begins without its row")
+        except (LibraryFaultError, OSError) as fault:  # OSError: too late, or the file itself does not open
+            _log.warning("the library does not answer (%s): the recording begins without its row", type(fault).__name__)
         except BaseException:
             self._thread.shutdown()
             raise
+
+    @property
+    def has_row(self) -> bool:
+        entered = self._steps[0]
+        return entered.done() and entered.exception() is None
+
+    def _enter(self, turn: "Future[None] | None") -> None:
+        if turn is not None:
+            turn.result()
+        self._recordings.start(self._session_id, self._told, self._is_simulated, self.id)
 
     def add(self, writer: JournalWriter) -> None:
         """Enter the journal, once the row is there."""

@@ -17,7 +17,8 @@ from app.settings import Scheme, Settings
 from app.theme import Look
 from app.wording import tr
 from app.workers.background import Report
-from app.workers.library_desk import BACKUP_FOLDER, LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_opening import BACKUP_FOLDER
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet

@@ -26,8 +26,12 @@ class ChangedMeanwhileError(LibraryError):
     """Somebody else changed it since it was read: nothing was written, so nothing of theirs is lost."""
 
 
-class LibraryBusyError(LibraryError):
-    """Another program holds the library for longer than anyone waits; nothing was written."""
+class LibraryFaultError(LibraryError):
+    """The database or its disk does not do what it is asked, whatever that is; nothing was written."""
+
+
+class LibraryBusyError(LibraryFaultError):
+    """Another program holds the library for longer than anyone waits."""
 
 
 class NotAllowedError(LibraryError):

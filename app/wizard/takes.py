@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
@@ -16,12 +16,15 @@ from core.body import Side
 from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from app.acquisition.acquisition import Acquisition
     from app.acquisition.recorder import Recorder
     from app.storage.opened import OpenedLibrary
 
 
 READ_AGAIN_MS = 2000  # after the library did not answer
+WAITED_MS = 3000  # for a recording to be read back, before the next may begin without it
 MOST_READINGS = 15
 ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself
 
@@ -55,8 +58,19 @@ class Take:
         return self.stored.told
 
 
+class _Unread(NamedTuple):
+    """What was stopped and is not read back yet; `strides` as in `Take`. Not kept: it was broken off."""
+
+    recorder: "Recorder"
+    name: str
+    strides: Mapping[Side, int] | None
+    is_kept: bool
+
+
 class Takes(QObject):
-    """All calls to the library are made by the desk's thread; this lives on the screen's."""
+    """A recording begins and ends at once, whatever the library is doing; what it holds is read back when it answers.
+
+    All calls to the library are made by the desk's thread; this lives on the screen's."""
 
     changed = Signal()
     begun = Signal()
@@ -72,9 +86,10 @@ class Takes(QObject):
         self.ongoing: Ongoing | None = None
         self.every: tuple[Take, ...] = ()
         self._recorder: Recorder | None = None
-        self._stopped: Recorder | None = None  # until it has been read back
-        self._readings = 0
-        self._must_stop = False
+        self._unread: list[_Unread] = []  # oldest first
+        self._readings = 0  # of the oldest
+        self._is_reading = False
+        self._must_stop, self._must_keep = False, True
         self._strides: Mapping[Side, int] | None = None
         self._is_stopping = False
         self._is_restrapped = False
@@ -82,6 +97,10 @@ class Takes(QObject):
         self._again.setSingleShot(True)
         self._again.setInterval(READ_AGAIN_MS)
         self._again.timeout.connect(self._read_back)
+        self._waited = QTimer(self)
+        self._waited.setSingleShot(True)
+        self._waited.setInterval(WAITED_MS)
+        self._waited.timeout.connect(self._on_waited)
         self._met.connect(self._on_met)
 
     @property
@@ -90,8 +109,13 @@ class Takes(QObject):
 
     @property
     def is_stopping(self) -> bool:
-        """Whether a recording has been stopped and is not read back yet."""
+        """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds."""
         return self._is_stopping
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing is being recorded, and all that was has been read back."""
+        return self.ongoing is None and not self._unread
 
     @property
     def walks(self) -> tuple[Take, ...]:
@@ -164,27 +188,38 @@ class Takes(QObject):
             is_restrapped_before=self._is_restrapped,
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
-        self._must_stop, self._strides = False, None
+        self._must_stop, self._must_keep, self._strides = False, True, None
         session_id = self.session.id
 
-        def start(opened: "OpenedLibrary") -> "Recorder":
+        def start(opened: "OpenedLibrary", turn: "Future[None]") -> "Recorder":
             from app.acquisition.recorder import Recorder
 
-            return Recorder.begin(opened, acquisition, session_id, told, self._on_trouble)
+            return Recorder.begin(opened, acquisition, session_id, told, self._on_trouble, turn)
 
-        self._desk.run(start, self._on_started, self._on_not_started, self)
+        self._desk.record(start, self._on_started, self._on_not_started, self)
         self.changed.emit()
 
-    def stop(self, strides: Mapping[Side, int] | None = None) -> None:
-        """Stop, and read back what was recorded; `ended` follows. One that has not begun yet ends as soon as it has."""
+    def stop(self, strides: Mapping[Side, int] | None = None, *, is_kept: bool = True) -> None:
+        """Stop, and read back what was recorded; `ended` follows. One that has not begun yet ends as soon as it has.
+
+        Not `is_kept`: it was broken off and does not count; nothing is deleted.
+        """
         if self.ongoing is None or self._is_stopping:
             return
-        self._must_stop, self._strides = True, strides
+        self._must_stop, self._must_keep, self._strides = True, is_kept, strides
         if self._recorder is None:
             return
-        self._stopped, self._recorder = self._recorder, None
-        self._is_stopping, self._readings = True, 0
-        self._read_back()
+        recorder, self._recorder = self._recorder, None
+
+        def halt(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
+            recorder.halt()
+
+        self._is_stopping = True
+        self._unread.append(_Unread(recorder, self.ongoing.told.name, strides, is_kept))
+        self._desk.record(halt, None, self._on_not_halted, self)
+        self._waited.start()
+        if not self._again.isActive():
+            self._read_back()
         self.changed.emit()
 
     def mark(self, text: str) -> None:
@@ -238,7 +273,7 @@ class Takes(QObject):
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
         word = {RecordingKind.STANDING: "standing", RecordingKind.FREE_MOTION: "free motion"}.get(kind, "walk")
-        taken = {take.told.name for take in self.every}
+        taken = {take.told.name for take in self.every} | {unread.name for unread in self._unread}
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
@@ -248,9 +283,16 @@ class Takes(QObject):
         self.changed.emit()
 
     def _read_back(self) -> None:
-        if self._stopped is not None:
+        if self._unread and not self._is_reading:
+            self._is_reading = True
             self._readings += 1
-            self._desk.run(self._stopped.stop, self._on_stopped, self._on_not_stopped, self)
+            self._desk.run(self._unread[0].recorder.stop, self._on_read_back, self._on_not_read_back, self)
+
+    def _go_on(self) -> None:
+        """The next recording may begin."""
+        if self._is_stopping:
+            self.ongoing, self._is_stopping = None, False
+            self._waited.stop()
 
     def _on_trouble(self, trouble: Trouble) -> None:
         self._met.emit(str(trouble))
@@ -266,16 +308,35 @@ class Takes(QObject):
         self._recorder = recorder
         self._is_restrapped = False
         self.begun.emit()
+        if not recorder.has_row:
+            self.troubled.emit(
+                tr("The library does not answer."),
+                tr("The recording goes on, safe on the disk; it is added as soon as the library answers."),
+            )
         if self._must_stop:
-            self.stop(self._strides)
+            self.stop(self._strides, is_kept=self._must_keep)
 
-    def _on_stopped(self, result: tuple[StoredRecording, Recording]) -> None:
+    def _on_read_back(self, result: tuple[StoredRecording, Recording]) -> None:
         stored, recording = result
+        unread = self._unread.pop(0)
+        self._is_reading, self._readings = False, 0
         is_walk = stored.told.kind is RecordingKind.WALKING
-        take = Take(stored, recording, self._strides, is_decided=not is_walk)
-        self.ongoing, self._stopped, self._is_stopping = None, None, False
+        take = Take(stored, recording, unread.strides, is_decided=not is_walk)
+        if not self._unread:
+            self._go_on()
         self._put(take)
         self.ended.emit(take)
+        if not unread.is_kept:
+            self.keep(take, is_kept=False)
+        self._read_back()
+
+    def _on_waited(self) -> None:
+        self._go_on()
+        self.changed.emit()
+        self.refused.emit(tr("The library does not answer yet."), _safe())
+
+    def _on_not_halted(self, _what: str, _remedy: str) -> None:
+        """Whoever reads it back meets the same, and tells."""
 
     def _on_changed(self, stored: StoredRecording) -> None:
         before = next(take for take in self.every if take.id == stored.id)
@@ -290,15 +351,26 @@ class Takes(QObject):
         self.changed.emit()
         self.refused.emit(what, remedy)
 
-    def _on_not_stopped(self, what: str, remedy: str) -> None:
+    def _on_not_read_back(self, what: str, _remedy: str) -> None:
         """What was recorded is on the disk: try for a while to read it back, then leave that to the next start."""
+        is_first = self._is_stopping or self._readings == 1
+        self._is_reading = False
+        self._go_on()
         if self._desk.state is not None and self._readings < MOST_READINGS:
             self._again.start()
-            self.refused.emit(what, tr("The recording is safe on the disk; it is read back as soon as that can be."))
+            self.changed.emit()
+            if is_first:
+                self.refused.emit(what, _safe())
             return
-        self.ongoing, self._stopped, self._is_stopping = None, None, False
+        self._unread.pop(0)
+        self._readings = 0
         self.changed.emit()
         self.refused.emit(what, tr("The recording is safe on the disk; it is found when Gaitwright starts again."))
+        self._read_back()
+
+
+def _safe() -> str:
+    return tr("The recording is safe on the disk; it is read back as soon as that can be.")
 
 
 def counted(takes: Sequence[Take]) -> tuple[Recording, ...]:

@@ -28,6 +28,8 @@ from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
+    from concurrent.futures import Future
+
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
     from core.live.sensors import LiveSensor
@@ -296,10 +298,10 @@ class Visit(QObject):
         if self.takes.is_recording and (acquisition := self.sensors.detach()) is not None:
             self.takes.stop()
 
-            def close(_opened: "OpenedLibrary") -> None:
+            def close(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
                 acquisition.close()
 
-            self._desk.run(close, None, None, self._desk)  # in its turn, after the recording has been stopped
+            self._desk.record(close, None, None, self._desk)  # in its turn, after the recording has been stopped
         else:
             self.sensors.close()
 
@@ -307,7 +309,7 @@ class Visit(QObject):
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        return idle and not self.takes.is_recording
+        return idle and self.takes.is_idle
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""

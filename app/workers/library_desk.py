@@ -1,5 +1,7 @@
 """Who asks the library while the screen goes on? One thread, in the order of asking; answers come to the screen's.
 
+A recording begins and ends in a thread of its own: neither waits for what the library is being asked meanwhile.
+
 A call is given as a function of the open library and as bound methods of whoever asked. Those are called on the
 screen's thread, and not at all once their owner is gone. Refusals arrive as two sentences, what and remedy, ready to
 be shown. Storage is imported by the thread, for its imports take longer than the window may.
@@ -8,12 +10,12 @@ be shown. Storage is imported by the thread, for its imports take longer than th
 import logging
 import tempfile
 from collections.abc import Callable
+from concurrent.futures import Future
 from contextlib import ExitStack
 from dataclasses import dataclass, field, replace
-from datetime import datetime
 from pathlib import Path
 from queue import SimpleQueue
-from threading import Lock
+from threading import Event, Lock
 from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
 from weakref import WeakMethod, ref
 
@@ -22,15 +24,13 @@ from shiboken6 import isValid
 
 from app.wording import tr
 from app.workers.background import Background, Report
+from app.workers.library_opening import demonstration, let_keyring_remember, logged_in, slots_of, tidy
+from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
-    from app.storage.keys import KeySlots
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
     from app.storage.stored import Operator
-
-BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
-DEMONSTRATION_CODE = "DEMO-1"
 
 _log = logging.getLogger(__name__)
 
@@ -87,8 +87,11 @@ class LibraryDesk(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self._worker = _Worker(self)
-        self._worker.told.connect(self._on_told)
+        self._holder = _Holder()
+        self._calls = _Lane(self, self._holder.do_left_over, self._holder.close)
+        self._recordings = _Lane(self)
+        for lane in (self._calls, self._recordings):
+            lane.told.connect(self._on_told)
         self._state: OpenedState | None = None
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
@@ -113,7 +116,25 @@ class LibraryDesk(QObject):
 
         Without `failed` a refusal is told by the signal `refused`.
         """
-        self._worker.ask(_Job(lambda thread: call(thread.library), _weak(done), _weak(failed), ref(owner)))
+        self._calls.ask(_Job(lambda: call(self._holder.library), _weak(done), _weak(failed), ref(owner)))
+
+    def record(
+        self,
+        call: "Callable[[OpenedLibrary, Future[None]], T]",
+        done: Callable[[T], object] | None,
+        failed: Failed | None,
+        owner: QObject,
+    ) -> None:
+        """As `run`, for beginning and ending recordings: whatever else the library is asked is not waited for.
+
+        The `Future` that `call` is given is done when all that was asked before has been.
+        """
+        if self._state is None:
+            self._tell_refusal(_Job(_nothing, None, _weak(failed), ref(owner)), *nothing_open())
+            return
+        library, turn = self._state.library, Future[None]()
+        self._calls.ask(_Job(lambda: turn.set_result(None), None, None, ref(self)))
+        self._recordings.ask(_Job(lambda: call(library, turn), _weak(done), _weak(failed), ref(owner)))
 
     def run_long(
         self,
@@ -127,15 +148,15 @@ class LibraryDesk(QObject):
 
         Nothing more is heard of what was stopped.
         """
-        job = _Job(_Thread.nothing, _weak(done), _weak(failed), ref(owner))
+        job = _Job(_nothing, _weak(done), _weak(failed), ref(owner))
         if self._state is None:
-            self._tell_refusal(job, *_nothing_open())
+            self._tell_refusal(job, *nothing_open())
             return
         if self._long.is_busy:  # what was stopped is waited for by the next
             self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
             return
         self._long_job, self._long_progressed = job, _weak(progressed)
-        library, lock = self._state.library, self._worker.long_work
+        library, lock = self._state.library, self._holder.long_work
 
         def locked(report: Report) -> T:
             with lock:  # the library is not closed under it
@@ -149,7 +170,7 @@ class LibraryDesk(QObject):
 
     def look(self, folder: Path, done: Callable[[LibraryPlace], object], failed: Failed, owner: QObject) -> None:
         """Find out who may open the library in `folder`."""
-        self._worker.ask(_Job(lambda _thread: _look(folder), _weak(done), _weak(failed), ref(owner)))
+        self._calls.ask(_Job(lambda: _look(folder), _weak(done), _weak(failed), ref(owner)))
 
     def open(self, folder: Path, passphrase: str, code: str = "", must_remember: bool = False) -> None:
         """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too."""
@@ -159,7 +180,7 @@ class LibraryDesk(QObject):
 
             library = open_library(folder, passphrase, code)
             if must_remember:
-                _remember(library)
+                let_keyring_remember(library)
             return library, ""
 
         self._open(opening)
@@ -171,10 +192,10 @@ class LibraryDesk(QObject):
             from app.storage.keyring_slot import open_remembered
             from app.storage.keys import KeyRefusedError
 
-            data_key = open_remembered(_slots(folder), code)
+            data_key = open_remembered(slots_of(folder), code)
             if data_key is None:
                 raise KeyRefusedError(tr("This computer does not remember the passphrase any more"), tr("Type it"))
-            return _logged_in(folder, data_key, code), ""
+            return logged_in(folder, data_key, code), ""
 
         self._open(opening)
 
@@ -182,10 +203,10 @@ class LibraryDesk(QObject):
         """Open a library with its recovery key, and give the operator a new passphrase."""
 
         def opening() -> "Opening":
-            slots = _slots(folder)
+            slots = slots_of(folder)
             data_key = slots.open_with_recovery_key(recovery_key)
             slots.set_passphrase(data_key, code, passphrase)
-            return _logged_in(folder, data_key, code), ""
+            return logged_in(folder, data_key, code), ""
 
         self._open(opening)
 
@@ -203,29 +224,33 @@ class LibraryDesk(QObject):
     def open_demonstration(self) -> None:
         """Open a library of its own, gone when it is closed, with one simulated patient and a session."""
         self._end_library()
-        self._worker.ask(_Job(_Thread.open_demonstration, None, None, ref(self)))
+        self._calls.ask(_Job(self._holder.open_demonstration, None, None, ref(self)))
 
     def close(self) -> None:
         """Close the library that is open; what is asked later is refused until another is."""
         self._end_library()
-        self._worker.ask(_Job(_Thread.close, None, None, ref(self)))
+        self._calls.ask(_Job(self._holder.close, None, None, ref(self)))
 
     def finish(self) -> None:
         """Close, and wait for all threads: for the end of the program."""
         self._end_library()
         self._long.finish()
-        self._worker.finish()
+        self._calls.finish()
+        self._recordings.finish()
 
     def _open(self, opening: "Callable[[], Opening]") -> None:
         self._end_library()
-        self._worker.ask(_Job(lambda thread: thread.open(opening), None, None, ref(self)))
+        self._calls.ask(_Job(lambda: self._holder.open(opening), None, None, ref(self)))
 
     def _end_library(self) -> None:
+        """What is asked next closes the library: not before the last recording has ended."""
         self.stop_long()
+        if self._state is not None:
+            self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
         self._state = None
 
     def _on_told(self, job: "_Job", outcome: object) -> None:
-        if isinstance(outcome, _Refusal):
+        if isinstance(outcome, Refusal):
             self._tell_refusal(job, outcome.what, outcome.remedy)
         elif isinstance(outcome, OpenedState):
             self._state = outcome
@@ -256,13 +281,8 @@ class LibraryDesk(QObject):
     def _on_long_failed(self, error: Exception) -> None:
         job, self._long_job = self._long_job, None
         if job is not None:
-            refusal = _refusal(error)
+            refusal = refusal_of(error)
             self._tell_refusal(job, refusal.what, refusal.remedy)
-
-
-class _Refusal(NamedTuple):
-    what: str
-    remedy: str
 
 
 class _NotOpened(NamedTuple):
@@ -275,13 +295,9 @@ class _Closed(NamedTuple):
     pass
 
 
-class _NothingOpenError(Exception):
-    """A call came while no library was open."""
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Job:
-    call: "Callable[[_Thread], object]"
+    call: Callable[[], object]
     done: "WeakMethod[Callable[..., object]] | None"
     failed: "WeakMethod[Failed] | None"
     owner: "ref[QObject]"
@@ -292,44 +308,62 @@ class _Job:
         return method() if method is not None and owner is not None and isValid(owner) else None
 
 
-class _Worker(QThread):
-    """Runs until `finish`; begins with the first job."""
+def _nothing() -> None:
+    """What runs elsewhere."""
+
+
+class _Lane(QThread):
+    """Does one job after the other until `finish`, and nothing after it; begins with the first."""
 
     told = Signal(object, object)  # the job, and what came of it
 
-    def __init__(self, parent: QObject) -> None:
+    def __init__(
+        self, parent: QObject, after_each: Callable[[], object] = _nothing, at_end: Callable[[], object] = _nothing
+    ) -> None:
         super().__init__(parent)
         self._jobs: SimpleQueue[_Job | None] = SimpleQueue()
-        self.long_work = Lock()
+        self._after_each, self._at_end = after_each, at_end
+        self._is_over = False
 
     def ask(self, job: _Job) -> None:
+        if self._is_over:
+            return
         self._jobs.put(job)
         if not self.isRunning():
             self.start()
 
+    def passed(self) -> Event:
+        """Set once all that was asked until now is done."""
+        passed = Event()
+        if self.isRunning():
+            self.ask(_Job(passed.set, None, None, ref(self)))
+        else:
+            passed.set()
+        return passed
+
     def finish(self) -> None:
+        self._is_over = True
         if self.isRunning():
             self._jobs.put(None)
             self.wait()
 
     def run(self) -> None:
-        thread = _Thread(self.long_work)
         while (job := self._jobs.get()) is not None:
             try:
-                outcome = job.call(thread)
+                outcome = job.call()
             except Exception as error:  # the edge of the thread: beyond it nobody could catch it
-                outcome = _refusal(error)
+                outcome = refusal_of(error)
             self.told.emit(job, outcome)
             del job, outcome  # not held until the next one comes
-            thread.do_left_over()
-        thread.close()
+            self._after_each()
+        self._at_end()
 
 
-class _Thread:
-    """What the thread alone touches: the library, and all that ends with it."""
+class _Holder:
+    """What the thread of the calls alone touches: the library, and all that ends with it."""
 
-    def __init__(self, long_work: Lock) -> None:
-        self._long_work = long_work
+    def __init__(self) -> None:
+        self.long_work = Lock()
         self._library: OpenedLibrary | None = None
         self._ends = ExitStack()
         self._is_to_be_tidied = False
@@ -337,11 +371,8 @@ class _Thread:
     @property
     def library(self) -> "OpenedLibrary":
         if self._library is None:
-            raise _NothingOpenError
+            raise NothingOpenError
         return self._library
-
-    def nothing(self) -> None:
-        """What runs elsewhere."""
 
     def open(self, opening: "Callable[[], Opening]") -> OpenedState | _NotOpened:
         from app.storage.keys import KeyRefusedError
@@ -354,7 +385,7 @@ class _Thread:
                 state = _look_through(library, ends)
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # told where the library was to be opened
-            return _NotOpened(*_refusal(error), isinstance(error, KeyRefusedError))
+            return _NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError))
         self._is_to_be_tidied = True
         return replace(state, recovery_key=recovery_key)
 
@@ -363,15 +394,15 @@ class _Thread:
         try:
             with ExitStack() as ends:
                 folder = Path(ends.enter_context(tempfile.TemporaryDirectory(prefix="gaitwright-demo-")))
-                library = ends.enter_context(_demonstration(folder))
+                library = ends.enter_context(demonstration(folder))
                 state = _look_through(library, ends)
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:
-            return _NotOpened(*_refusal(error), False)
+            return _NotOpened(*refusal_of(error), False)
         return state
 
     def close(self) -> _Closed:
-        with self._long_work:
+        with self.long_work:
             self._library, self._is_to_be_tidied = None, False
             self._ends.close()
         return _Closed()
@@ -383,7 +414,7 @@ class _Thread:
             return
         self._is_to_be_tidied = False
         try:
-            _tidy(library)
+            tidy(library)
         except Exception as error:  # it is tried again at the next start
             _log.warning("what is overdue was not removed", exc_info=error)
 
@@ -398,106 +429,14 @@ def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
     return OpenedState(library, operator, find_interrupted(library), library.library.is_end_lost)
 
 
-def _tidy(library: "OpenedLibrary") -> None:
-    from app.storage.backup import remove_old_backups
-    from app.storage.retention import destroy_overdue
-    from app.storage.stored import Role
-
-    operator = library.library.operator
-    if operator is None or operator.role is Role.VIEWER:
-        return
-    destroyed = destroy_overdue(library)
-    folder = library.library.settings.get(BACKUP_FOLDER, "")
-    removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()
-    _log.info("sessions destroyed: %d, old backups removed: %d", destroyed, len(removed))
-
-
-def _demonstration(folder: Path) -> "OpenedLibrary":
-    from app.storage.exchange import import_session
-    from app.storage.library import DEMONSTRATOR, Library
-    from app.storage.opened import OpenedLibrary
-    from devices.walker import DEMONSTRATION, simulate
-
-    library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
-    try:
-        session = replace(simulate(DEMONSTRATION).session, started=datetime.now().isoformat(timespec="seconds"))
-        import_session(library, session, _silent, DEMONSTRATION_CODE)
-    except BaseException:
-        library.library.close()
-        raise
-    return library
-
-
-def _silent(_share: float, _what: str) -> None:
-    """For whom progress is nothing."""
-
-
-def _slots(folder: Path) -> "KeySlots":
-    from app.storage.keys import KeySlots
-    from app.storage.opened import KEYS
-
-    return KeySlots(folder / KEYS)
-
-
 def _look(folder: Path) -> LibraryPlace:
     from app.storage.keyring_slot import is_there_a_keyring
 
-    slots = _slots(folder)
+    slots = slots_of(folder)
     codes = slots.codes if slots.exists else ()
     remembered = tuple(code for code in codes if slots.keyring_slot(code) is not None)
     return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring())
 
 
-def _logged_in(folder: Path, data_key: bytes, code: str) -> "OpenedLibrary":
-    from app.storage.library import Library
-    from app.storage.opened import OpenedLibrary
-
-    library = Library.open(folder, data_key)
-    try:
-        library.log_in(code)
-    except BaseException:
-        library.close()
-        raise
-    return OpenedLibrary(library, folder, data_key)
-
-
-def _remember(library: "OpenedLibrary") -> None:
-    """Let the keyring open the library next time; where it does not take the key, the passphrase goes on doing so."""
-    from app.storage.keyring_slot import remember
-    from app.storage.keys import KeyRefusedError
-
-    operator = library.library.operator
-    if library.data_key is None or operator is None:
-        return
-    try:
-        remember(_slots(library.folder), library.data_key, operator.code)
-    except KeyRefusedError as refusal:
-        _log.warning("the keyring takes no key", exc_info=refusal)
-
-
 def _weak(method: Callable[P, T] | None) -> "WeakMethod[Callable[P, T]] | None":
     return None if method is None else WeakMethod(method)
-
-
-def _nothing_open() -> tuple[str, str]:
-    return tr("No library is open."), tr("Log in, then try again.")
-
-
-def _refusal(error: Exception) -> _Refusal:
-    """Put what was raised into two sentences; what nobody foresaw is logged."""
-    from app.storage.journal.header import JournalRefusedError
-    from app.storage.keys import KeyRefusedError
-    from app.storage.stored import LibraryError
-    from devices.files.refusal import FileRefusedError
-
-    if isinstance(error, LibraryError | KeyRefusedError):
-        return _Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
-    if isinstance(error, JournalRefusedError | FileRefusedError):
-        return _Refusal(f"{error.where}: {error.what}.", f"{error.remedy}.")
-    if isinstance(error, _NothingOpenError):
-        return _Refusal(*_nothing_open())
-    _log.error("a call of the library ended early", exc_info=error)
-    if isinstance(error, OSError):
-        what = tr("A file could not be read or written ({why}).").format(why=error.strerror or type(error).__name__)
-        return _Refusal(what, tr("See to the disk and to the rights of its folder, then try again."))
-    return _Refusal(tr("This ended before it was done."), tr("Try again; the log holds the details."))

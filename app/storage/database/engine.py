@@ -9,10 +9,11 @@ from pathlib import Path
 import sqlcipher3.dbapi2 as sqlite
 from sqlalchemy import Connection, Engine, QueuePool, create_engine, event, make_url, text
 from sqlalchemy.exc import DBAPIError, IntegrityError
+from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.exc import StaleDataError
 
-from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError
+from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError, LibraryFaultError
 
 OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
 BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
@@ -213,7 +214,7 @@ def _told() -> Iterator[None]:
         yield
     except StaleDataError:
         raise changed_meanwhile() from None
-    except (DBAPIError, sqlite.Error) as error:
+    except (DBAPIError, PoolTimeoutError, sqlite.Error) as error:
         cause = error.orig if isinstance(error, DBAPIError) else error
         _log.warning("the database refused: %s (%s)", type(cause), getattr(cause, "sqlite_errorcode", None))
         raise _sentence(error) from None
@@ -224,11 +225,13 @@ def changed_meanwhile() -> ChangedMeanwhileError:
 
 
 def _is_locked(error: Exception) -> bool:
+    if isinstance(error, PoolTimeoutError):
+        return True  # all connections wait for somebody
     cause = error.orig if isinstance(error, DBAPIError) else error
     return getattr(cause, "sqlstate", "") == PG_LOCKED or "is locked" in str(cause)
 
 
-def _sentence(error: DBAPIError | sqlite.Error) -> LibraryError:
+def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryError:
     words = str(error.orig if isinstance(error, DBAPIError) else error)
     if isinstance(error, IntegrityError):
         return LibraryError("This contradicts what the library holds already", "Reload what is shown, then try again")
@@ -237,15 +240,19 @@ def _sentence(error: DBAPIError | sqlite.Error) -> LibraryError:
             "Another program keeps the library busy", "Wait a moment and try again; recordings go on meanwhile"
         )
     if "not a database" in words:
-        return LibraryError(
+        return LibraryFaultError(
             "The library does not open with this key, or its first page is damaged", "Restore it from a backup"
         )
     if "malformed" in words:
-        return LibraryError("The library's file is damaged", "Restore it from a backup")
+        return LibraryFaultError("The library's file is damaged", "Restore it from a backup")
     if "is full" in words:
-        return LibraryError("The disk is full, so nothing was saved", "Make room, then try again")
+        return LibraryFaultError("The disk is full, so nothing was saved", "Make room, then try again")
     if "readonly" in words or "unable to open" in words:
-        return LibraryError("The library's file cannot be opened for writing", "See to the rights of its folder")
+        return LibraryFaultError("The library's file cannot be opened for writing", "See to the rights of its folder")
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
-        return LibraryError("The clinic's server does not answer", "Recordings go on; try again when it is back")
-    return LibraryError("The library's database refused this", "Try again; if it stays so, restore it from a backup")
+        return LibraryFaultError("The clinic's server does not answer", "Recordings go on; try again when it is back")
+    if "disk I/O" in words:
+        return LibraryFaultError("The library's file cannot be read or written", "Check the disk, then try again")
+    return LibraryFaultError(
+        "The library's database refused this", "Try again; if it stays so, restore it from a backup"
+    )

@@ -5,17 +5,20 @@ import struct
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
+from uuid import UUID
 
 import numpy as np
 from numpy.typing import NDArray
 
-from core.samples import FloatArray, ImuBlock
+from core.samples import FloatArray, ImuBlock, Recording, RecordingKind
 from devices.files.site_files import ACC, GYR, MAG, QUAT, TIME
 from devices.source import SourceInfo
 
 STREAM = struct.Struct("<H")  # the source's number, before its bytes
 ROWS = struct.Struct("<HHI")  # the source's number, the sensor's, and how many rows follow
 FLOAT = np.dtype("<f8")
+BELONGING = "gaitwright-recording/1 "  # how the mark begins that says whose a recording is
+BELONGING_FIELDS = ("name", "kind", "folder", "condition", "started", "is_restrapped_before")
 OWN_COLUMNS = {
     (has_orientation, has_field): (TIME, *GYR, *ACC, *(QUAT if has_orientation else ()), *(MAG if has_field else ()))
     for has_orientation in (False, True)
@@ -57,6 +60,27 @@ class SourceEntry:
         if layout is not None:
             layout |= {"columns": tuple(layout["columns"]), "texts": tuple(layout["texts"])}
         return cls(**told, info=SourceInfo(**info), layout=SampleLayout(**layout) if layout is not None else None)
+
+
+@dataclass(frozen=True, slots=True)
+class Belonging:
+    """Of which session a recording is, and what was told of it, in the text of a mark: its row may not be there yet."""
+
+    session_id: UUID
+    told: Recording
+
+    def text(self) -> str:
+        told = {name: getattr(self.told, name) for name in BELONGING_FIELDS}
+        return BELONGING + json.dumps({"session": str(self.session_id), **told})
+
+    @classmethod
+    def parsed(cls, text: str) -> "Belonging | None":
+        """What `text` has written; None of any other mark."""
+        if not text.startswith(BELONGING):
+            return None
+        told: dict[str, Any] = json.loads(text.removeprefix(BELONGING))
+        session_id = UUID(told.pop("session"))
+        return cls(session_id, Recording(imu={}, **(told | {"kind": RecordingKind(told["kind"])})))
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,7 +36,6 @@ class StandStillStep(Step):
         self._page: StandStillPage | None = None
         self._work: StandingWork | None = None
         self._phase = StandPhase.READY
-        self._is_for_nothing = False  # the recording that goes on is not to be kept
         self._moved: tuple[str, ...] = ()
         self._heard = 0  # the second that was sounded last
         self._ticks = 0
@@ -99,7 +98,7 @@ class StandStillStep(Step):
     def leave(self) -> None:
         self._shown.stop()
         if self._is_recording:  # not to its end
-            self._abandon()
+            self._visit.takes.stop(is_kept=False)
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_work(None)
         self._work = None
@@ -172,7 +171,6 @@ class StandStillStep(Step):
         self._phase = StandPhase.COUNTING
         self._watch()
         if not takes.is_recording:
-            self._is_for_nothing = False
             acquisition.ask(RecordingKind.STANDING)
             takes.begin(acquisition, RecordingKind.STANDING)
         self._show()
@@ -204,10 +202,6 @@ class StandStillStep(Step):
         sounds.play(Sound.READY)
         self._shown.start()
         self.changed.emit()
-
-    def _abandon(self) -> None:
-        self._is_for_nothing = True
-        self._visit.takes.stop()
 
     def _go_on(self) -> None:
         if self._phase in (StandPhase.DONE, StandPhase.SKIPPED) and not self._visit.takes.is_recording:
@@ -245,9 +239,7 @@ class StandStillStep(Step):
     def _on_ended(self, take: Take) -> None:
         if take.told.kind is not RecordingKind.STANDING:
             return
-        if self._is_for_nothing:
-            self._visit.takes.keep(take, is_kept=False)
-        elif self._phase is StandPhase.DONE and not self._shown.isActive() and self._work is not None:
+        if self._phase is StandPhase.DONE and not self._shown.isActive() and self._work is not None:
             self._go_on()  # the check mark has been seen while the journal was closed
         self.changed.emit()
 
@@ -265,7 +257,7 @@ class StandStillStep(Step):
         self._visit.set_limits(replace(self._visit.limits, cannot_stand=True))
         self._phase = StandPhase.SKIPPED
         if self._is_recording:
-            self._abandon()
+            self._visit.takes.stop(is_kept=False)
         if (standing := self._visit.takes.standing) is not None:
             self._visit.takes.keep(standing, is_kept=False)
         self._visit.rests = {}

@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from threading import Event, current_thread, main_thread
@@ -16,7 +17,9 @@ from app.storage.opened import KEYS, OpenedLibrary, held_alone
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from core.body import Site
 from core.samples import Patient
+from devices.replay import DEMONSTRATION_NAMES
 
 PASSPHRASE = "four short words here"
 WAIT_MS = 20_000  # on a busy machine
@@ -95,6 +98,35 @@ def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: L
     assert asker.threads == {main_thread()}
     assert main_thread() not in worked_in
     assert len(set(worked_in)) == 1
+
+
+def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker, slow = Asker(), Event()
+    desk.record(lambda _library, _turn: "too early", asker.on_done, asker.on_failed, asker)
+    assert asker.refusals == [("No library is open.", "Log in, then try again.")]
+    opened(qtbot, desk, folder)
+    desk.run(lambda _library: slow.wait(60), None, None, asker)
+    turns: list[bool] = []
+
+    def begin(_library: OpenedLibrary, turn: Future[None]) -> str:
+        turns.append(turn.done())
+        return "begun"
+
+    def end(library: OpenedLibrary, turn: Future[None]) -> int:
+        turn.result()
+        return len(library.library.patients.search())  # it is still open
+
+    desk.record(begin, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: asker.results == ["begun"], timeout=WAIT_MS)
+    assert turns == [False]
+    desk.record(end, asker.on_done, asker.on_failed, asker)
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
+        desk.close()
+        slow.set()
+    assert asker.results == ["begun", 0]
+    assert asker.threads == {main_thread()}
 
 
 def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
@@ -230,6 +262,11 @@ def deleted(library: OpenedLibrary) -> int:
     return len(library.library.patients.search(is_deleted=True))
 
 
+def worn_at_first(opened: OpenedLibrary) -> dict[str, Site]:
+    (line,) = opened.library.sessions.list()
+    return opened.library.sessions.get(line.id).placements[0].site_of
+
+
 def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(qtbot: QtBot, desk: LibraryDesk) -> None:
     with qtbot.waitSignal(desk.opened, timeout=30_000) as told:
         desk.open_demonstration()
@@ -244,6 +281,9 @@ def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(qtbo
     (patient,) = patients
     assert isinstance(patient, StoredPatient)
     assert (patient.told.code, patient.sessions) == ("DEMO-1", 1)
+    desk.run(worn_at_first, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    assert asker.results[1] == {name: site for site, name in DEMONSTRATION_NAMES.items()}, "as its live sensors"
     with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
         desk.close()
     assert not folder.exists()

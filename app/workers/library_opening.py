@@ -1,0 +1,86 @@
+"""What stands between a key and an open library? Somebody logged in, what is overdue, a demonstration's session."""
+
+import logging
+from dataclasses import replace
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from app.storage.keys import KeySlots
+    from app.storage.opened import OpenedLibrary
+
+BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
+DEMONSTRATION_CODE = "DEMO-1"
+
+_log = logging.getLogger(__name__)
+
+
+def slots_of(folder: Path) -> "KeySlots":
+    from app.storage.keys import KeySlots
+    from app.storage.opened import KEYS
+
+    return KeySlots(folder / KEYS)
+
+
+def logged_in(folder: Path, data_key: bytes, code: str) -> "OpenedLibrary":
+    from app.storage.library import Library
+    from app.storage.opened import OpenedLibrary
+
+    library = Library.open(folder, data_key)
+    try:
+        library.log_in(code)
+    except BaseException:
+        library.close()
+        raise
+    return OpenedLibrary(library, folder, data_key)
+
+
+def let_keyring_remember(library: "OpenedLibrary") -> None:
+    """Let the keyring open the library next time; where it does not take the key, the passphrase goes on doing so."""
+    from app.storage.keyring_slot import remember
+    from app.storage.keys import KeyRefusedError
+
+    operator = library.library.operator
+    if library.data_key is None or operator is None:
+        return
+    try:
+        remember(slots_of(library.folder), library.data_key, operator.code)
+    except KeyRefusedError as refusal:
+        _log.warning("the keyring takes no key", exc_info=refusal)
+
+
+def demonstration(folder: Path) -> "OpenedLibrary":
+    from app.storage.exchange import import_session
+    from app.storage.library import DEMONSTRATOR, Library
+    from app.storage.opened import OpenedLibrary
+    from devices.replay import labelled
+    from devices.walker import DEMONSTRATION, simulate
+
+    library = OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None)
+    try:
+        session = labelled(simulate(DEMONSTRATION).session)
+        session = replace(session, started=datetime.now().isoformat(timespec="seconds"))
+        import_session(library, session, silent, DEMONSTRATION_CODE)
+    except BaseException:
+        library.library.close()
+        raise
+    return library
+
+
+def silent(_share: float, _what: str) -> None:
+    """For whom progress is nothing."""
+
+
+def tidy(library: "OpenedLibrary") -> None:
+    from app.storage.backup import remove_old_backups
+    from app.storage.retention import destroy_overdue
+    from app.storage.stored import Role
+
+    operator = library.library.operator
+    if operator is None or operator.role is Role.VIEWER:
+        return
+    destroyed = destroy_overdue(library)
+    folder = library.library.settings.get(BACKUP_FOLDER, "")
+    removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()
+    _log.info("sessions destroyed: %d, old backups removed: %d", destroyed, len(removed))

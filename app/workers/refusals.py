@@ -1,0 +1,41 @@
+"""What happened, and what to do: whatever a call of the library raised, in two sentences that can be shown."""
+
+import logging
+from typing import NamedTuple
+
+from app.wording import tr
+
+_log = logging.getLogger(__name__)
+
+
+class Refusal(NamedTuple):
+    what: str
+    remedy: str
+
+
+class NothingOpenError(Exception):
+    """A call came while no library was open."""
+
+
+def nothing_open() -> Refusal:
+    return Refusal(tr("No library is open."), tr("Log in, then try again."))
+
+
+def refusal_of(error: Exception) -> Refusal:
+    """Put what was raised into two sentences; what nobody foresaw is logged."""
+    from app.storage.journal.header import JournalRefusedError
+    from app.storage.keys import KeyRefusedError
+    from app.storage.stored import LibraryError
+    from devices.files.refusal import FileRefusedError
+
+    if isinstance(error, LibraryError | KeyRefusedError):
+        return Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
+    if isinstance(error, JournalRefusedError | FileRefusedError):
+        return Refusal(f"{error.where}: {error.what}.", f"{error.remedy}.")
+    if isinstance(error, NothingOpenError):
+        return nothing_open()
+    _log.error("a call of the library ended early", exc_info=error)
+    if isinstance(error, OSError):
+        what = tr("A file could not be read or written ({why}).").format(why=error.strerror or type(error).__name__)
+        return Refusal(what, tr("See to the disk and to the rights of its folder, then try again."))
+    return Refusal(tr("This ended before it was done."), tr("Try again; the log holds the details."))

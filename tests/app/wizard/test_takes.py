@@ -1,0 +1,111 @@
+"""A recording begins and ends at once, whatever the library is doing meanwhile; what it holds comes when it can."""
+
+import time
+from collections.abc import Callable
+from threading import Event
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.recorder import ROW_WAIT_S
+from app.storage.opened import OpenedLibrary
+from app.storage.recordings import Recordings
+from app.storage.stored import LibraryFaultError, RecordingState
+from app.wizard.takes import Take
+from app.wizard.visit import Visit
+from app.workers.library_desk import LibraryDesk
+from core.body import Site
+from core.samples import RecordingKind
+from tests.app.wizard.test_visit import begin, record
+
+WAIT_MS = 20_000
+FAULT = LibraryFaultError("The library's file cannot be read or written", "Check the disk")
+
+
+def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
+    """A call of the library that takes as long as it is let: a folder on the net, many samples."""
+
+    def call(_opened: OpenedLibrary) -> None:
+        until.wait(60)
+
+    return call
+
+
+def test_no_call_of_the_library_holds_up_a_recording(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+) -> None:
+    """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was said before."""
+    begin(qtbot, visit, worn)
+    takes, acquisition, over = visit.takes, visit.sensors.acquisition, Event()
+    takes._waited.setInterval(200)
+    assert acquisition is not None
+    desk.run(hanging(over), None, None, desk)
+    visit.place_sensors()  # behind it, and before the walk
+    told: list[tuple[str, str]] = []
+    takes.troubled.connect(lambda *words: told.append(words))
+    takes.refused.connect(lambda *words: told.append(words))
+    ended: list[Take] = []
+    takes.ended.connect(ended.append)
+    try:
+        for _ in range(2):
+            asked_s = time.monotonic()
+            with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
+                takes.begin(acquisition, RecordingKind.WALKING)
+            assert time.monotonic() - asked_s < ROW_WAIT_S + 3.0  # on a busy machine; alone it is a second
+            takes.stop()
+            qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
+            assert acquisition._writer is None
+        assert ended == []
+        assert [what for what, _ in told] == ["The library does not answer.", "The library does not answer yet."] * 2
+        assert all("safe on the disk" in then for _, then in told)
+    finally:
+        over.set()
+    qtbot.waitUntil(lambda: takes.is_idle, timeout=WAIT_MS)
+    assert [take.told.name for take in ended] == ["walk 1", "walk 2"]
+    assert [take.stored.state for take in ended] == [RecordingState.CLOSED] * 2
+    for take in ended:
+        assert take.recording is not None
+        assert set(take.recording.imu) == set(Site)
+    assert visit.session is not None
+    assert [take.stored.placement for take in ended] == [visit.session.placements[-1]] * 2
+
+
+def test_a_database_that_fails_in_whatever_way_costs_no_recording(
+    qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    begin(qtbot, visit, worn)
+    is_broken = [True]
+    for name in ("start", "add_journal", "close"):
+        whole = getattr(Recordings, name)
+
+        def call(*arguments: object, whole: Callable[..., object] = whole) -> object:
+            if is_broken[0]:
+                raise FAULT
+            return whole(*arguments)
+
+        monkeypatch.setattr(Recordings, name, call)
+    takes, acquisition = visit.takes, visit.sensors.acquisition
+    takes._again.setInterval(50)
+    assert acquisition is not None
+    with qtbot.waitSignals([takes.begun, takes.troubled], timeout=WAIT_MS):
+        takes.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(takes.refused, timeout=WAIT_MS) as told:
+        takes.stop()
+    assert told.args == [f"{FAULT.what}.", "The recording is safe on the disk; it is read back as soon as that can be."]
+    assert not takes.is_recording
+    is_broken[0] = False
+    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS) as ended:
+        pass
+    assert ended.args[0].told.name == "walk 1"
+
+
+def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    begin(qtbot, visit, worn)
+    takes, acquisition = visit.takes, visit.sensors.acquisition
+    assert acquisition is not None
+    takes.begin(acquisition, RecordingKind.STANDING)
+    takes.stop(is_kept=False)  # before it has begun
+    qtbot.waitUntil(lambda: bool(takes.every) and not takes.every[0].told.is_kept, timeout=WAIT_MS)
+    assert takes.standing is None
+    record(qtbot, visit, RecordingKind.STANDING, 2.0)
+    assert takes.standing is not None
