@@ -1,0 +1,132 @@
+"""A stored session is replayed through the whole wizard, in real time, up to its results."""
+
+import xml.etree.ElementTree as ET
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.settings import Settings
+from app.theme import Look, load_fonts
+from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.wizard import FREE_MOTION, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
+from app.workers.library_desk import LibraryDesk
+from core.analysis import analyse
+from core.body import Joint, Side, Site
+from core.results import Analysis
+from core.samples import Patient, Recording, RecordingKind, Session
+from devices.files.session_folder import read_session, write_session
+from devices.files.xsens_mtmanager import import_mtmanager
+from devices.walker import DEMONSTRATION, simulate
+
+pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each
+WAIT_MS = 60_000
+BONES = {"femur": "thigh", "tibia": "shank", "calcn": "foot"}
+
+
+@pytest.fixture
+def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
+    load_fonts()
+    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+    wizard = Wizard(Look(), desk, settings)
+    qtbot.addWidget(wizard)
+    wizard.resize(1280, 800)
+    wizard.show()
+    yield wizard
+    wizard.finish()
+    qapp.setStyleSheet("")
+
+
+def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
+    """Replay a folder for a new patient, and go on to the step of standing."""
+    wizard.begin(None)
+    visit = wizard.visit
+    assert visit is not None
+    visit.patient.edit(Patient(code="DEMO-8"))
+    with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
+        visit.patient.commit()
+    wizard.go_to(SENSORS)
+    sensors = wizard.current
+    assert isinstance(sensors, SensorsStep)
+    with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
+        sensors.replay_folder(folder)
+    assert set(visit.sensors.sensor_at) == set(Site)
+    wizard._on_primary()
+    assert wizard._current == STAND_STILL
+
+
+def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
+    visit = wizard.visit
+    assert visit is not None
+    with qtbot.waitSignal(visit.takes.begun, timeout=WAIT_MS):
+        wizard._on_primary()
+    qtbot.wait(round(1000 * seconds))
+    with qtbot.waitSignal(visit.takes.ended, timeout=WAIT_MS):
+        wizard._on_primary()
+
+
+def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
+    visit = wizard.visit
+    assert visit is not None
+    wizard.go_to(RESULTS)
+    qtbot.waitUntil(lambda: not visit.evaluation.is_busy and visit.evaluation.analysis is not None, timeout=WAIT_MS)
+    analysis = visit.evaluation.analysis
+    assert analysis is not None
+    assert analysis.is_simulated, "nobody was measured now"
+    assert all(take.stored.is_simulated for take in visit.takes.every)
+    return analysis
+
+
+def range_deg(analysis: Analysis, joint: Joint) -> float:
+    """Of the last walk's mean cycle."""
+    cycles = analysis.recordings[-1].gait[joint.side].cycles[joint]
+    return float(np.rad2deg(np.ptp(np.nanmean(cycles, axis=0))))
+
+
+def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, wizard: Wizard, tmp_path: Path) -> None:
+    folder = tmp_path / "session"
+    write_session(simulate(DEMONSTRATION).session, folder)
+    lead_to_standing(qtbot, wizard, folder)
+    wizard._on_primary()
+    qtbot.waitUntil(lambda: wizard._current == FREE_MOTION, timeout=WAIT_MS)
+    qtbot.wait(30_000)
+    if wizard._current == FREE_MOTION:
+        wizard._on_primary()
+    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    record_walk(qtbot, wizard, 20.0)
+    analysis, stored = results(qtbot, wizard), analyse(read_session(folder))
+    visit = wizard.visit
+    assert visit is not None
+    assert min(visit.evaluation.strides("walk 1").values()) >= 8
+    for joint in Joint:
+        assert range_deg(analysis, joint) == pytest.approx(range_deg(stored, joint), abs=3.0), joint
+
+
+def test_a_real_walk_without_standing_goes_as_far(
+    qtbot: QtBot, wizard: Wizard, test_data: Callable[[str], Path], tmp_path: Path
+) -> None:
+    source = test_data("vendor_exports/xsens_mtmanager")
+    worn = {}
+    for sensor in ET.parse(source / "OpenSenseExample_myIMUMappings.xml").iter("ExperimentalSensor"):
+        bone, side, *_ = (sensor.findtext("name_in_model") or "").split("_")
+        if bone in BONES:
+            worn[Site(f"{'left' if side == 'l' else 'right'}_{BONES[bone]}")] = sensor.attrib["name"]
+    imported = import_mtmanager(sorted(source.glob("OpenSenseExample_*")), worn, "walk 1")
+    folder = tmp_path / "real"
+    write_session(Session((Recording("walk 1", RecordingKind.WALKING, "walk_1", imported.imu),)), folder)
+    lead_to_standing(qtbot, wizard, folder)
+    wizard.go_to(FREE_MOTION)
+    qtbot.wait(12_000)
+    wizard._on_primary()
+    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    record_walk(qtbot, wizard, 24.0)
+    analysis = results(qtbot, wizard)
+    visit = wizard.visit
+    assert visit is not None
+    strides = visit.evaluation.strides("walk 1")
+    assert {side: strides[side] >= 8 for side in Side} == dict.fromkeys(Side, True)
+    assert "rate_from_orientation" in {finding.key for finding in analysis.findings}, "as the file has it"
