@@ -1,6 +1,7 @@
 """A session of a folder or of the demonstration, with no library needed: it is analysed, and its results are shown."""
 
 import logging
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,7 +33,9 @@ from core.body import Side
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
+    from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
+    from app.workers.how_found_desk import HowFoundDesk
     from app.workers.opening import Opened
     from core.samples import Patient
 
@@ -60,9 +63,13 @@ class SessionScreen(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._background = Background(self)
+        self._background, self._looking, self._saving = (Background(self) for _ in range(3))
         self._has_way_back = False
         self._results: ResultPage | None = None
+        self._opened: Opened | None = None
+        self._found: FoundPage | None = None
+        self._how_found: HowFoundDesk | None = None
+        self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header(look)
         self.banner = Banner(look)
@@ -100,14 +107,19 @@ class SessionScreen(QWidget):
             self.banner.tell(*map(tr, STOPPED))
 
     def leave(self) -> None:
-        """Go back, and end what is running."""
-        if self._has_way_back:
+        """Go back, first to the results where these are looked behind, and end what is running."""
+        if self._found is not None and self.pages.currentWidget() is self._found:
+            self._looking.stop()
+            self._show_page(self._results or self.empty)
+        elif self._has_way_back:
             self.stop()
             self.left.emit()
 
     def finish(self) -> None:
         """Wait for the thread of an analysis that was running when the window was closed."""
         self._background.finish()
+        self._looking.finish()
+        self._saving.finish()
 
     def set_way_back(self, has_way_back: bool) -> None:
         self._has_way_back = has_way_back
@@ -162,10 +174,13 @@ class SessionScreen(QWidget):
             page.open_folder.clicked.connect(self.choose_folder)
             page.open_demonstration.clicked.connect(self.demonstration_wished)
         self.bar.back.clicked.connect(self.leave)
+        self.bar.how_found.clicked.connect(self._on_how_found)
         self.working.stop_pressed.connect(self.stop)
         self._background.progressed.connect(self._on_progressed)
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
+        self._saving.done.connect(self._on_figures_saved)
+        self._saving.failed.connect(self._on_figures_not_saved)
         self._look.changed.connect(self._on_look_changed)
 
     def _begin(self, work: Work, title: str) -> None:
@@ -182,7 +197,7 @@ class SessionScreen(QWidget):
         elif page is self.empty:
             self.empty.open_folder.setFocus()
         elif self._results is not None:
-            self._results.focus()
+            (self._found if page is self._found and self._found is not None else self._results).focus()
         self._fit()
 
     def _fit(self) -> None:
@@ -194,6 +209,8 @@ class SessionScreen(QWidget):
         self.bar.set_narrow(is_narrow)
         if self._results is not None:
             self._results.set_room(width, height - HEADER - BAR)
+        if self._found is not None:
+            self._found.set_room(width, height - HEADER)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.open_folder(Path(folder))
@@ -208,16 +225,50 @@ class SessionScreen(QWidget):
 
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)
-            order = [*self._results.tab_order, self.bar.back, self.bar.open_folder, self.bar.open_demonstration]
+            verbs = (self.bar.back, self.bar.open_folder, self.bar.open_demonstration, self.bar.how_found)
+            order = [*self._results.tab_order, *verbs]
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
-        session = opened.session
+        self._opened, session = opened, opened.session
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         self._results.show_analysis(opened.analysis, session.recordings, is_prosthetic=is_prosthetic)
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
         self._show_page(self._results)
+
+    def _on_how_found(self) -> None:
+        """Look behind the recording that is shown; the page is made at the first time."""
+        recording = self._results.recording if self._results is not None else None
+        if self._opened is None or recording is None:
+            return
+        if self._found is None or self._how_found is None:
+            from app.pages.found_page import FoundPage
+            from app.workers.how_found_desk import HowFoundDesk
+
+            self._found = FoundPage(self._look)
+            self.pages.addWidget(self._found)
+            self._how_found = HowFoundDesk(self._found, self._looking, self)
+            self._how_found.refused.connect(self.banner.tell)
+            self._how_found.writing.connect(self._on_figures_wished)
+            self._found.closed.connect(self.leave)
+        self._how_found.show(self._opened.session, self._opened.analysis, recording)
+        self._show_page(self._found)
+
+    def _on_figures_wished(self, folder: Path, write: Callable[[], None]) -> None:
+        self._saved_in = folder
+        self._saving.start(lambda _report: write())
+
+    def _on_figures_saved(self) -> None:
+        if self._found is not None:
+            self._found.show_saved(self._saved_in.name)
+
+    def _on_figures_not_saved(self, error: Exception) -> None:
+        from app.workers.how_found_desk import cannot_write
+
+        if not isinstance(error, OSError):
+            _log.error("the figures were not saved", exc_info=error)
+        self.banner.tell(*(f"{said}." for said in cannot_write(self._saved_in)))
 
     def _on_failed(self, error: Exception) -> None:
         self._show_page(self._results or self.empty)
@@ -257,12 +308,14 @@ class _ActionBar(QWidget):
         self.back.hide()
         self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
         self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
+        self.how_found = Button(look, tr("How was this found?"), Kind.QUIET, Icon.SEARCH)
         self._purpose = Text(look, tr("Research use. Not a medical device."), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.back)
         self._row.addWidget(self.open_folder)
         self._row.addWidget(self.open_demonstration)
+        self._row.addWidget(self.how_found)
         self._row.addWidget(self._purpose, 1)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()

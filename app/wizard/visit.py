@@ -77,6 +77,8 @@ class Visit(QObject):
         self.reviewing = Reviewing(self)
         self.preview = Background(self)
         """Sets the report's pages; of the visit, for its threads outlive a step."""
+        self.looking = Background(self)
+        """Finds out how a joint was found."""
         self.rests: dict[str, Rest] = {}
         """What each sensor, by name, reads while the patient stands; empty until then."""
         self.limits = Limits()
@@ -309,7 +311,7 @@ class Visit(QObject):
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        return idle and self.takes.is_idle
+        return idle and self.looking.is_idle and self.takes.is_idle
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
@@ -317,6 +319,7 @@ class Visit(QObject):
         self.evaluation.finish()
         self.reviewing.finish()
         self.preview.finish()
+        self.looking.finish()
 
     def _change(self, told: Session) -> None:
         self._wanted = told

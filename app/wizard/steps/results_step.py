@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
@@ -13,6 +14,8 @@ from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepState
+from app.wizard.keys import Action as KeyAction
+from app.wizard.keys import Intent
 from app.wizard.steps.step import Step
 from app.wording import capitalised, name_of, place, tr
 from core.body import Joint
@@ -21,9 +24,11 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from app.pages.correct_page import CorrectPage
+    from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
     from app.wizard.takes import Take
     from app.wizard.visit import Visit
+    from app.workers.how_found_desk import HowFoundDesk
     from core.results import Analysis
     from core.samples import Recording
 
@@ -33,7 +38,8 @@ class ResultsStep(Step):
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
-        self._is_correcting = False
+        self._is_correcting = self._is_asking = False
+        self._how_found: HowFoundDesk | None = None
         self._undo: Callable[[], object] | None = None
         visit.takes.changed.connect(self._on_takes_changed)
         visit.changed.connect(self._on_visit_changed)
@@ -78,9 +84,15 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
+        if self._is_asking:
+            return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
         quiet: tuple[Verb, ...] = ()
         if not self._is_correcting:
-            quiet = (Verb(tr("Correct"), icon=Icon.REPEAT), Verb(tr("Review in Rerun"), icon=Icon.PLAY))
+            quiet = (
+                Verb(tr("Correct"), icon=Icon.REPEAT),
+                Verb(tr("Review in Rerun"), icon=Icon.PLAY),
+                Verb(tr("How was this found?"), icon=Icon.SEARCH),
+            )
         return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
 
     def on_primary(self) -> None:
@@ -97,13 +109,23 @@ class ResultsStep(Step):
             if evaluation.session is not None and evaluation.analysis is not None:
                 self._visit.reviewing.show(evaluation.session, evaluation.analysis)
 
+        elif number == 2 and self.bar().quiet:
+            self._ask()
+
+    def on_intent(self, intent: Intent) -> bool:
+        if self._is_asking and intent.action in (KeyAction.BACK, KeyAction.UNFILL):
+            self._on_answered()
+            return True
+        return False
+
     def undo(self) -> None:
         if self._undo is not None:
             self._undo()
             self._undo = None
 
     def leave(self) -> None:
-        self._is_correcting = False
+        self._is_correcting = self._is_asking = False
+        self._visit.looking.stop()
 
     def _evaluate_if_stale(self) -> None:
         evaluation = self._visit.evaluation
@@ -114,8 +136,11 @@ class ResultsStep(Step):
 
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
+        self._is_asking &= evaluation.analysis is self._shown and not evaluation.is_busy
         if self._is_correcting:
             self._show_corrections()
+        elif self._is_asking:
+            page.setCurrentWidget(page.found())
         elif evaluation.is_busy:
             page.working.begin(tr("Analysing the walks"))
             page.setCurrentWidget(page.working)
@@ -144,6 +169,51 @@ class ResultsStep(Step):
             session.recordings if session is not None else (),
             is_prosthetic=bool(self._visit.prosthetic_sides),
         )
+
+    # how a joint was found
+
+    def _ask(self) -> None:
+        evaluation, recording = self._visit.evaluation, self.page.results().recording
+        if evaluation.session is None or evaluation.analysis is None or recording is None:
+            return
+        self._is_asking = True
+        self._desk_of_found().show(evaluation.session, evaluation.analysis, recording)
+        self._show()
+        self.page.found().focus()
+
+    def _desk_of_found(self) -> "HowFoundDesk":
+        if self._how_found is None:
+            from app.workers.how_found_desk import HowFoundDesk
+
+            self._how_found = HowFoundDesk(self.page.found(), self._visit.looking, self)
+            self._how_found.refused.connect(self.told)
+            self._how_found.writing.connect(self._on_figures_wished)
+            self.page.found().closed.connect(self._on_answered)
+        return self._how_found
+
+    def _on_answered(self) -> None:
+        self._is_asking = False
+        self._visit.looking.stop()
+        self._show()
+
+    def _on_figures_wished(self, folder: Path, write: Callable[[], None]) -> None:
+        from app.workers.how_found_desk import saved_from_library
+
+        if (session := self._visit.session) is not None:
+            session_id = session.id
+            self._visit.desk.run(
+                lambda opened: saved_from_library(opened, session_id, folder, write),
+                self._on_figures_saved,
+                self._on_figures_not_saved,
+                self,
+            )
+
+    def _on_figures_saved(self, folder: Path) -> None:
+        self.told.emit("", "")
+        self.page.found().show_saved(folder.name)
+
+    def _on_figures_not_saved(self, what: str, remedy: str) -> None:
+        self.told.emit(what, remedy)
 
     # what is put right
 
@@ -297,6 +367,7 @@ class _ResultsFrame(QStackedWidget):
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to
         self._results: ResultPage | None = None
         self._correct: CorrectPage | None = None
+        self._found: FoundPage | None = None
         self.has_correct = False
         self._room = (0.0, 0.0)
         for page in (self.sentence, self.working):
@@ -324,8 +395,19 @@ class _ResultsFrame(QStackedWidget):
             self.addWidget(self._correct)
         return self._correct
 
+    def found(self) -> "FoundPage":
+        if self._found is None:
+            from app.pages.found_page import FoundPage
+
+            self._found = FoundPage(self._look)
+            self._found.set_room(*self._room)
+            self.addWidget(self._found)
+        return self._found
+
     def set_room(self, width: float, height: float) -> None:
         self._room = width, height
+        if self._found is not None:
+            self._found.set_room(width, height)
         if self._results is not None:
             self._results.set_room(width, height)
         if self._correct is not None:
@@ -335,5 +417,7 @@ class _ResultsFrame(QStackedWidget):
         shown: QWidget | None = self.currentWidget()
         if self._results is not None and shown is self._results:
             self._results.focus()
+        elif self._found is not None and shown is self._found:
+            self._found.focus()
         elif shown is self.sentence:
             self.sentence.button.setFocus()

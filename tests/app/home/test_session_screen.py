@@ -15,6 +15,7 @@ from pytestqt.qtbot import QtBot
 
 from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
+from app.pages.found_page import FoundPage
 from app.pages.result_page import (
     BOTH,
     FACTS,
@@ -190,6 +191,21 @@ def test_a_session_is_shown_with_its_patient_and_its_first_walk(window: SessionS
     for joint in Joint:
         expected = np.rad2deg(angle(joint, True).angle_rad)
         np.testing.assert_allclose(drawn_deg(results, joint), expected)
+
+
+def test_how_a_joint_was_found_opens_over_the_results_and_gives_way_to_them(
+    qtbot: QtBot, window: SessionScreen, results: ResultPage
+) -> None:
+    window.bar.how_found.click()
+    found = window.pages.currentWidget()
+    assert isinstance(found, FoundPage)
+    assert found.back.hasFocus()
+    assert not window.bar.isVisible()
+    qtbot.waitUntil(lambda: window._looking.is_idle)
+    assert found.waiting.isVisible()  # this session holds no samples
+    window.leave()
+    assert window.pages.currentWidget() is results
+    assert window.bar.isVisible()
 
 
 def test_progress_is_shown_in_words(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:

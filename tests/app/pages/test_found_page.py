@@ -116,11 +116,11 @@ def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: HowF
     for name, curve in zip(names, page.angle.chart.curves_deg, strict=True):
         np.testing.assert_allclose(numbers(files[TWO_WAYS][name]), curve[is_told], atol=DIGITS)
     # what is said in words
-    told = dict(zip(files[FIGURES]["figure"], files[FIGURES]["value"], strict=True))
-    assert told["is_simulated"] == "true"
+    said = dict(zip(files[FIGURES]["figure"], files[FIGURES]["value"], strict=True))
+    assert said["is_simulated"] == "true"
     shown = {text.text() for text in page.figures.findChildren(Text)}
     for figure in figures_of(found).values():
-        assert replace(figure, value=float(told[figure.column] or "nan")).in_words in shown
+        assert replace(figure, value=float(said[figure.column] or "nan")).in_words in shown
         assert figure.name in shown
 
 
@@ -186,7 +186,9 @@ def cut_in(page: FoundPage, look: Look, found: HowFound, room: str) -> list[str]
     page.show_found(found, [Finding("strap_slipped", Severity.WARNING, str(KNEE))], True)
     page.resize(width, height)
     assert page.width() == width
-    return words_cut(page) + words_cut(page.cards.widget())
+    inside = page.cards.widget()
+    assert inside is not None
+    return words_cut(page) + words_cut(inside)
 
 
 class Listener(QObject):

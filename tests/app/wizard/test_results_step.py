@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from time import process_time
 from uuid import UUID
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.reports.comparison import Kind
@@ -16,6 +17,7 @@ from app.review import viewer
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
+from app.wizard.keys import Action, Intent
 from app.wizard.steps.results_step import ResultsStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
@@ -164,6 +166,33 @@ def test_rerun_that_is_missing_is_told(
         step.on_quiet(1)
     assert told.args is not None
     assert "Rerun is not installed here" in told.args[0]
+
+
+def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
+    qtbot: QtBot, visit: Visit, step: ResultsStep, desk: LibraryDesk, tmp_path: Path
+) -> None:
+    step.on_quiet(2)
+    page = step.page.found()
+    assert step.page.currentWidget() is page
+    assert not step.bar().has_back
+    qtbot.waitUntil(page.save.isEnabled, timeout=30_000)
+    page.joints.choose(str(Joint.RIGHT_ANKLE))
+    assert not page.save.isEnabled()
+    qtbot.waitUntil(page.save.isEnabled, timeout=30_000)
+    page.save.click()
+    dialog = page.findChild(QFileDialog)
+    assert dialog is not None
+    with qtbot.waitSignal(step.told, timeout=10_000):
+        dialog.fileSelected.emit(str(tmp_path / "how"))
+    dialog.close()
+    assert "how" in page.note.text()
+    assert any(one.name.startswith("simulated_right_ankle") for one in (tmp_path / "how").iterdir())
+    exports = asked(qtbot, desk, lambda opened: [entry.details for entry in opened.library.audit.entries()])
+    assert any("how found" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
+    assert not step.on_intent(Intent(Action.PRIMARY))
+    assert step.on_intent(Intent(Action.BACK))
+    assert step.page.currentWidget() is step.page.results()
+    assert not step.on_intent(Intent(Action.BACK))
 
 
 def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
