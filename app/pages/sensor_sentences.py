@@ -7,6 +7,8 @@ from app.widgets.icons import Icon
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
 
+NEARLY_EMPTY = 0.05  # of a battery: minutes
+
 Said = tuple[Icon | None, str, str, bool]
 """Icon, what is so, what to do, and whether it wants a look."""
 
@@ -53,7 +55,9 @@ def said_of_sensors(
         return Icon.WARNING, *_said_of_missing_foot(foot), True
     if low := [sensor for sensor in sensors if sensor.is_low]:
         what = tr("{name} has {charge} battery.").format(name=_called(low[0]), charge=low[0].charge)
-        return Icon.WARNING, what, tr("Charge it after this patient."), True
+        ends_soon = low[0].battery is not None and low[0].battery <= NEARLY_EMPTY
+        soon, later = tr("It may fall silent during a walk: charge it first."), tr("Charge it after this patient.")
+        return Icon.WARNING, what, soon if ends_soon else later, True
     if lossy := [sensor for sensor in sensors if sensor.is_lossy]:
         what = tr("{name}: {share} % of the samples were lost.").format(
             name=_called(lossy[0]), share=f"{100 * lossy[0].lost_share:.1f}"

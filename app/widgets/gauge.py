@@ -82,7 +82,7 @@ def gauge_face(joint: Joint, found: ExcitationState | None, wanted: Wanted, is_n
         state = GaugeState.LOOSE
     elif is_closed:
         state = GaugeState.READY
-    elif found.is_plateau:
+    elif found.is_plateau and not is_now:
         state = GaugeState.PLATEAU
     else:
         state = GaugeState.NOW if is_now else GaugeState.OPEN

@@ -15,6 +15,8 @@ from core.live.free_motion import FreeMotionState
 LETTERS = 28  # what is read from two metres
 HELD_S = 2.5  # nobody can follow a hint that changes sooner
 ASKED_FOR_S = 5.0  # more movement, where little is wanting
+RESTS_S = 6.0  # with nothing left to ask for, before what was given up is asked for once more
+ONCE_MORE_S = 8.0
 
 
 def wanted_of(joint: Joint, prosthetic_sides: frozenset[Side]) -> Wanted:
@@ -93,30 +95,55 @@ class Asked:
 
 
 class HintHold:
-    """Keeps a hint on the screen for HELD_S, unless its joint is ready before."""
+    """Keeps a hint on the screen for HELD_S, unless its joint is ready before.
+
+    A joint whose motion brought no more is asked for once more when nothing else is left: another was the weakest
+    meanwhile, or the motion was not the one that was meant.
+    """
 
     def __init__(self, prosthetic_sides: frozenset[Side] = frozenset()) -> None:
         self._prosthetic_sides = prosthetic_sides
         self._asked: Asked | None = None
         self._since_s = -math.inf
+        self._settled_s: float | None = None  # since when nothing is left to ask for
+        self._once_more: dict[Joint, float] = {}  # when each was asked for a second time
 
     def ask(self, motion: FreeMotionState, now_s: float) -> Asked:
         """Say what to ask for at `now_s`, of any clock that goes on evenly."""
-        wish = self._wish(motion)
+        wish = self._wish(motion, now_s)
         if self._asked is None or (
             wish != self._asked and (now_s - self._since_s >= HELD_S or self._is_answered(self._asked, motion))
         ):
             self._asked, self._since_s = wish, now_s
         return self._asked
 
-    def _wish(self, motion: FreeMotionState) -> Asked:
+    def _wish(self, motion: FreeMotionState, now_s: float) -> Asked:
         weakest = motion.weakest
+        if motion.is_done:
+            weakest = self._given_up(motion, now_s)
+        else:
+            self._settled_s = None
         if weakest is None:
             return Asked(last_hint(motion) if motion.is_done else first_hint())
         missing = motion.joints[weakest].missing
         if missing is None or not any(state.moved_s for state in motion.joints.values()):
             return Asked(first_hint())
         return Asked(hint_for(missing, self._prosthetic_sides), weakest, missing.site)
+
+    def _given_up(self, motion: FreeMotionState, now_s: float) -> Joint | None:
+        """The worst joint that is not ready and was not asked for a second time, or is just being."""
+        left = {joint: state.wanting for joint, state in motion.joints.items() if not state.is_closed}
+        for joint, since_s in self._once_more.items():
+            if joint in left and now_s - since_s < ONCE_MORE_S:
+                return joint
+        if self._settled_s is None:
+            self._settled_s = now_s
+        new = [joint for joint in left if joint not in self._once_more]
+        if not new or now_s - self._settled_s < RESTS_S:
+            return None
+        worst = max(new, key=lambda joint: left[joint])
+        self._once_more[worst] = now_s
+        return worst
 
     def _is_answered(self, asked: Asked, motion: FreeMotionState) -> bool:
         if asked.joint is None:

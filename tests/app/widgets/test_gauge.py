@@ -109,6 +109,8 @@ def test_a_plateau_keeps_its_figure_and_its_open_ring() -> None:
     assert (face.axis.figure, face.axis.is_met) == ("3.8", False)
     assert face.centre is not None
     assert face.centre.is_met
+    once_more = gauge_face(Joint.LEFT_KNEE, state(3.8, 8, is_plateau=True), HUMAN, is_now=True)
+    assert once_more.state is GaugeState.NOW
 
 
 def test_a_prosthesis_that_turns_like_no_hinge_is_called_so() -> None:

@@ -9,6 +9,8 @@ import pytest
 from app.wizard.hints import (
     HELD_S,
     LETTERS,
+    ONCE_MORE_S,
+    RESTS_S,
     HintHold,
     absent_note,
     first_hint,
@@ -106,6 +108,28 @@ def test_at_the_end_it_says_whether_all_are_ready_or_only_as_good_as_they_get() 
     assert last_hint(motion({Joint.LEFT_KNEE: ready})).sentence == "All joints are ready"
     mixed = motion({Joint.LEFT_KNEE: ready, Joint.RIGHT_KNEE: state(4, 8, is_plateau=True)})
     assert HintHold().ask(mixed, 0.0).hint.sentence == "As good as it gets"
+
+
+def test_what_was_given_up_is_asked_for_once_more_worst_first_and_then_no_more() -> None:
+    hold = HintHold()
+    better, worse = state(4, 8, is_plateau=True), state(6, 8, RIGHT_KNEE, is_plateau=True)
+    left = motion({Joint.LEFT_KNEE: better, Joint.RIGHT_KNEE: worse})
+    asked = [hold.ask(left, float(now_s)).joint for now_s in range(60)]
+    in_turn = [joint for joint, before in zip(asked, [asked[0], *asked], strict=False) if joint is not before]
+    assert in_turn == [Joint.RIGHT_KNEE, Joint.LEFT_KNEE, None]
+    assert asked.index(Joint.RIGHT_KNEE) == RESTS_S
+    assert asked.count(Joint.RIGHT_KNEE) == asked.count(Joint.LEFT_KNEE) == ONCE_MORE_S
+    assert hold.ask(left, 60.0).hint.sentence == "As good as it gets"
+
+
+def test_what_is_ready_the_second_time_is_asked_for_no_longer() -> None:
+    hold = HintHold()
+    left = motion({Joint.LEFT_KNEE: state(4, 8, is_plateau=True)})
+    for now_s in range(round(RESTS_S) + 1):
+        asked = hold.ask(left, float(now_s))
+    assert asked.joint is Joint.LEFT_KNEE
+    ready = motion({Joint.LEFT_KNEE: state(1, 8, None, is_closed=True)})
+    assert hold.ask(ready, RESTS_S + 1.0).hint.sentence == "All joints are ready"
 
 
 def test_stopping_costs_nothing_when_all_are_ready() -> None:
