@@ -45,7 +45,10 @@ KIND = RecordingKind.FREE_MOTION
 
 
 class FreeMotionStep(Step):
-    """Recorded from the moment the step is entered, unless a free motion is in force already."""
+    """Recorded from the moment the step is entered, unless a free motion is in force already.
+
+    Whoever leaves it before its end loses nothing: what has moved counts, unless another is in force already.
+    """
 
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
@@ -60,7 +63,9 @@ class FreeMotionStep(Step):
         self._kept_labels: set[tuple[Site, ...]] = set()
         self._doubted: tuple[Site, ...] = ()
         self._ready: frozenset[Joint] = frozenset()
-        self._is_in_sight = self._goes_on = self._is_for_nothing = self._must_correct = False
+        self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
+        self._left = "", ""  # what is to be said of one that was left before its end
+        self._is_in_sight = self._goes_on = self._must_correct = False
         self._is_side_asked = self._is_refused = False
         self._ticks = 0
         self._settled = QTimer(self)
@@ -127,8 +132,7 @@ class FreeMotionStep(Step):
         self._is_in_sight = False
         self._settled.stop()
         if self._is_recording and not self._goes_on:  # not to its end
-            self._is_for_nothing = True
-            self._visit.takes.stop()
+            self._break_off()
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_work(None)
         self._work = None
@@ -139,7 +143,7 @@ class FreeMotionStep(Step):
             return
         if self._work is not None and self._is_recording:
             self._look_at_motion()
-        elif not (self._has_moved or self._visit.takes.is_recording or self._is_for_nothing or self._is_refused):
+        elif not (self._has_moved or self._visit.takes.is_recording or self._is_refused):
             self._begin()  # what was recorded before has been closed by now
         self._show()
 
@@ -214,9 +218,10 @@ class FreeMotionStep(Step):
         acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
         if acquisition is None or self._visit.session is None or takes.is_recording:
             return
+        self._replaced = self._motion if self._has_moved else None
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
-        self._goes_on = self._is_for_nothing = self._is_refused = False
+        self._goes_on = self._is_refused = False
         self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -297,6 +302,25 @@ class FreeMotionStep(Step):
         self._goes_on = True
         self._visit.takes.stop()
         self.changed.emit()
+
+    def _break_off(self) -> None:
+        """Stop without having come to an end, and say what it counts for."""
+        if self._is_done:
+            self._visit.takes.stop()
+            return
+        joints = self._motion.joints
+        again = tr("Go back to free motion to record it again.")
+        is_kept = self._replaced is None and any(state.moved_s > 0 for state in joints.values())
+        if self._replaced is not None:
+            self._left = tr("Free motion was left before its end: the one before it stays in force."), again
+            self._motion = self._replaced
+        elif not is_kept:
+            self._left = tr("Free motion was left before a leg had moved, so it does not count."), again
+        else:
+            ready = sum(state.is_closed for state in joints.values())
+            what = tr("Free motion was left before its end and is kept: {ready} of {count} joints are ready.")
+            self._left = what.format(ready=ready, count=len(joints)), again
+        self._visit.takes.stop(is_kept=is_kept)
 
     # what somebody has to answer
 
@@ -416,9 +440,9 @@ class FreeMotionStep(Step):
         if self._repeated is not None:  # the other leg's sensors are worn as before
             self._repeated = None
             self._visit.place_sensors()
-        if self._is_for_nothing:
-            self._is_for_nothing = False
-            self._visit.takes.keep(take, is_kept=False)
+        if self._left[0]:
+            self.told.emit(*self._left)
+            self._left = "", ""
         if self._must_correct:
             self._must_correct = False
             self._visit.correct_placement()

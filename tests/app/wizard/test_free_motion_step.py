@@ -139,13 +139,43 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.told.sensors) == set(Site))
 
 
-def test_leaving_before_its_end_keeps_nothing(qtbot: QtBot, step: FreeMotionStep, visit: Visit) -> None:
+def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.takes.is_recording)
-    step.leave()
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+        step.leave()
+    assert told.args[0] == "Free motion was left before a leg had moved, so it does not count."
     qtbot.waitUntil(lambda: visit.takes.free_motion is None, timeout=10_000)
+    assert len(visit.takes.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
+
+
+def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit
+) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: knows(step))
+    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+        step.leave()
+    assert told.args[0].startswith("Free motion was left before its end and is kept: ")
+    kept, note = visit.takes.free_motion, step.note
+    assert kept is not None
+    assert kept.recording is not None
+    assert len(kept.recording.imu) == len(Site)
+    assert note.endswith("of 4 ready")
+    step.enter()
+    assert not visit.takes.is_recording
+    step.on_other(0)
+    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    with qtbot.waitSignal(step.told, timeout=10_000) as told:
+        step.leave()
+    assert told.args[0] == "Free motion was left before its end: the one before it stays in force."
+    qtbot.waitUntil(lambda: not visit.takes.every[1].told.is_kept, timeout=10_000)
+    assert visit.takes.free_motion is not None
+    assert visit.takes.free_motion.id == kept.id
+    assert step.note == note
 
 
 def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
