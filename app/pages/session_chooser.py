@@ -15,7 +15,7 @@ from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr
 
-LINES_AT_LEAST = 2.2  # in sight, so that it is seen that there are more
+LINES_AT_LEAST = 1.4  # in sight, so that it is seen that there are more
 LINE = 72
 
 

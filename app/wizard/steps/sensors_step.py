@@ -354,10 +354,10 @@ class SensorsStep(Step):
     def _on_stop_pressed(self) -> None:
         if self._replays.reading:
             self._replays.stop()
-            self._show()
-            self.changed.emit()
         else:
             self._visit.sensors.close()
+        self._show()
+        self.changed.emit()
 
     # replay of a stored session
 
@@ -414,6 +414,7 @@ class SensorsStep(Step):
         if not self._is_in_sight:
             return
         self._is_choosing = False
+        self.page.stored.tell("")
         self._visit.sensors.search(choice)
 
     def _on_replay_refused(self, what: str, then: str) -> None:

@@ -1,11 +1,13 @@
 """The step of the sensors, on the simulated patient: heard, shaken, placed, silent and back."""
 
+import threading
 from collections.abc import Iterator
 
 import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.acquisition import Acquisition
 from app.pages.sensors_page import Way
 from app.theme import Look
 from app.widgets.step_rail import StepState
@@ -15,6 +17,7 @@ from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
 from core.samples import Patient, Session
+from devices.live import SourceRefusedError
 from devices.replay import ReplaySource
 
 TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are shown
@@ -179,3 +182,18 @@ def test_what_a_search_finds_while_the_page_is_in_sight_is_offered(
     assert [button.text() for button in step.page.nothing.buttons][:2] == [found.name, "Fast patient"]
     assert step.page.sources.itemText(0) == found.name
     qtbot.waitUntil(step.page.nothing.buttons[1].hasFocus)
+
+
+def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: SensorsStep) -> None:
+    may_end = threading.Event()
+
+    def make() -> Acquisition:
+        may_end.wait(10)
+        raise SourceRefusedError("No sensor was found", "Switch them on")
+
+    visit._choices = (SourceChoice("slow", "Slow", make),)
+    step.page.source_chosen.emit("slow")
+    assert step.page.searching.isVisible()
+    step.page.searching.stop.click()
+    assert step.page.nothing.isVisible()
+    may_end.set()
