@@ -61,6 +61,7 @@ class SettingsDesk(QObject):
             self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
         if is_administrator:
             self._read_operators()
+            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)
 
     def read_deleted(self) -> None:
         """Show what can be had back now."""
@@ -97,6 +98,7 @@ class SettingsDesk(QObject):
         page.stop_wished.connect(self._on_stop_wished)
         page.operator_added.connect(self._on_operator_added)
         page.operator_switched.connect(self._on_operator_switched)
+        page.clinic_named.connect(self._on_clinic_named)
         page.restore_wished.connect(self._on_restore_wished)
         self._settings.changed.connect(self._show_screen)
         self._look.changed.connect(self._show_screen)
@@ -213,6 +215,18 @@ class SettingsDesk(QObject):
         self._desk.stop_long()
         self.page.show_backup(tr("Stopped. There is no new backup."), self._backup_folder)
 
+    def _on_clinic_read(self, name: str) -> None:
+        self.page.show_clinic(name)
+
+    def _on_clinic_named(self, name: str) -> None:
+        def put(opened: "OpenedLibrary") -> None:
+            from app.storage.operators import CLINIC
+
+            if opened.library.settings.get(CLINIC, "") != name:
+                opened.library.settings.put(CLINIC, name)
+
+        self._desk.run(put, None, self._on_refused, self)
+
     def _read_operators(self) -> None:
         self._desk.run(lambda opened: opened.library.operators.list(), self._on_operators, self._on_refused, self)
 
@@ -260,6 +274,12 @@ class SettingsDesk(QObject):
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)
+
+
+def _clinic_of(opened: "OpenedLibrary") -> str:
+    from app.storage.operators import CLINIC
+
+    return str(opened.library.settings.get(CLINIC, ""))
 
 
 def _backup_folder_of(opened: "OpenedLibrary") -> str:

@@ -1,6 +1,7 @@
 """The report as it will print, the clinician's words, and what is saved beside it."""
 
 from collections.abc import Sequence
+from uuid import UUID
 
 from PySide6.QtCore import QEvent, QObject, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QImage, QKeyEvent, QPainter, QPaintEvent
@@ -9,6 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QFrame, QPlainTextEdit, QScrollArea, Q
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chips import Chips
+from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr
@@ -30,7 +32,7 @@ class ReportPage(QWidget):
     comment_edited
         The words, once the typing pauses.
     options_changed
-        Another paper, or other files beside the report.
+        Another paper, another visit to compare with, or other files beside the report.
     """
 
     comment_edited = Signal(str)
@@ -64,13 +66,19 @@ class ReportPage(QWidget):
         )
         self.formats.choose(FIRST_CHOICE)
         self.paper = Segmented(look, tr("Paper"), [("a4", tr("A4"), ""), ("letter", tr("Letter"), "")])
+        self.earlier = Choice(look, tr("Compare with"))
+        self._earlier_title = Text(look, tr("Compare with"), size=16, weight=SEMIBOLD)
         self._title = Text(look, tr("Your words"), size=20, weight=SEMIBOLD)
         self._also = Text(look, tr("Also save"), size=16, weight=SEMIBOLD)
         self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
         self._note = Text(look, tr("Only the code stands on the report, no name."), tone="ink2", wraps=True)
         self._card = Card(look, padding=20, spacing=12)
-        for part in (self._title, self.comment, self._also, self.formats, self._sheet, self.paper, self._note):
-            self._card.column.addWidget(part)
+        for parts in (
+            (self._title, self.comment, self._earlier_title, self.earlier),
+            (self._also, self.formats, self._sheet, self.paper, self._note),
+        ):
+            for part in parts:
+                self._card.column.addWidget(part)
         self._card.column.addStretch(1)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._row.addWidget(self._scroll, 1)
@@ -82,12 +90,14 @@ class ReportPage(QWidget):
         self.comment.textChanged.connect(self._pause.start)
         self.formats.turned.connect(self.options_changed)
         self.paper.chosen.connect(self.options_changed)
+        self.earlier.activated.connect(self.options_changed)
+        self.show_visits([])
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self._scroll, self.comment, *self.formats.buttons, *self.paper.segments]
+        return [self._scroll, self.comment, self.earlier, *self.formats.buttons, *self.paper.segments]
 
     def focus(self) -> None:
         """Give the focus to the pages: the words are optional, and Enter belongs to the report."""
@@ -111,6 +121,24 @@ class ReportPage(QWidget):
         if comment != self.comment.toPlainText():
             with QSignalBlocker(self.comment):
                 self.comment.setPlainText(comment)
+
+    def show_visits(self, visits: Sequence[tuple[UUID, str]]) -> None:
+        """Offer earlier visits, each with its words, to be compared with; what was chosen stays."""
+        before = self.chosen_visit
+        self.earlier.clear()
+        self.earlier.addItem(tr("No earlier visit"))
+        for number, words in visits:
+            self.earlier.addItem(words, number)
+        self.earlier.setCurrentIndex(max(self.earlier.findData(before), 0) if before is not None else 0)
+        self.earlier.updateGeometry()
+        for part in (self._earlier_title, self.earlier):
+            part.setVisible(bool(visits))
+
+    @property
+    def chosen_visit(self) -> UUID | None:
+        """The earlier visit that is compared with."""
+        found = self.earlier.currentData()
+        return found if isinstance(found, UUID) else None
 
     def show_pages(self, pages: Sequence[bytes]) -> None:
         """Show pages, each a PNG."""

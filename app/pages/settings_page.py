@@ -59,6 +59,7 @@ class SettingsPage(QWidget):
     stop_wished = Signal()
     operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
     operator_switched = Signal(str, bool)  # code, whether they work here
+    clinic_named = Signal(str)
     restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
     def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
@@ -71,6 +72,7 @@ class SettingsPage(QWidget):
         self._build_access()
         self._build_backup()
         self._build_deleted()
+        self._build_clinic()
         self._build_operators()
         self._column.addStretch(1)
         self._connect()
@@ -107,6 +109,7 @@ class SettingsPage(QWidget):
         self._access.setVisible(has_access)
         self._backup.setVisible(has_backup)
         self._deleted.setVisible(has_deleted)
+        self._clinic.setVisible(has_operators)
         self._operators.setVisible(has_operators)
         self.forget_typed()
         self.show_recovery_key("")
@@ -132,6 +135,9 @@ class SettingsPage(QWidget):
         self._key_words.setText(key.replace("-", "  "))
         for part in (self._key_words, self._key_hint, self.print, self.save):
             part.setVisible(bool(key))
+
+    def show_clinic(self, name: str) -> None:
+        self.clinic.set_text(name)
 
     def show_operators(self, operators: Sequence[OperatorLine]) -> None:
         while (item := self._rows.takeAt(0)) is not None:
@@ -241,6 +247,11 @@ class SettingsPage(QWidget):
         self._deleted.column.addLayout(self._deleted_rows)
         self._deleted.column.addWidget(self._none_deleted)
 
+    def _build_clinic(self) -> None:
+        self._clinic = self._card(tr("Your clinic"))
+        self.clinic = Field(self._look, tr("Name, as reports print it"), is_optional=True)
+        self._clinic.column.addWidget(self.clinic)
+
     def _build_operators(self) -> None:
         look = self._look
         self._operators = self._card(tr("Who works with this library"))
@@ -272,6 +283,7 @@ class SettingsPage(QWidget):
         self.back_up.clicked.connect(self._on_back_up)
         self.choose_folder.clicked.connect(self.backup_folder_wished)
         self.add.clicked.connect(self._on_add)
+        self.clinic.committed.connect(self._on_clinic_named)
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.edited.connect(self._on_edited)
         self._look.changed.connect(self._on_look_changed)
@@ -323,6 +335,9 @@ class SettingsPage(QWidget):
             self.again.set_wrong(tr("The two are not the same. Type the second one again."))
         else:
             self.passphrase_wished.emit(self.old.text, self.new.text)
+
+    def _on_clinic_named(self) -> None:
+        self.clinic_named.emit(self.clinic.text.strip())
 
     def _on_print(self) -> None:
         self.print_wished.emit(self._key)

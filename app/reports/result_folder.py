@@ -35,7 +35,14 @@ PEAKS = "peaks.csv"
 LOG = "session.rrd"
 REPORT = "report.pdf"
 OWN_SESSION = "session"  # the demonstration's recordings, inside the folder of its results
-TAKEN = tuple((name,) for name in (SUMMARY, LOG, REPORT, OWN_SESSION, PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES))
+VISITS, VISITS_CYCLES = "visits.csv", "visits_cycles.csv"  # where a report compares with an earlier visit
+TAKEN = tuple(
+    (name,)
+    for name in (
+        *(SUMMARY, LOG, REPORT, OWN_SESSION),
+        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES),
+    )
+)
 
 
 def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log: bool) -> None:

@@ -64,6 +64,9 @@ class Operators:
             return operator_of(row)
 
 
+CLINIC = "clinic"  # its name, as reports print it
+
+
 class Settings:
     """What holds for the whole clinic. Values are whatever JSON holds."""
 

@@ -43,7 +43,7 @@ def plain(text: str) -> str:
         if not category.startswith("M"):
             shown.append(character if ord(character) in coverage() else BOX)
             marks = 0
-        elif shown and marks < MAX_MARKS and _has_font(shown[-1] + character):
+        elif shown and marks < MAX_MARKS and _has_marks(shown[-1] + character):
             shown[-1] += character
             marks += 1
     return " ".join("".join(shown).split())
@@ -88,9 +88,15 @@ def _coverages() -> tuple[frozenset[int], ...]:
     return inter[0].intersection(*inter[1:]), hebrew, arabic
 
 
-def _has_font(letter: str) -> bool:
-    """Whether one font has a letter together with its marks: two fonts cannot set it."""
-    return any(all(ord(part) in covered for part in letter) for covered in _coverages())
+def _has_marks(letter: str) -> bool:
+    """Whether a letter with its marks is of a family other than Inter, whose letters every word of ours is made of.
+
+    A PDF tells what each glyph of a font means once: a mark on an Inter letter that no glyph holds together with it
+    would be copied and read aloud with that letter in every word.
+    """
+    _, *others = _coverages()
+    return any(set(map(ord, letter)) <= covered for covered in others)
+
 
 
 @cache

@@ -5,9 +5,12 @@ import tempfile
 from datetime import datetime
 from pathlib import Path
 
+from app.reports.comparison import Kind
+from app.reports.differences import rows_of, write_compared_cycles, write_differences
+from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
-from app.reports.result_folder import OWN_SESSION, REPORT, SUMMARY
+from app.reports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -29,6 +32,20 @@ def write_report(session: Session, analysis: Analysis, folder: Path, made_at: da
     if walks:
         request = ReportRequest(visit, walks, made_at, version)
         (folder / REPORT).write_bytes(make_report(request))
+
+
+def write_visits(request: ReportRequest, folder: Path) -> None:
+    """Write what a report with an earlier visit compares, as tables; without one, nothing.
+
+    Raises
+    ------
+    OSError
+        The disk is full or cannot be written to.
+    """
+    comparison = comparison_of(request)
+    if comparison is not None and comparison.kind is Kind.VISITS:
+        write_differences(rows_of(comparison), folder / VISITS)
+        write_compared_cycles(comparison.parts, folder / VISITS_CYCLES)
 
 
 def chosen_walks(visit: Visit, wanted: list[str], session: str) -> tuple[str, ...]:

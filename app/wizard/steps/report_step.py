@@ -5,6 +5,7 @@ from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
+from uuid import UUID
 
 from PySide6.QtCore import QObject, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
@@ -26,7 +27,9 @@ from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
     from app.reports.patient_report.request import ReportRequest
+    from app.reports.patient_report.request import Visit as ReportVisit
     from app.storage.opened import OpenedLibrary
+    from app.storage.stored import SessionLine
     from app.wizard.visit import Visit
 
 _log = logging.getLogger(__name__)
@@ -44,6 +47,9 @@ class ReportStep(Step):
         self._saved: Path | None = None
         self._is_saving = False
         self._comment: str | None = None  # typed here, not yet known to the session's row
+        self._clinic = ""
+        self._earlier: tuple[UUID, ReportVisit] | None = None  # as was read last
+        self._reading: UUID | None = None
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
@@ -80,6 +86,7 @@ class ReportStep(Step):
 
     def enter(self) -> None:
         self.page.report.show_comment(self.comment)
+        self._read_choices()
         self._show()
 
     def leave(self) -> None:
@@ -87,7 +94,7 @@ class ReportStep(Step):
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
-        save = Verb(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._has_results())
+        save = Verb(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._can_save())
         if self._saved is None:
             return BarState(primary=save, note=tr("Only the code stands in it, no name."))
         note = tr("Saved as {folder}. Saving again asks where.").format(folder=self._saved.name)
@@ -95,7 +102,7 @@ class ReportStep(Step):
         return BarState(primary=replace(save, is_wished=False), others=(show,), note=note)
 
     def on_primary(self) -> None:
-        if not self._has_results() or self._is_saving:
+        if not self._can_save() or self._is_saving:
             return
         self.page.report.flush()
         self._dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
@@ -115,6 +122,9 @@ class ReportStep(Step):
             self.on_primary()
             return True
         return False
+
+    def _can_save(self) -> bool:
+        return self._has_results() and self._reading is None
 
     def _has_results(self) -> bool:
         evaluation = self._visit.evaluation
@@ -148,6 +158,8 @@ class ReportStep(Step):
             software_version=version_of("gaitwright"),
             comment=self.comment,
             operator=evaluation.session.operator,
+            clinic=self._clinic,
+            earlier=self._earlier_chosen(),
             paper=self.page.report.paper.choice,
         )
 
@@ -180,7 +192,67 @@ class ReportStep(Step):
         self._desk.run(save, None, self._on_refused, self)
 
     def _on_options_changed(self) -> None:
-        self._draw()
+        chosen = self.page.report.chosen_visit
+        if chosen is not None and self._earlier_chosen() is None:
+            self._read_earlier(chosen)
+        else:
+            self._draw()
+
+    # the clinic's name, and earlier visits
+
+    def _read_choices(self) -> None:
+        session = self._visit.session
+        if session is None:
+            return
+        current = session
+
+        def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionLine]]":
+            from app.storage.operators import CLINIC
+
+            lines = opened.library.sessions.list(current.patient_id)  # latest first
+            before = [line for line in lines if line.id != current.id and line.started < current.told.started]
+            return str(opened.library.settings.get(CLINIC, "")), before
+
+        self._desk.run(read, self._on_choices, self._on_refused, self)
+
+    def _on_choices(self, found: "tuple[str, list[SessionLine]]") -> None:
+        clinic, lines = found
+        self.page.report.show_visits([(line.id, _words_of(line)) for line in lines])
+        if clinic != self._clinic:
+            self._clinic = clinic
+            self._show()
+
+    def _earlier_chosen(self) -> "ReportVisit | None":
+        """The earlier visit to compare with, once it is read."""
+        chosen = self.page.report.chosen_visit
+        return self._earlier[1] if self._earlier is not None and self._earlier[0] == chosen else None
+
+    def _read_earlier(self, session_id: UUID) -> None:
+        self._reading = session_id
+
+        def read(opened: "OpenedLibrary", report: Report) -> "tuple[UUID, ReportVisit]":
+            from app.reports.patient_report.request import Visit as ReportVisit
+            from app.wizard.resuming import analysis_of, evaluated, read_takes
+
+            stored = opened.library.sessions.get(session_id)
+            told = evaluated(stored, read_takes(opened, stored))
+            without_samples = tuple(replace(recording, imu={}) for recording in told.recordings)
+            analysis = analysis_of(opened, session_id, report)
+            return session_id, ReportVisit(replace(told, recordings=without_samples), analysis)
+
+        self._desk.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
+        self.changed.emit()
+
+    def _on_earlier_read(self, found: "tuple[UUID, ReportVisit]") -> None:
+        self._reading = None
+        self._earlier = found
+        self._on_options_changed()  # another one may have been chosen meanwhile
+        self.changed.emit()
+
+    def _on_earlier_refused(self, what: str, remedy: str) -> None:
+        self._reading = None
+        self._on_refused(what, remedy)
+        self.changed.emit()
 
     def _on_folder_selected(self, folder: str) -> None:
         session, analysis = self._visit.evaluation.session, self._visit.evaluation.analysis
@@ -195,6 +267,7 @@ class ReportStep(Step):
             from app.exports.exports import Format, export_from_library
             from app.library_commands import DECODERS
             from app.reports.patient_report.document import make_report
+            from app.reports.patient_report.report_file import write_visits
             from app.reports.result_folder import REPORT, check_place, write_results, written_beside
             from app.storage.audit import about
             from app.storage.stored import Action, LibraryError
@@ -208,6 +281,8 @@ class ReportStep(Step):
                         write_results(session, analysis, beside, has_log="rrd" in chosen)
                     if request is not None:
                         (beside / REPORT).write_bytes(make_report(request))
+                        if "csv" in chosen:
+                            write_visits(request, beside)
                     formats = [Format(name) for name in OTHERS if name in chosen]
                     if formats:
                         export_from_library(
@@ -230,6 +305,13 @@ class ReportStep(Step):
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_saving = False
         self.told.emit(what, remedy)
+
+
+def _words_of(line: "SessionLine") -> str:
+    """A visit in a list: its day, and under which conditions the patient walked."""
+    from app.reports.patient_report.dates import day
+
+    return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
 
 
 class _ReportFrame(QStackedWidget):

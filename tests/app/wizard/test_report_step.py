@@ -1,11 +1,15 @@
 """The report step shows what will print, keeps the clinician's words, and saves the files that were chosen."""
 
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
+import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.storage.exchange import import_session
+from app.storage.operators import CLINIC
 from app.theme import Look
 from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
@@ -68,6 +72,39 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, tmp_path: Pa
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
+
+
+@pytest.mark.endurance
+def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, simulated_session: Session, step: ReportStep, tmp_path: Path
+) -> None:
+    state, session = desk.state, visit.session
+    assert state is not None
+    assert session is not None
+    code = session.told.patient.code
+    earlier = replace(simulated_session, started="2020-03-01T10:00:00+00:00")
+    opened, silent = state.library, lambda _share, _what: None
+    earlier_id = import_session(opened, earlier, silent, code).session_id
+    opened.library.settings.put(CLINIC, "Clinic North")
+    step.enter()
+    report = step.page.report
+    qtbot.waitUntil(lambda: report.earlier.count() == 2, timeout=WAIT_MS)
+    assert report.earlier.isVisible()
+    report.earlier.setCurrentIndex(1)
+    report.earlier.activated.emit(1)
+    assert report.chosen_visit == earlier_id
+    assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # nothing is saved yet, so it is there
+    qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # as above
+    chosen: Callable[[str], None] = step._on_folder_selected
+    chosen(str(tmp_path / "results"))
+    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / "report.pdf").pages)
+    assert "Comparison of visits" in text
+    assert "1 Mar 2020" in text
+    assert "Clinic North" in text
+    header, first, *_ = (tmp_path / "results" / "visits.csv").read_text().splitlines()
+    assert header.startswith("part,name,walks,against_part")
+    assert first.startswith("2,")
 
 
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:

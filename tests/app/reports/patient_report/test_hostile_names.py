@@ -83,6 +83,8 @@ def test_a_direction_stays_within_its_own_text(request_of_demonstration: ReportR
 def test_what_no_font_shows_becomes_a_box_and_what_nobody_sees_is_dropped() -> None:
     assert plain("Zoë\u200b \x00漢 \ue000x\u202e") == f"Zoë {BOX} x"
     assert plain("e\u0301") == "é"
+    assert plain("c\u0349") == "c"  # else every c of the report would be read aloud with it
+    assert plain("\u05e9\u05b8") == "\u05e9\u05b8"
     assert len(plain("x" + "\u0301" * 9)) <= 1 + MAX_MARKS
     assert plain(" \t a \n b ") == "a b"
     assert plain_lines("one\n\n\n\ntwo\n") == ["one", "", "two"]
