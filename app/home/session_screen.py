@@ -14,7 +14,6 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QScrollArea,
     QSizePolicy,
-    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
@@ -24,6 +23,7 @@ from app.widgets.banner import Banner
 from app.widgets.button import Button, Kind
 from app.widgets.header import Header
 from app.widgets.icons import Icon
+from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
 from app.wording import later, place, side_name, tr
@@ -43,6 +43,7 @@ _log = logging.getLogger(__name__)
 
 NARROW_BELOW = 800
 HEADER, BAR = 56, 72
+PURPOSE = 120  # what it was made for, in two lines
 
 STOPPED = (
     later("The analysis was stopped."),
@@ -75,7 +76,7 @@ class SessionScreen(QWidget):
         self.banner = Banner(look)
         self.empty = EmptyPage(look)
         self.working = WorkingPage(look)
-        self.pages = _Pages()
+        self.pages = PageStack()
         self.bar = _ActionBar(look)
         self._build()
         self._connect()
@@ -285,20 +286,8 @@ class SessionScreen(QWidget):
         self.update()
 
 
-class _Pages(QStackedWidget):
-    """As large as the page in sight needs to be, not as the largest."""
-
-    def minimumSizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.minimumSizeHint() if page is not None else QSize()
-
-    def sizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.sizeHint() if page is not None else QSize()
-
-
 class _ActionBar(QWidget):
-    """The ways on from a result."""
+    """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -323,8 +312,24 @@ class _ActionBar(QWidget):
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow
         self._purpose.setVisible(not is_narrow)
-        self.open_demonstration.setVisible(not is_narrow or self.back.isHidden())
         self._on_look_changed()
+        self._leave_out()
+
+    def minimumSizeHint(self) -> QSize:
+        """Ask for no more than there is without the demonstration, else no window could become that narrow."""
+        size, less = super().minimumSizeHint(), self.open_demonstration
+        return QSize(size.width() - (0 if less.isHidden() else less.sizeHint().width()), size.height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._leave_out()
+
+    def _leave_out(self) -> None:
+        widgets = (self.back, self.open_folder, self.open_demonstration, self.how_found)
+        needed = [widget.sizeHint().width() for widget in widgets if widget is not self.back or not widget.isHidden()]
+        needed += [] if self._is_narrow else [self._look.theme.px(PURPOSE)]
+        room = self.width() - 2 * self._row.contentsMargins().left() - self._row.spacing() * (len(needed) - 1)
+        self.open_demonstration.setVisible(sum(needed) <= room)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme

@@ -3,9 +3,9 @@
 from enum import Enum, auto
 from itertools import pairwise
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QSize, Qt, QVariantAnimation, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QVariantAnimation, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.theme import Look
 from app.widgets.action_bar import ActionBar
@@ -13,6 +13,7 @@ from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
 from app.widgets.header import Header
 from app.widgets.motion import duration_ms
+from app.widgets.page_stack import PageStack
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.step_rail import RailForm, StepRail
 from app.widgets.toast import Toast
@@ -54,7 +55,7 @@ class WizardShell(QWidget):
         self.header = Header(look, has_mark=False)
         self.strip = SensorStrip(look)
         self.banner = Banner(look)
-        self._pages = _Pages()
+        self._pages = PageStack()
         self._scroll = QScrollArea()
         self._outer = QScrollArea()  # scrolls only in a window that is too low for header and bar, as 400 x 280 is
         self.bar = ActionBar(look)
@@ -299,27 +300,6 @@ class WizardShell(QWidget):
     def _on_look_changed(self) -> None:
         self._fit()
         self.update()
-
-
-class _Pages(QStackedWidget):
-    """As large as the page in sight needs to be, not as the largest."""
-
-    def minimumSizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.minimumSizeHint() if page is not None else QSize()
-
-    def sizeHint(self) -> QSize:
-        page = self.currentWidget()
-        return page.sizeHint() if page is not None else QSize()
-
-    def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt asks it
-        """Give what the page in sight needs at least; Qt's own is what the highest of all pages would like."""
-        page = self.currentWidget()
-        if page is None:
-            return 0
-        layout = page.layout()
-        wrapped = layout.minimumHeightForWidth(width) if layout is not None and layout.hasHeightForWidth() else 0
-        return max(wrapped, page.minimumSizeHint().height())
 
 
 class _Fade(QWidget):

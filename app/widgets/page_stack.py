@@ -1,0 +1,25 @@
+"""Which page is in sight? Pages in one place, of which only that one asks for room."""
+
+from PySide6.QtCore import QSize
+from PySide6.QtWidgets import QStackedWidget
+
+
+class PageStack(QStackedWidget):
+    """As large as the page in sight needs to be, not as the largest."""
+
+    def minimumSizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.minimumSizeHint() if page is not None else QSize()
+
+    def sizeHint(self) -> QSize:
+        page = self.currentWidget()
+        return page.sizeHint() if page is not None else QSize()
+
+    def heightForWidth(self, width: int) -> int:  # noqa: N802  Qt asks it
+        """Give what the page in sight needs at least; Qt's own is what the highest of all pages would like."""
+        page = self.currentWidget()
+        if page is None:
+            return 0
+        layout = page.layout()
+        wrapped = layout.minimumHeightForWidth(width) if layout is not None and layout.hasHeightForWidth() else 0
+        return max(wrapped, page.minimumSizeHint().height())
