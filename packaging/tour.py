@@ -7,8 +7,8 @@ is told by the application's own process, and pictures of every stop are written
 exits with 1, naming the stop, when a session cannot be led to its end, or not in five minutes of the application's
 stopwatch.
 
-To change a tour change `KEYBOARD` or `MOUSE`: each stop waits until the screen says what it should, has its pictures
-taken and acts.
+To change a tour change `tour_stops.py`: each stop waits until the screen says what it should, has its pictures taken
+and acts. `--manual` puts the pictures that the manual and the README show where they are read.
 """
 
 import argparse
@@ -20,213 +20,36 @@ import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
+
+from tour_stops import PATIENCE_S, TOURS, Seen, Stop
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from PySide6.QtGui import QPixmap
-    from PySide6.QtWidgets import QWidget
-
-ROOT = Path(__file__).resolve().parents[1]
+PICTURES = Path(__file__).resolve().parents[1] / "resources" / "help" / "pictures"
+MANUAL = {
+    "07-patient-typed": "patient",
+    "07c-placed": "sensors",
+    "08b-standing": "stand-still",
+    "09-free-motion": "free-motion",
+    "10b-walking": "walking",
+    "13a-results": "results",
+}
 PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool"}  # and Debian's package of each
 SCREEN = "2000x1200x24"
 WINDOW = "1280x800@100"
 THEMES = ("light", "dark")
-CORNER = (20, 30)  # of the window on the display
-SETTLE_MS = 150
 TRACED = ("-f", "--seccomp-bpf", "-e", "trace=connect,sendto,sendmsg,sendmmsg,bind", "-e", "signal=none")
 MOST_S = 300.0  # of the application's stopwatch
 LOOK_EVERY_S = 0.2
-PATIENCE_S = 30.0
 MOST_TABS = 60  # more stops than any page has
 KEY_PAUSE_S = 0.08  # between keys: nobody is faster, and what a key opens has to be there for the next
-
-
-@dataclass(frozen=True, slots=True)
-class Seen:
-    """What the application tells of itself: screen and step by their classes, the control that has the focus, and the
-    enabled controls in sight by their accessible names, each with its middle on the display."""
-
-    screen: str
-    step: str
-    focus: str
-    is_recording: bool
-    banner: str
-    stopwatch_s: float
-    words: tuple[str, ...]
-    controls: Mapping[str, tuple[int, int]]
-
-    def has(self, control: str) -> bool:
-        return any(name.startswith(control) for name in self.controls)
-
-    def says(self, words: str) -> bool:
-        return any(words in text for text in self.words)
-
-
-@dataclass(frozen=True, slots=True)
-class Stop:
-    """One place of the tour.
-
-    Attributes
-    ----------
-    name
-        Of its pictures.
-    until
-        What the screen must say before anything is done.
-    does
-        One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
-        folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
-        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
-    lingers_s
-        Before the pictures, for what moves.
-    """
-
-    name: str
-    until: Callable[[Seen], bool]
-    does: tuple[str, ...] = ()
-    lingers_s: float = 0.5
-    patience_s: float = PATIENCE_S
-
-
-def at(screen: str) -> Callable[[Seen], bool]:
-    return lambda seen: seen.screen == screen
-
-
-def at_step(step: str) -> Callable[[Seen], bool]:
-    return lambda seen: seen.screen == "Wizard" and seen.step == step
-
-
-def offers(*controls: str) -> Callable[[Seen], bool]:
-    return lambda seen: all(seen.has(control) for control in controls)
-
-
-def says(words: str) -> Callable[[Seen], bool]:
-    return lambda seen: seen.says(words)
-
-
-def is_recording(seen: Seen) -> bool:
-    return seen.is_recording
-
-
-def has_walked(strides: int) -> Callable[[Seen], bool]:
-    """Whether so many strides are counted of the walk that is being recorded."""
-
-    def counted(seen: Seen) -> bool:
-        if not seen.is_recording or "Strides" not in seen.words:
-            return False
-        figure = seen.words[seen.words.index("Strides") + 1]
-        return figure.isdigit() and int(figure) >= strides
-
-    return counted
-
-
-PASSPHRASE = "seven quiet herons cross"
-STRIDES = 13  # the simulated patient takes 14 steps with each foot
-PLACES = {
-    "DEMO-09": "L thigh",
-    "DEMO-17": "R thigh",
-    "DEMO-1B": "R shank",
-    "DEMO-22": "R foot",
-    "DEMO-2C": "L foot",
-    "DEMO-31": "L shank",
-}
-DIGITS = {"L thigh": 1, "L shank": 2, "L foot": 3, "R thigh": 4, "R shank": 5, "R foot": 6}
-PLACED_BY_KEYS = tuple(key for place in PLACES.values() for key in (f"press {DIGITS[place]}", "press Down"))
-PLACED_BY_MOUSE = tuple(f"drag {sensor} to {place}" for sensor, place in PLACES.items())
-
-
-def walk(number: int, starts: tuple[str, ...], stops: str) -> tuple[Stop, ...]:
-    """Give the stops of one walk."""
-    return (
-        Stop(f"{number + 9:02d}a-choose", offers("Barefoot"), starts, lingers_s=1.0, patience_s=90.0),
-        Stop(f"{number + 9:02d}b-walking", has_walked(6), patience_s=60.0),
-        Stop(f"{number + 9:02d}c-walked", has_walked(STRIDES), (stops,), patience_s=60.0),
-    )
-
-
-KEYBOARD: tuple[Stop, ...] = (
-    Stop(
-        "01-first-start",
-        at("FirstStartPage"),
-        (
-            "type TM",
-            "press Tab",
-            "type Tour Guide",
-            "press Tab",
-            f"type {PASSPHRASE}",
-            "press Tab",
-            f"type {PASSPHRASE}",
-        ),
-    ),
-    Stop("02-typed", at("FirstStartPage"), ("press Return",)),
-    Stop("03-recovery-key", says("Your recovery key"), ("to Type it back", "copy key")),
-    Stop("04-typed-back", says("Your recovery key"), ("press Return",)),
-    Stop("05-home", offers("New patient"), ("press ctrl+n",), lingers_s=1.0),
-    Stop(
-        "06-patient",
-        at_step("PatientStep"),
-        ("type DEMO-7", "to Birth year", "type 1990", "to Height", "type 178", "to Mass", "type 74"),
-        lingers_s=1.0,
-    ),
-    Stop("07-patient-typed", offers("Put on sensors"), ("press Return",), lingers_s=1.0),
-    Stop("07a-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
-    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_KEYS, lingers_s=5.0),
-    Stop("07c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
-    Stop("08a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
-    Stop("08b-standing", is_recording, lingers_s=1.5),
-    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
-    *walk(1, ("press 1", "press space"), "press space"),
-    Stop("10d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
-    *walk(2, ("press 2", "press space"), "press space"),
-    *walk(3, ("press 4", "press space"), "press space"),  # kept, and the next begun, by one key
-    Stop("12d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
-    Stop("12e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
-    Stop("13a-results", offers("Mean cycle"), ("to Mean cycle", "press Right"), lingers_s=2.0, patience_s=60.0),
-    Stop("13b-whole-walk", offers("Mean cycle"), ("press Right",), lingers_s=2.0),
-    Stop("13c-figures", offers("Mean cycle"), ("press Right",), lingers_s=1.0),
-    Stop("13d-findings", offers("Mean cycle"), ("press ctrl+7",), lingers_s=1.0),
-    Stop("14a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0),
-    Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
-    Stop("14c-saved", says("Saved as"), ("press F1",), lingers_s=1.0),
-    Stop("15-manual", offers("Search the help"), ("press Escape",), lingers_s=1.0),
-    Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
-    Stop("17-home-again", offers("New session"), lingers_s=1.0),
-)
-MOUSE: tuple[Stop, ...] = (
-    Stop("01-first-start", at("FirstStartPage"), ("click Look at the demonstration",)),
-    Stop("05-home", offers("New session"), ("click New session",), lingers_s=1.0),
-    Stop("06-patient", offers("Put on sensors"), ("click Put on sensors",), lingers_s=1.0),
-    Stop("07a-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
-    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_MOUSE, lingers_s=5.0),
-    Stop("07c-placed", says("All six are worn"), ("click Stand still",), lingers_s=1.0),
-    Stop("08a-stand-still", at_step("StandStillStep"), ("click Start the count",), lingers_s=1.0),
-    Stop("08b-standing", is_recording, lingers_s=1.5),
-    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
-    *walk(1, ("click Barefoot", "click Start walk"), "click Stop walk"),
-    Stop("10d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
-    *walk(2, ("click Shoes", "click Start walk"), "click Stop walk"),
-    *walk(3, ("click Alignment A", "click Keep, start next"), "click Stop walk"),
-    Stop("12d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
-    Stop("12e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
-    Stop("13a-results", offers("Mean cycle"), ("click Whole walk",), lingers_s=2.0, patience_s=60.0),
-    Stop("13b-whole-walk", offers("Mean cycle"), ("click Figures",), lingers_s=2.0),
-    Stop("13c-figures", offers("Mean cycle"), ("click Findings",), lingers_s=1.0),
-    Stop("13d-findings", offers("Mean cycle"), ("click Go to the report",), lingers_s=1.0),
-    Stop("14a-report", at_step("ReportStep"), ("click Save the results",), lingers_s=1.0),
-    Stop("14b-where", offers("Save"), ("click Save",), lingers_s=1.0),
-    Stop("14c-saved", says("Saved as"), ("click Help",), lingers_s=1.0),
-    Stop("15-manual", offers("Search the help"), ("click Back",), lingers_s=1.0),
-    Stop("16-leave", at_step("ReportStep"), ("click All patients",)),
-    Stop("17-home-again", offers("New session"), lingers_s=1.0),
-)
-TOURS = {"keyboard": KEYBOARD, "mouse": MOUSE}
 
 
 class TourError(Exception):
@@ -281,10 +104,8 @@ def main(arguments: list[str]) -> None:
         help=f"of the pictures: window and size of everything, as {WINDOW}; the first is the one that is worked with",
     )
     parser.add_argument("--trace", type=Path, metavar="FILE", help="note there, by strace, whom the application calls")
-    parser.add_argument("--inside", action="store_true", help=argparse.SUPPRESS)  # this is the application's process
+    parser.add_argument("--manual", action="store_true", help="give the manual its pictures anew")
     wanted = parser.parse_args(arguments)
-    if wanted.inside:
-        sys.exit(_run_inside())
     missing = [package for program, package in PROGRAMS.items() if shutil.which(program) is None]
     if missing:
         sys.exit(f"The tour needs a display and hands. Install {', '.join(missing)}, then start again.")
@@ -298,7 +119,15 @@ def main(arguments: list[str]) -> None:
                 stopwatch_s = lead(application, TOURS[tour], wanted.out.resolve(), looks)
             except TourError as end:
                 sys.exit(str(end))
+        if wanted.manual:
+            _give_pictures(wanted.out)
         print(f"{len(TOURS[tour])} stops by {tour} alone, {stopwatch_s:.0f} s of the application's stopwatch.")
+
+
+def _give_pictures(out: Path) -> None:
+    for stop, picture in MANUAL.items():
+        for theme, suffix in (("light", ""), ("dark", "-dark")):
+            shutil.copy(out / f"{theme}-{WINDOW}" / f"{stop}.png", PICTURES / f"{picture}{suffix}.png")
 
 
 def lead(application: Application, stops: Sequence[Stop], out: Path, looks: Sequence[str]) -> float:
@@ -444,7 +273,7 @@ def _application(display: str, trace: Path | None) -> "Iterator[Application]":
             Path(place).mkdir()
         tracer = [] if trace is None else ["strace", *TRACED, "-o", str(trace.resolve())]
         process = subprocess.Popen(
-            [*tracer, sys.executable, str(Path(__file__).resolve()), "--inside", "."],
+            [*tracer, sys.executable, str(Path(__file__).resolve().with_name("tour_inside.py"))],
             cwd=places["HOME"],  # where dialogs begin
             env=environment,
             stdin=subprocess.PIPE,
@@ -469,139 +298,6 @@ def _end(process: "subprocess.Popen[Any]") -> None:
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
-
-
-# inside the application's process
-
-
-def _run_inside() -> int:
-    """Open the window as always, and answer whoever leads the tour."""
-    sys.path.insert(0, str(ROOT))
-    from PySide6.QtCore import QObject, Qt, Signal
-
-    from app.main_window import open_window
-
-    class Guide(QObject):
-        """Hears commands from a thread that reads, and answers on the screen's."""
-
-        asked = Signal(str)
-
-        def listen(self, commands: IO[str]) -> None:
-            for command in commands:
-                self.asked.emit(command.strip())
-
-    guide = Guide()
-    guide.asked.connect(_answer, Qt.ConnectionType.QueuedConnection)
-    threading.Thread(target=guide.listen, args=(sys.stdin,), name="tour", daemon=True).start()
-    return open_window([])
-
-
-def _answer(command: str) -> None:
-    from PySide6.QtWidgets import QApplication
-
-    from app.main_window import MainWindow
-
-    window = next(widget for widget in QApplication.topLevelWidgets() if isinstance(widget, MainWindow))
-    verb, *rest = command.split()
-    told: dict[str, Any] = {}
-    match verb:
-        case "begin":
-            window.move(*CORNER)
-            window.activateWindow()
-        case "look":
-            _take_look(window, *rest)
-        case "picture":
-            _picture_of(window).save(rest[0])
-        case "tell":
-            told = _look_at(window)
-        case "end":
-            window.close()
-    print(f"tour: {json.dumps(told)}", flush=True)
-
-
-def _take_look(window: Any, theme: str, size: str) -> None:
-    """Show the window in this theme and size, and let it settle."""
-    from PySide6.QtTest import QTest
-
-    look, (side, scale) = window._look, size.split("@")
-    width, height = (int(one) for one in side.split("x"))
-    if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
-        look.set_dark(theme == "dark")
-        look.set_scale(int(scale) / 100)
-    if (window.width(), window.height()) != (width, height):
-        window.resize(width, height)
-        QTest.qWait(SETTLE_MS)
-    QTest.qWait(SETTLE_MS)
-
-
-def _picture_of(window: Any) -> "QPixmap":
-    """What is in sight, an open dialog over the window included."""
-    from PySide6.QtGui import QPainter
-    from PySide6.QtWidgets import QApplication
-
-    picture: QPixmap = window.grab()
-    dialog = QApplication.activeModalWidget()
-    if dialog is not None:
-        painter = QPainter(picture)
-        painter.drawPixmap(window.mapFromGlobal(dialog.mapToGlobal(dialog.rect().topLeft())), dialog.grab())
-        painter.end()
-    return picture
-
-
-def _look_at(window: Any) -> dict[str, Any]:
-    from PySide6.QtWidgets import (
-        QAbstractButton,
-        QAbstractItemView,
-        QApplication,
-        QComboBox,
-        QLabel,
-        QLineEdit,
-        QWidget,
-    )
-
-    screen = window.screens.currentWidget()
-    step = getattr(screen, "current", None)
-    visit = getattr(screen, "visit", None)
-    focus = QApplication.focusWidget()
-    front = QApplication.activeModalWidget() or window
-    controls: dict[str, tuple[int, int]] = {}
-    words = []
-    for widget in front.findChildren(QWidget):
-        if not widget.isVisible():
-            continue
-        if isinstance(widget, QLabel):
-            words.append(widget.text())
-        elif isinstance(widget, QAbstractButton | QComboBox | QLineEdit | QAbstractItemView):
-            seen = widget.visibleRegion().boundingRect()
-            if (name := _name_of(widget)) and widget.isEnabled() and not seen.isEmpty():
-                middle = widget.mapToGlobal(seen.center())
-                controls.setdefault(name, (middle.x(), middle.y()))
-        elif widget.accessibleName():
-            words.append(widget.accessibleName())
-    return {
-        "screen": type(screen).__name__,
-        "step": type(step).__name__ if step is not None else "",
-        "focus": _name_of(focus) if focus is not None else "",
-        "is_recording": bool(getattr(screen, "is_recording", False)),
-        "banner": next((b.text for b in _banners(window) if b.isVisible()), ""),
-        "stopwatch_s": visit.elapsed_s if visit is not None else 0.0,
-        "words": words,
-        "controls": controls,
-    }
-
-
-def _name_of(widget: "QWidget") -> str:
-    """By its accessible name, or as a native dialog's button is read."""
-    from PySide6.QtWidgets import QAbstractButton
-
-    said = widget.text().replace("&", "") if isinstance(widget, QAbstractButton) else ""
-    return widget.accessibleName() or said
-
-
-def _banners(window: "QWidget") -> list[Any]:
-    from app.widgets.banner import Banner
-
-    return list(window.findChildren(Banner))
 
 
 if __name__ == "__main__":

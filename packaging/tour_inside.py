@@ -1,0 +1,151 @@
+"""The application's side of a tour: it opens as always, and tells on a pipe what is on its screen.
+
+Started by `tour.py`.
+"""
+
+import json
+import sys
+import threading
+from pathlib import Path
+from typing import IO, TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from PySide6.QtGui import QPixmap
+    from PySide6.QtWidgets import QWidget
+
+CORNER = (20, 30)  # of the window on the display
+SETTLE_MS = 150
+
+
+def run() -> int:
+    """Open the window as always, and answer whoever leads the tour."""
+    sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
+    from PySide6.QtCore import QObject, Qt, Signal
+
+    from app.main_window import open_window
+
+    class Guide(QObject):
+        """Hears commands from a thread that reads, and answers on the screen's."""
+
+        asked = Signal(str)
+
+        def listen(self, commands: IO[str]) -> None:
+            for command in commands:
+                self.asked.emit(command.strip())
+
+    guide = Guide()
+    guide.asked.connect(_answer, Qt.ConnectionType.QueuedConnection)
+    threading.Thread(target=guide.listen, args=(sys.stdin,), name="tour", daemon=True).start()
+    return open_window([])
+
+
+def _answer(command: str) -> None:
+    from PySide6.QtWidgets import QApplication
+
+    from app.main_window import MainWindow
+
+    window = next(widget for widget in QApplication.topLevelWidgets() if isinstance(widget, MainWindow))
+    verb, *rest = command.split()
+    told: dict[str, Any] = {}
+    match verb:
+        case "begin":
+            window.move(*CORNER)
+            window.activateWindow()
+        case "look":
+            _take_look(window, *rest)
+        case "picture":
+            _picture_of(window).save(rest[0])
+        case "tell":
+            told = _look_at(window)
+        case "end":
+            window.close()
+    print(f"tour: {json.dumps(told)}", flush=True)
+
+
+def _take_look(window: Any, theme: str, size: str) -> None:
+    """Show the window in this theme and size, and let it settle."""
+    from PySide6.QtTest import QTest
+
+    look, (side, scale) = window._look, size.split("@")
+    width, height = (int(one) for one in side.split("x"))
+    if (look.theme.is_dark, look.theme.scale) != (theme == "dark", int(scale) / 100):
+        look.set_dark(theme == "dark")
+        look.set_scale(int(scale) / 100)
+    if (window.width(), window.height()) != (width, height):
+        window.resize(width, height)
+        QTest.qWait(SETTLE_MS)
+    QTest.qWait(SETTLE_MS)
+
+
+def _picture_of(window: Any) -> "QPixmap":
+    """What is in sight, an open dialog over the window included."""
+    from PySide6.QtGui import QPainter
+    from PySide6.QtWidgets import QApplication
+
+    picture: QPixmap = window.grab()
+    dialog = QApplication.activeModalWidget()
+    if dialog is not None:
+        painter = QPainter(picture)
+        painter.drawPixmap(window.mapFromGlobal(dialog.mapToGlobal(dialog.rect().topLeft())), dialog.grab())
+        painter.end()
+    return picture
+
+
+def _look_at(window: Any) -> dict[str, Any]:
+    from PySide6.QtWidgets import (
+        QAbstractButton,
+        QAbstractItemView,
+        QApplication,
+        QComboBox,
+        QLabel,
+        QLineEdit,
+        QWidget,
+    )
+
+    screen = window.screens.currentWidget()
+    step = getattr(screen, "current", None)
+    visit = getattr(screen, "visit", None)
+    focus = QApplication.focusWidget()
+    front = QApplication.activeModalWidget() or window
+    controls: dict[str, tuple[int, int]] = {}
+    words = []
+    for widget in front.findChildren(QWidget):
+        if not widget.isVisible():
+            continue
+        if isinstance(widget, QLabel):
+            words.append(widget.text())
+        elif isinstance(widget, QAbstractButton | QComboBox | QLineEdit | QAbstractItemView):
+            seen = widget.visibleRegion().boundingRect()
+            if (name := _name_of(widget)) and widget.isEnabled() and not seen.isEmpty():
+                middle = widget.mapToGlobal(seen.center())
+                controls.setdefault(name, (middle.x(), middle.y()))
+        elif widget.accessibleName():
+            words.append(widget.accessibleName())
+    return {
+        "screen": type(screen).__name__,
+        "step": type(step).__name__ if step is not None else "",
+        "focus": _name_of(focus) if focus is not None else "",
+        "is_recording": bool(getattr(screen, "is_recording", False)),
+        "banner": next((b.text for b in _banners(window) if b.isVisible()), ""),
+        "stopwatch_s": visit.elapsed_s if visit is not None else 0.0,
+        "words": words,
+        "controls": controls,
+    }
+
+
+def _name_of(widget: "QWidget") -> str:
+    """By its accessible name, or as a native dialog's button is read."""
+    from PySide6.QtWidgets import QAbstractButton
+
+    said = widget.text().replace("&", "") if isinstance(widget, QAbstractButton) else ""
+    return widget.accessibleName() or said
+
+
+def _banners(window: "QWidget") -> list[Any]:
+    from app.widgets.banner import Banner
+
+    return list(window.findChildren(Banner))
+
+
+if __name__ == "__main__":
+    sys.exit(run())

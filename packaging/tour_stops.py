@@ -1,0 +1,188 @@
+"""Where does a tour stop, what must the screen say there, and what is done? One tour by keyboard, one by mouse."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+PATIENCE_S = 30.0
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What the application tells of itself: screen and step by their classes, the control that has the focus, and the
+    enabled controls in sight by their accessible names, each with its middle on the display."""
+
+    screen: str
+    step: str
+    focus: str
+    is_recording: bool
+    banner: str
+    stopwatch_s: float
+    words: tuple[str, ...]
+    controls: Mapping[str, tuple[int, int]]
+
+    def has(self, control: str) -> bool:
+        return any(name.startswith(control) for name in self.controls)
+
+    def says(self, words: str) -> bool:
+        return any(words in text for text in self.words)
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """One place of the tour.
+
+    Attributes
+    ----------
+    name
+        Of its pictures.
+    until
+        What the screen must say before anything is done.
+    does
+        One after the other: "press Return" (keys as xdotool names them), "type P-1" ("{home}" is the tour's own
+        folder), "copy key" (types the recovery key that is shown), "to Stop" (presses Tab until a control whose name
+        begins with Stop has the focus), "click Stop", "drag 0A09 to L thigh".
+    lingers_s
+        Before the pictures, for what moves.
+    """
+
+    name: str
+    until: Callable[[Seen], bool]
+    does: tuple[str, ...] = ()
+    lingers_s: float = 0.5
+    patience_s: float = PATIENCE_S
+
+
+def at(screen: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.screen == screen
+
+
+def at_step(step: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.screen == "Wizard" and seen.step == step
+
+
+def offers(*controls: str) -> Callable[[Seen], bool]:
+    return lambda seen: all(seen.has(control) for control in controls)
+
+
+def says(words: str) -> Callable[[Seen], bool]:
+    return lambda seen: seen.says(words)
+
+
+def is_recording(seen: Seen) -> bool:
+    return seen.is_recording
+
+
+def has_walked(strides: int) -> Callable[[Seen], bool]:
+    """Whether so many strides are counted of the walk that is being recorded."""
+
+    def counted(seen: Seen) -> bool:
+        if not seen.is_recording or "Strides" not in seen.words:
+            return False
+        figure = seen.words[seen.words.index("Strides") + 1]
+        return figure.isdigit() and int(figure) >= strides
+
+    return counted
+
+
+PASSPHRASE = "seven quiet herons cross"
+STRIDES = 13  # the simulated patient takes 14 steps with each foot
+PLACES = {
+    "DEMO-09": "L thigh",
+    "DEMO-17": "R thigh",
+    "DEMO-1B": "R shank",
+    "DEMO-22": "R foot",
+    "DEMO-2C": "L foot",
+    "DEMO-31": "L shank",
+}
+DIGITS = {"L thigh": 1, "L shank": 2, "L foot": 3, "R thigh": 4, "R shank": 5, "R foot": 6}
+PLACED_BY_KEYS = tuple(key for place in PLACES.values() for key in (f"press {DIGITS[place]}", "press Down"))
+PLACED_BY_MOUSE = tuple(f"drag {sensor} to {place}" for sensor, place in PLACES.items())
+
+
+def walk(number: int, starts: tuple[str, ...], stops: str) -> tuple[Stop, ...]:
+    """Give the stops of one walk."""
+    return (
+        Stop(f"{number + 9:02d}a-choose", offers("Barefoot"), starts, lingers_s=1.0, patience_s=90.0),
+        Stop(f"{number + 9:02d}b-walking", has_walked(6), patience_s=60.0),
+        Stop(f"{number + 9:02d}c-walked", has_walked(STRIDES), (stops,), patience_s=60.0),
+    )
+
+
+KEYBOARD: tuple[Stop, ...] = (
+    Stop(
+        "01-first-start",
+        at("FirstStartPage"),
+        (
+            "type TM",
+            "press Tab",
+            "type Tour Guide",
+            "press Tab",
+            f"type {PASSPHRASE}",
+            "press Tab",
+            f"type {PASSPHRASE}",
+        ),
+    ),
+    Stop("02-typed", at("FirstStartPage"), ("press Return",)),
+    Stop("03-recovery-key", says("Your recovery key"), ("to Type it back", "copy key")),
+    Stop("04-typed-back", says("Your recovery key"), ("press Return",)),
+    Stop("05-home", offers("New patient"), ("press ctrl+n",), lingers_s=1.0),
+    Stop(
+        "06-patient",
+        at_step("PatientStep"),
+        ("type DEMO-7", "to Birth year", "type 1990", "to Height", "type 178", "to Mass", "type 74"),
+        lingers_s=1.0,
+    ),
+    Stop("07-patient-typed", offers("Put on sensors"), ("press Return",), lingers_s=1.0),
+    Stop("07a-source", at_step("SensorsStep"), ("press Return",), lingers_s=1.0),
+    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_KEYS, lingers_s=5.0),
+    Stop("07c-placed", says("All six are worn"), ("press Return",), lingers_s=1.0),
+    Stop("08a-stand-still", at_step("StandStillStep"), ("press space",), lingers_s=1.0),
+    Stop("08b-standing", is_recording, lingers_s=1.5),
+    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(1, ("press 1", "press space"), "press space"),
+    Stop("10d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    *walk(2, ("press 2", "press space"), "press space"),
+    *walk(3, ("press 4", "press space"), "press space"),  # kept, and the next begun, by one key
+    Stop("12d-keep", offers("Keep 1"), ("press k",), lingers_s=1.0),
+    Stop("12e-kept", offers("Results"), ("press Return",), lingers_s=1.0),
+    Stop("13a-results", offers("Mean cycle"), ("to Mean cycle", "press Right"), lingers_s=2.0, patience_s=60.0),
+    Stop("13b-whole-walk", offers("Mean cycle"), ("press Right",), lingers_s=2.0),
+    Stop("13c-compare", offers("Differences"), ("press Right",), lingers_s=1.0),
+    Stop("13d-figures", says("Peaks and ranges"), ("press Right",), lingers_s=1.0),
+    Stop("13e-findings", offers("Mean cycle"), ("press ctrl+7",), lingers_s=1.0),
+    Stop("14a-report", at_step("ReportStep"), ("press ctrl+s",), lingers_s=1.0),
+    Stop("14b-where", offers("Save"), ("press ctrl+a", "type {home}/results", "press Return"), lingers_s=1.0),
+    Stop("14c-saved", says("Saved as"), ("press F1",), lingers_s=1.0),
+    Stop("15-manual", offers("Search the help"), ("press Escape",), lingers_s=1.0),
+    Stop("16-leave", at_step("ReportStep"), ("to Step 7", "press Down", "press Return")),
+    Stop("17-home-again", offers("New session"), lingers_s=1.0),
+)
+MOUSE: tuple[Stop, ...] = (
+    Stop("01-first-start", at("FirstStartPage"), ("click Look at the demonstration",)),
+    Stop("05-home", offers("New session"), ("click New session",), lingers_s=1.0),
+    Stop("06-patient", offers("Put on sensors"), ("click Put on sensors",), lingers_s=1.0),
+    Stop("07a-source", at_step("SensorsStep"), ("click Simulated patient",), lingers_s=1.0),
+    Stop("07b-sensors", offers("Movement decides"), PLACED_BY_MOUSE, lingers_s=5.0),
+    Stop("07c-placed", says("All six are worn"), ("click Stand still",), lingers_s=1.0),
+    Stop("08a-stand-still", at_step("StandStillStep"), ("click Start the count",), lingers_s=1.0),
+    Stop("08b-standing", is_recording, lingers_s=1.5),
+    Stop("09-free-motion", lambda seen: at_step("FreeMotionStep")(seen) and seen.is_recording, lingers_s=7.0),
+    *walk(1, ("click Barefoot", "click Start walk"), "click Stop walk"),
+    Stop("10d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
+    *walk(2, ("click Shoes", "click Start walk"), "click Stop walk"),
+    *walk(3, ("click Alignment A", "click Keep, start next"), "click Stop walk"),
+    Stop("12d-keep", offers("Keep 1"), ("click Keep 1",), lingers_s=1.0),
+    Stop("12e-kept", offers("Results"), ("click Results",), lingers_s=1.0),
+    Stop("13a-results", offers("Mean cycle"), ("click Whole walk",), lingers_s=2.0, patience_s=60.0),
+    Stop("13b-whole-walk", offers("Mean cycle"), ("click Compare",), lingers_s=2.0),
+    Stop("13c-compare", offers("Differences"), ("click Figures",), lingers_s=1.0),
+    Stop("13d-figures", says("Peaks and ranges"), ("click Findings",), lingers_s=1.0),
+    Stop("13e-findings", offers("Mean cycle"), ("click Go to the report",), lingers_s=1.0),
+    Stop("14a-report", at_step("ReportStep"), ("click Save the results",), lingers_s=1.0),
+    Stop("14b-where", offers("Save"), ("click Save",), lingers_s=1.0),
+    Stop("14c-saved", says("Saved as"), ("click Help",), lingers_s=1.0),
+    Stop("15-manual", offers("Search the help"), ("click Back",), lingers_s=1.0),
+    Stop("16-leave", at_step("ReportStep"), ("click All patients",)),
+    Stop("17-home-again", offers("New session"), lingers_s=1.0),
+)
+TOURS = {"keyboard": KEYBOARD, "mouse": MOUSE}
