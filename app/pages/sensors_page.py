@@ -11,7 +11,6 @@ from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
     QScrollArea,
-    QStackedWidget,
     QVBoxLayout,
     QWidget,
 )
@@ -129,12 +128,12 @@ class SensorsPage(QWidget):
         return [self.sources, *before, *self._tiles, *self.ways.segments, *rows]
 
     def focus(self) -> None:
-        if self._pages.currentWidget() is self.nothing and self.nothing.buttons:
+        if self._in_sight is self.nothing and self.nothing.buttons:
             self.nothing.buttons[0].setFocus()
             self._whole.ensureWidgetVisible(self.nothing.buttons[0])
-        elif self._pages.currentWidget() is self.searching:
+        elif self._in_sight is self.searching:
             self.searching.stop.setFocus()
-        elif self._pages.currentWidget() is self.stored:
+        elif self._in_sight is self.stored:
             self.stored.focus()
         elif row := self.list.rows.get(self.list.selection):
             row.setFocus()
@@ -192,7 +191,7 @@ class SensorsPage(QWidget):
 
     def show_sensors(self, sensors: Sequence[SensorRow]) -> None:
         """Show how the sensors are; four times a second is enough."""
-        if tuple(sensors) == self._sensors and self._pages.currentWidget() is self._lists:
+        if tuple(sensors) == self._sensors and self._in_sight is self._lists:
             return
         self._sensors = tuple(sensors)
         self._bared -= {sensor.site for sensor in sensors if sensor.site is not None}
@@ -210,7 +209,7 @@ class SensorsPage(QWidget):
 
     def show_traces(self, traces: Mapping[str, FloatArray]) -> None:
         """Draw how each sensor turned in the last 5 s, deg/s, oldest first; ten times a second is enough."""
-        if self._pages.currentWidget() is self._lists:
+        if self._in_sight is self._lists:
             self.list.show_traces(traces)
 
     def show_way(self, way: Way) -> None:
@@ -246,7 +245,7 @@ class SensorsPage(QWidget):
 
     def place_selected(self, number: int) -> bool:
         """Wear the selected sensor at place 1 to 6; returns whether there is such a place and a sensor."""
-        if not self.list.selection or not 1 <= number <= len(Site) or self._pages.currentWidget() is not self._lists:
+        if not self.list.selection or not 1 <= number <= len(Site) or self._in_sight is not self._lists:
             return False
         self._assign(self.list.selection, list(Site)[number - 1])
         return True
@@ -290,13 +289,15 @@ class SensorsPage(QWidget):
         self._body.setContentsMargins(0, 0, 0, 0)
         self._body.addWidget(self.places, 0)
         self._body.addLayout(self._beside, 1)
-        self._pages = QStackedWidget()
-        for page in (self.nothing, self.searching, self.stored, self._lists):
-            self._pages.addWidget(page)
         content = QWidget()
         self._column = QVBoxLayout(content)
         self._column.addLayout(self._head)
-        self._column.addWidget(self._pages, 1)
+        # not stacked: each would ask room for all
+        for page in (self.nothing, self.searching, self.stored, self._lists):
+            self._column.addWidget(page, 1)
+            page.hide()
+        self._in_sight: QWidget = self.nothing
+        self.nothing.show()
         whole = QVBoxLayout(self)
         whole.setContentsMargins(0, 0, 0, 0)
         self._whole = _scrolling(content)
@@ -320,11 +321,13 @@ class SensorsPage(QWidget):
 
     def _show(self, page: QWidget) -> None:
         """Change over to `page`; a focus that was on the page before goes on with it."""
-        before = self._pages.currentWidget()
+        before = self._in_sight
         if page is before:
             return
-        had_focus = before is not None and before.isAncestorOf(self.focusWidget() or self)
-        self._pages.setCurrentWidget(page)
+        had_focus = before.isAncestorOf(self.focusWidget() or self)
+        self._in_sight = page
+        before.hide()
+        page.show()
         if had_focus:
             self.focus()
 

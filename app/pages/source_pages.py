@@ -38,6 +38,7 @@ class NoSource(QWidget):
         self._notice = Notice(look, size=16)
         self._left_out = Text(look, size=14, tone="ink2", wraps=True)
         self._left_out.setAlignment(Qt.AlignmentFlag.AlignCenter)
+        self._left_out.hide()
         self._row = QVBoxLayout()
         self._column = QVBoxLayout(self)
         self._column.addWidget(self._notice)

@@ -320,3 +320,20 @@ def test_a_trace_breaks_where_nothing_was_heard() -> None:
 
 def _texts_of(widget: QWidget) -> str:
     return " ".join(child.accessibleName() for child in widget.findChildren(QWidget))
+
+
+def test_a_page_asks_no_room_for_another(page: SensorsPage) -> None:
+    page.set_compact(True)
+    page.resize(736, 432)
+    scroll = page._whole.verticalScrollBar()
+    page.show_no_source()
+    settle()
+    assert page._whole.horizontalScrollBar().maximum() == 0
+    low = scroll.maximum()
+    page.stored.tell("what " * 80, "then " * 120)
+    page.show_stored()
+    settle()
+    assert scroll.maximum() > low
+    page.show_no_source()
+    settle()
+    assert (page._whole.horizontalScrollBar().maximum(), scroll.maximum()) == (0, low)
