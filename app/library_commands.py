@@ -8,7 +8,7 @@ import argparse
 import getpass
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -216,11 +216,17 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
 
 
 def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | None, report: Report) -> str:
-    from app.storage.recovery import adopt
+    from app.storage.recovery import adopt, adopt_home
+    from app.storage.stored import LibraryError
     from core.samples import Recording, RecordingKind
     from devices.files.imports import folder_for, free_name
 
     when = f"{one.began_at:%Y-%m-%d %H:%M} UTC" if one.began_at else "an unknown time"
+    if into is None and one.belonging is not None:
+        with suppress(LibraryError):  # the session that it says it is of is gone
+            recovered = adopt_home(opened, one, report)
+            where = f"{PREFIX}{recovered.stored.session_id}"
+            return f"{recovered.stored.told.name}: {_length(recovered.recorded_s)} was recovered into {where}."
     if into is None:
         length = _length(one.recorded_s)
         return f"- {length} recorded at {when} belongs to no session. Say to which with --into {PREFIX}ID."

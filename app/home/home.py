@@ -11,8 +11,9 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
+from app.home.recovering import Recovering
 from app.home.settings_desk import SettingsDesk
-from app.home.words import length, patient_line, person, session_line
+from app.home.words import patient_line, person, session_line
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
@@ -32,7 +33,6 @@ if TYPE_CHECKING:
     from app.storage import stored
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
-    from app.storage.recovery import Recovered
     from core.samples import Session
 
 COMPACT_BELOW = (1180, 720)
@@ -69,6 +69,7 @@ class Home(QWidget):
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
         self.banner = Banner(look)
+        self.recovering = Recovering(desk, self.banner, self)
         self.page = HomePage(look)
         self.import_page = ImportPage(look)
         self.settings = SettingsDesk(look, desk, settings, self)
@@ -94,7 +95,7 @@ class Home(QWidget):
                 tr("The library was not closed well, and what was saved last is damaged."),
                 tr("Look through the latest session."),
             )
-        self._recover()
+        self.recovering.begin(state)
         self.refresh()
         self._go_to(self.page)
 
@@ -178,6 +179,7 @@ class Home(QWidget):
         self.import_page.code_changed.connect(self._on_import_code)
         self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
         self.working.stop_pressed.connect(self._on_stop)
+        self.recovering.recovered.connect(self._on_recovered)
         self.settings.told.connect(self.banner.tell)
         self.settings.restored.connect(self.refresh)
         self.toast.undone.connect(self._on_undone)
@@ -484,49 +486,8 @@ class Home(QWidget):
         self._go_to(self.page)
         self.banner.tell(what, remedy)
 
-    # what was being recorded when the program was closed
-
-    def _recover(self) -> None:
-        if self._state is None or not self._state.interrupted:
-            return
-        interrupted = self._state.interrupted
-
-        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Recovered, UUID]]":
-            from app.storage.recovery import recover
-
-            recovered = []
-            for one in interrupted:
-                if one.stored is not None and not one.problem:
-                    done = recover(opened, one, report)
-                    recovered.append((done, opened.library.sessions.get(done.stored.session_id).patient_id))
-            return recovered
-
-        self._desk.run_long(work, self._on_recovered, self._on_refused, None, self)
-
-    def _on_recovered(self, recovered: "list[tuple[Recovered, UUID]]") -> None:
-        self._recovered |= {patient_id for _, patient_id in recovered}
-        if self._state is None:
-            return
-        heard = [one for one, _ in recovered if one.recorded_s > 0]
-        left = [one for one in self._state.interrupted if one.is_orphan or one.problem]
-        if len(heard) == 1:
-            self.banner.tell(
-                tr("The program was closed while recording. {time} of {name} was recovered.").format(
-                    time=length(heard[0].recorded_s), name=heard[0].stored.told.name
-                ),
-                tr("It is kept up to the last 0.1 s. Look at it, then keep or discard."),
-            )
-        elif heard:
-            self.banner.tell(
-                tr("The program was closed while recording. {count} recordings were recovered.").format(
-                    count=len(heard)
-                ),
-                tr("They are kept up to the last 0.1 s. Look at them, then keep or discard."),
-            )
-        elif left:
-            one = left[0]
-            what = one.problem or tr("{time} of a recording belong to no session").format(time=length(one.recorded_s))
-            self.banner.tell(f"{what[:1].upper()}{what[1:]}.", f"{one.remedy}." if one.remedy else "")
+    def _on_recovered(self, patients: frozenset[UUID]) -> None:
+        self._recovered |= patients
         self.refresh()
 
     def _on_refused(self, what: str, remedy: str) -> None:
@@ -540,13 +501,11 @@ class Home(QWidget):
 
 
 def _sessions_of(opened: "OpenedLibrary", patient_id: UUID) -> _Sessions:
-    from app.storage.stored import RecordingState
-
     lines = opened.library.sessions.list(patient_id)
     recovered = {
         line.id
         for line in lines
-        if any(one.state is RecordingState.RECOVERED for one in opened.library.sessions.get(line.id).recordings)
+        if any(one.is_unjudged and one.told.is_kept for one in opened.library.sessions.get(line.id).recordings)
     }
     return _Sessions(patient_id, lines, frozenset(recovered))
 

@@ -19,6 +19,7 @@ from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.pseudonyms import Pseudonyms
+from app.storage.recovery import Interrupted
 from app.storage.stored import (
     Action,
     LibraryError,
@@ -29,11 +30,14 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.wording import later, tr
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, SensorInfo, Session
+from devices.files.imports import folder_for
 from devices.files.session_folder import write_session
 from devices.files.session_toml import default_sensor
+from devices.files.site_files import write_site
 from devices.source import SourceInfo
 
 DRIVER, VERSION = "session-folder", "1"
@@ -126,9 +130,7 @@ def recording_with_samples(
             raise JournalRefusedError(path.name, "this recording's file is missing", RESTORE)
     keys = [journal.wrapped_key for journal in recording.journals]
     decoded = decode(paths, opened.data_key, decoders, keys)
-    if decoded.undecoded:
-        what = f"{recording.told.name} was recorded with {decoded.undecoded[0]}, which this version cannot read"
-        raise LibraryError(what, "Install the version that recorded it, or a later one")
+    _refuse_undecoded(recording.told.name, decoded)
     placement = recording.placement.site_of if recording.placement else {}
     read = decoded.recording(recording.told, placement)
     names = _own_names(decoded)
@@ -164,6 +166,45 @@ def export_session(
         session = Pseudonyms(opened.data_key).session(visit.patient_id, session)
     report(1.0, "writing")
     write_session(session, folder)
+
+
+def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, decoders: Decoders, report: Report) -> None:
+    """Write one CSV file per sensor of a recording that no session knows, to be imported into the right one.
+
+    Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit is told
+    before anything is written.
+
+    Raises
+    ------
+    LibraryError
+        It needs a driver that is not among `decoders`, or the export cannot be noted.
+    JournalRefusedError
+        It is damaged in its beginning, or another library's.
+    OSError
+        The folder cannot be written.
+    """
+    decoded = decode(list(orphan.segments.values()), opened.data_key, decoders)
+    _refuse_undecoded(orphan.belonging.told.name if orphan.belonging else orphan.recording_id.hex, decoded)
+    opened.library.audit.note(Action.EXPORT, about("recording", orphan.recording_id), format="one CSV per sensor")
+    folder.mkdir(parents=True, exist_ok=True)
+    names = _own_names(decoded)
+    for number, (sensor, heard) in enumerate(decoded.sensors.items()):
+        report(number / len(decoded.sensors), sensor)
+        write_site(heard.block, folder / f"{folder_for(names.get(sensor, sensor))}.csv")
+
+
+def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
+    """See that all of it can be read.
+
+    Raises
+    ------
+    LibraryError
+        A driver is not known here.
+    """
+    if decoded.undecoded:
+        what = tr("{recording} was recorded with {driver}, which this version cannot read")
+        told = what.format(recording=name, driver=decoded.undecoded[0])
+        raise LibraryError(told, later("Install the version that recorded it, or a later one"))
 
 
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:

@@ -1,27 +1,32 @@
 """What was recorded when the program, or the machine, ended without stopping? Found at the next start, and closed.
 
 Two kinds are found: rows that nobody closed, and orphans, journals that no row tells of because the database did not
-answer when they were begun. Nothing is changed in a journal: whatever is proved in it is there, and is read in the
-same way as after a clean stop. Only the program that holds the library alone may ask (`opened.held_alone`), for what
-another program is recording is open, too.
+answer when they were begun. An orphan says itself which session it is of, unless its beginning is damaged. Nothing is
+changed in a journal: whatever is proved in it is there, and is read in the same way as after a clean stop. Only the
+program that holds the library alone may ask (`opened.held_alone`), for what another program is recording is open, too.
 """
 
 import datetime
+import json
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 from uuid import UUID
 
 from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError, find_segments, read_header
-from app.storage.journal.payloads import SourceEntry
+from app.storage.journal.payloads import Belonging, SourceEntry
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
 from app.storage.opened import OpenedLibrary, Report
-from app.storage.stored import RecordingState, StoredJournal, StoredRecording
+from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
+from app.wording import later
 from core.samples import Recording
+from devices.files.imports import folder_for, free_name
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
 EVERY_BYTES = 1 << 22  # between two reports
+FIRST_RECORDS = 100  # among which the mark is that says whose a recording is
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +36,7 @@ class Interrupted:
     Attributes
     ----------
     stored
-        Its row; None: an orphan, of which only a user can say where it belongs.
+        Its row; None: an orphan.
     segments
         Its journals, by segment.
     began_at
@@ -40,6 +45,8 @@ class Interrupted:
         How much there is, up to the last record that was written.
     problem, remedy
         What keeps it from being recovered, and what to do; empty where nothing does.
+    belonging
+        Of an orphan: which session it was begun in, and what was told of it; None where that is not known.
     """
 
     recording_id: UUID
@@ -49,6 +56,7 @@ class Interrupted:
     recorded_s: float
     problem: str = ""
     remedy: str = ""
+    belonging: Belonging | None = None
 
     @property
     def is_orphan(self) -> bool:
@@ -125,6 +133,23 @@ def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Re
     return _close(opened, stored, contents)
 
 
+def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Recovered:
+    """Put an orphan into the session that it was begun in; where its name is taken there, under the next free one.
+
+    Raises
+    ------
+    JournalRefusedError, LibraryError, OSError
+        As `adopt`; a LibraryError too where it does not say which session that is.
+    """
+    if orphan.belonging is None:
+        raise LibraryError(later("This recording does not say which session it is of"), later("Export it"))
+    told, visit = orphan.belonging.told, opened.library.sessions.get(orphan.belonging.session_id)
+    if any(other.name == told.name for other in visit.told.recordings):
+        name = free_name(visit.told, told.kind)
+        told = replace(told, name=name, folder=folder_for(name))
+    return adopt(opened, orphan, visit.id, told, report)
+
+
 def _look(
     opened: OpenedLibrary, recording_id: UUID, stored: StoredRecording | None, segments: Mapping[int, Path]
 ) -> Interrupted:
@@ -141,7 +166,20 @@ def _look(
             began_at = began_at or datetime.datetime.fromtimestamp(header.opened_wall_ns / 1e9, datetime.UTC)
     except JournalRefusedError as refusal:
         return Interrupted(recording_id, stored, segments, began_at, recorded_s, refusal.what, refusal.remedy)
-    return Interrupted(recording_id, stored, segments, began_at, recorded_s)
+    belonging = None if stored else _belonging(opened, segments)
+    return Interrupted(recording_id, stored, segments, began_at, recorded_s, belonging=belonging)
+
+
+def _belonging(opened: OpenedLibrary, segments: Mapping[int, Path]) -> Belonging | None:
+    """What one of the first marks says of whose it is."""
+    for path in segments.values():
+        first = islice(JournalReader(path, opened.data_key).records(), FIRST_RECORDS)
+        for record in first:
+            if isinstance(record, Damage) or record.kind is not Kind.MARK:
+                continue
+            if (found := Belonging.parsed(json.loads(record.payload))) is not None:
+                return found
+    return None
 
 
 def _last_record(path: Path, seal: Seal) -> Record | None:

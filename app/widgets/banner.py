@@ -19,6 +19,7 @@ class Banner(QWidget):
     """Hidden until it is told something."""
 
     dismissed = Signal()
+    acted = Signal()  # the way on that was offered
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -26,6 +27,7 @@ class Banner(QWidget):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._what = Text(look, size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._next = Text(look, size=14, tone="caution_ink", wraps=True)
+        self._act = Button(look, "", Kind.SECONDARY, height=44)
         self._dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
         words = QVBoxLayout()
         words.setSpacing(0)
@@ -35,7 +37,9 @@ class Banner(QWidget):
         words.addStretch(1)
         self._row = QHBoxLayout(self)
         self._row.addLayout(words, 1)
+        self._row.addWidget(self._act)
         self._row.addWidget(self._dismiss)
+        self._act.clicked.connect(self.acted)
         self._dismiss.clicked.connect(self._on_dismiss_clicked)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
@@ -45,8 +49,10 @@ class Banner(QWidget):
     def text(self) -> str:
         return " ".join(filter(None, [self._what.text(), self._next.text()]))
 
-    def tell(self, what: str, then: str = "") -> None:
-        """Show what happened, in bold, and what follows or what to do."""
+    def tell(self, what: str, then: str = "", verb: str = "") -> None:
+        """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` tells."""
+        self._act.setText(verb)
+        self._act.setVisible(bool(verb))
         self._what.setText(what)
         self._next.setText(then)
         self._next.setVisible(bool(then))

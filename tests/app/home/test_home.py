@@ -18,7 +18,7 @@ from app.pages.home_lists import PatientLine, SessionLine
 from app.settings import Scheme, Settings
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
-from app.storage.journal.payloads import layout_of
+from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
@@ -213,8 +213,8 @@ def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Hom
     assert home.current is home.page
 
 
-def leave_open(folder: Path) -> UUID:
-    """Leave a walk of 4 s as a kill does, in the latest session."""
+def leave_open(folder: Path, has_row: bool = True, says_session: bool = False) -> UUID:
+    """Leave a walk of 4 s as a kill does, in the latest session; without a row the database did not answer."""
     data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     with Library.open(folder, data_key) as library:
         library.log_in("hk")
@@ -222,11 +222,16 @@ def leave_open(folder: Path) -> UUID:
         line = library.sessions.list()[0]
         library.sessions.place(line.id, {Site.LEFT_THIGH: PlacedSensor("LT-1", SensorInfo())})
         recording_id = uuid7()
-        library.recordings.start(line.id, Recording("walk 3", RecordingKind.WALKING, "walk_3", {}), False, recording_id)
+        told = Recording("walk 3", RecordingKind.WALKING, "walk_3", {})
+        if has_row:
+            library.recordings.start(line.id, told, False, recording_id)
         writer = JournalWriter.create(opened.recordings, recording_id, data_key, room=ANY_ROOM)
         header = writer.header
         journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
-        library.recordings.add_journal(recording_id, journal)
+        if has_row:
+            library.recordings.add_journal(recording_id, journal)
+        if says_session:
+            writer.mark(Belonging(line.id, told).text())
         block = ImuBlock("LT-1", np.arange(400) / 100, np.ones((400, 3)), np.ones((400, 3)))
         source = writer.source(SourceInfo("file", "1", sensors=("LT-1",)), layout_of(block))
         writer.samples(source, 0, block, waits=True)
@@ -254,6 +259,30 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     home._on_session_opened(session_id)
     home.refresh()
     qtbot.waitUntil(lambda: not any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+
+
+def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path, tmp_path: Path
+) -> None:
+    """One says of which session it is; of two others nobody knows, so their samples can be had as files."""
+    leave_open(folder, has_row=False, says_session=True)
+    leave_open(folder, has_row=False)
+    leave_open(folder, has_row=False)
+    load_fonts()
+    home = Home(Look(), desk, settings)
+    qtbot.addWidget(home)
+    home.show()
+    open_library(qtbot, desk, home, folder)
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
+    qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+    home.banner._dismiss.click()
+    assert home.banner.text.startswith("2 recordings, 00:00 in all, belong to no session.")
+    assert home.banner._act.text() == "Export"
+    home.recovering.export(tmp_path / "out")
+    qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
+    assert len(list((tmp_path / "out").glob("recording */LT-1.csv"))) == 2
+    assert home.banner._act.isHidden()
 
 
 def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, desk: LibraryDesk, home: Home) -> None:

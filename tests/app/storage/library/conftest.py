@@ -2,6 +2,7 @@
 
 import shutil
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
 
@@ -10,7 +11,7 @@ import pytest
 
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
-from app.storage.journal.payloads import layout_of
+from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
@@ -67,10 +68,17 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
     """Make a recording of 100 Hz: stopped as it should be, or as a kill leaves it.
 
     `has_row` False: the database did not answer. `is_told` False: killed before the row knew of the journal.
+    `says_session`: the journal itself tells that it is of this one.
     """
 
     def record(
-        name: str, count: int = 500, *, is_stopped: bool = True, has_row: bool = True, is_told: bool = True
+        name: str,
+        count: int = 500,
+        *,
+        is_stopped: bool = True,
+        has_row: bool = True,
+        is_told: bool = True,
+        says_session: UUID | None = None,
     ) -> StoredRecording:
         library, recording_id = opened.library, uuid7()
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
@@ -81,6 +89,8 @@ def record(opened: OpenedLibrary, session_id: UUID) -> Record:
         journal = StoredJournal(header.segment, writer.path.name, header.wrapped_key)
         if has_row and is_told:
             library.recordings.add_journal(recording_id, journal)
+        if says_session is not None:
+            writer.mark(Belonging(says_session, replace(told, condition="barefoot")).text())
         block = samples(count)
         source = writer.source(SourceInfo("walker", "1", sensors=(SENSOR,)), layout_of(block))
         writer.samples(source, 0, block, waits=True)

@@ -5,15 +5,21 @@ from collections.abc import Callable
 from pathlib import Path
 from uuid import UUID
 
+import numpy as np
 import pytest
 
+from app.storage.audit import about
+from app.storage.database.ids import uuid7
+from app.storage.exchange import export_orphan
 from app.storage.journal.decoding import decode
 from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError
 from app.storage.journal.reader import JournalReader
 from app.storage.opened import OpenedLibrary, held_alone
-from app.storage.recovery import adopt, find_interrupted, recover
-from app.storage.stored import LibraryError, RecordingState, StoredRecording
+from app.storage.recovery import adopt, adopt_home, find_interrupted, recover
+from app.storage.stored import Action, LibraryError, RecordingState, StoredRecording
 from core.samples import Recording, RecordingKind
+from devices.files.site_files import read_site
+from tests.app.storage.library.conftest import SENSOR, samples
 
 Record = Callable[..., StoredRecording]
 
@@ -89,6 +95,41 @@ def test_an_orphan_is_listed_until_somebody_says_where_it_belongs(
     assert recovered.stored.placement is not None
     assert find_interrupted(opened) == ()
     assert [one.told.name for one in opened.library.sessions.get(session_id).recordings] == ["walk 1", "walk 9"]
+
+
+def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
+    opened: OpenedLibrary, session_id: UUID, record: Record
+) -> None:
+    """With what was told of it; under another name where its own was given anew meanwhile."""
+    record("walk 1", is_stopped=False, has_row=False, says_session=session_id)
+    record("walk 2", has_row=False, says_session=session_id, is_stopped=False)
+    record("walk 2")
+    found = find_interrupted(opened)
+    assert [one.belonging is not None for one in found] == [True, True]
+    recovered = [adopt_home(opened, one, silent).stored for one in found]
+    assert [(one.told.name, one.told.folder, one.told.condition) for one in recovered] == [
+        ("walk 1", "walk_1", "barefoot"),
+        ("walk 3", "walk_3", "barefoot"),
+    ]
+    assert all(one.session_id == session_id and one.placement is not None for one in recovered)
+    assert find_interrupted(opened) == ()
+
+
+def test_an_orphan_of_no_session_is_exported_and_stays(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    """It says nothing of its session, or that one is not there any more: its samples come out all the same."""
+    silent_one = record("left over", is_stopped=False, has_row=False)
+    record("left over", 700, is_stopped=False, has_row=False, says_session=uuid7())
+    found = find_interrupted(opened)
+    for one in found:
+        with pytest.raises(LibraryError):
+            adopt_home(opened, one, silent)
+        export_orphan(opened, one, tmp_path / str(one.recording_id), {}, silent)
+    assert find_interrupted(opened) == found
+    block, findings = read_site(tmp_path / str(silent_one.id) / "LT-1.csv", "", "", SENSOR, is_rate_derived=False)
+    assert (len(block), findings) == (500, ())
+    np.testing.assert_array_equal(block.gyr_rad_s, samples(500).gyr_rad_s)
+    (noted,) = opened.library.audit.entries(about("recording", silent_one.id))
+    assert noted.action == Action.EXPORT
 
 
 @pytest.mark.parametrize("damage", ["missing", "another key", "no journal"])
