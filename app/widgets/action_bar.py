@@ -217,6 +217,9 @@ class ActionBar(QWidget):
             button.set_room(room)
         left: Row = [one for one in (self._clock, self.back, *self._quiet) if not one.isHidden()]
         right: Row = [one for one in (self.sound, *self._others, self.primary) if not one.isHidden()]
+        if _width(left, gap) + _width(right, gap) + 2 * gap > room:
+            for button in self._quiet:
+                button.leave_icon_away()
         before = _width(left, gap) + (2 * gap if left else 0)
         after = _width(right, gap) + (2 * gap if right else 0)
         is_one_row = before + after - 2 * gap <= room
@@ -323,6 +326,9 @@ class VerbButton(Button):
             self._key = ""
         if self.sizeHint().width() > width:
             self._icon = None
+
+    def leave_icon_away(self) -> None:
+        self._icon = None
 
     def sizeHint(self) -> QSize:
         size = super().sizeHint()
