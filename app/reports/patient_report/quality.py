@@ -17,7 +17,7 @@ from core.findings import Finding
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.quality import MIN_LOSS_PERCENT
-from core.results import AxisSource, JointCalibration, ZeroKind
+from core.results import AxisSource, JointCalibration, Method, ZeroKind
 
 MAX_BEYOND_FLOOR_RAD = np.deg2rad(3.0)  # a proposal, as are the other limits
 CARE_LOSS_PERCENT = 1.0
@@ -113,6 +113,14 @@ def _about_joints(facts: Facts) -> Iterator[tuple[Verdict, str]]:
             cause = tr(" (from walking alone)") if walking else ""
             axis_sd = fixed(math.degrees(found.axis_sd_rad or math.nan), 1)
             yield Verdict.WITH_CARE, said.format(joint=name_of(joint), axis_sd=axis_sd, cause=cause)
+    strangers = [joint for joint in facts.calibrated if _has_finding(facts, joint, "not_the_same_joint")]
+    if strangers:
+        said = tr("The two sensors of the {joints} do not move as neighbours: look whether they are worn as named.")
+        yield Verdict.WITH_CARE, said.format(joints=joined([name_of(joint) for joint in strangers]))
+    untold = [joint for joint in _without_lag(facts) if joint not in strangers]
+    if untold:
+        said = tr("The motion does not show how far the clocks at the {joints} are apart: peaks may come late.")
+        yield Verdict.WITH_CARE, said.format(joints=joined([name_of(joint) for joint in untold]))
     without = [joint for joint, found in facts.calibrated.items() if found.zero is ZeroKind.NONE]
     if without:
         if len(without) == len(facts.calibrated):
@@ -120,6 +128,16 @@ def _about_joints(facts: Facts) -> Iterator[tuple[Verdict, str]]:
         else:
             said = tr("No zero was set for the {joints}: their heights are not shown.")
             yield Verdict.WITH_CARE, said.format(joints=joined([name_of(joint) for joint in without]))
+
+
+def _has_finding(facts: Facts, joint: Joint, key: str) -> bool:
+    return any(f.key == key and str(joint) in f.where.split(", ") for f in facts.visit.analysis.findings)
+
+
+def _without_lag(facts: Facts) -> list[Joint]:
+    """Joints whose motion does not tell a lag from none, so that "none found" would say too much."""
+    calibrated = facts.calibrated.items()
+    return [joint for joint, found in calibrated if found.method is Method.ROBUST and found.lag_sd_s is None]
 
 
 def _is_weak(found: JointCalibration) -> bool:
@@ -182,6 +200,11 @@ def _loss_in_words(facts: Facts) -> str:
 def _lag(facts: Facts) -> str:
     if not facts.calibrated:
         return NOTHING
+    untold = _without_lag(facts)
+    if len(untold) == len(facts.calibrated):
+        return tr("not resolvable")
+    if untold:
+        return tr("not resolvable at the {joints}").format(joints=joined([name_of(joint) for joint in untold]))
     worst_ms = max(abs(found.lag_s) for found in facts.calibrated.values()) * 1000
     return tr("{lag} ms, corrected").format(lag=fixed(worst_ms, 1)) if round(worst_ms, 1) else tr("none found")
 

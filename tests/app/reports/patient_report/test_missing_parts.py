@@ -185,6 +185,22 @@ def test_gaps_and_slips_are_said(request_of_demonstration: ReportRequest) -> Non
     assert "Remarks on this recording" in pages[4]
 
 
+def test_clocks_that_cannot_be_compared_and_sensors_that_are_no_neighbours_are_said(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    untold = with_joints(request_of_demonstration, {"lag_sd_s": None})
+    analysis = untold.visit.analysis
+    stranger = Finding("not_the_same_joint", Severity.WARNING, str(Joint.LEFT_KNEE), {"margin": 1.1})
+    pages = shown(with_analysis(untold, replace(analysis, findings=(*analysis.findings, stranger))))
+    first, usual = pages[0], shown(request_of_demonstration)
+    assert len(pages) == len(usual)
+    assert "read with care" in first
+    assert "The two sensors of the left knee do not move as neighbours" in first
+    assert "how far the clocks at the left ankle, right knee and right ankle are apart" in first
+    assert "not resolvable" in first
+    assert "not resolvable" not in usual[0]
+
+
 @pytest.mark.parametrize("simulated", [True, False])
 def test_simulated_data_say_so_everywhere_and_real_data_nowhere(
     request_of_demonstration: ReportRequest, simulated: bool
