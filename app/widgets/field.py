@@ -1,6 +1,7 @@
 """One line to type into: its label above, its unit and its leg inside, and what is wrong with it below."""
 
 import math
+import unicodedata
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
@@ -42,6 +43,8 @@ class Field(QWidget):
         Shows dots.
     is_code
         Tells 0 from O.
+    most
+        Characters, so that what is typed has its room where it is shown.
     """
 
     edited = Signal(str)  # by the user
@@ -59,9 +62,11 @@ class Field(QWidget):
         is_code: bool = False,
         placeholder: str = "",
         has_label: bool = True,
+        most: int | None = None,
     ) -> None:
         super().__init__()
         self._look, self._label, self._side, self._is_optional = look, label, side, is_optional
+        self._most, self._is_secret, self._is_too_long = most, is_secret, False
         self._is_pending = False  # edited, not yet committed
         self._caption = Text(look, label, size=14, weight=MEDIUM)
         self._optional = Text(look, tr("optional"), size=12, tone="ink2")
@@ -86,7 +91,9 @@ class Field(QWidget):
         self._column.addLayout(self._below)
         self._caption.setVisible(has_label)  # not before it has a parent: alone it would be a window
         self._optional.setVisible(has_label and is_optional)
+        self._make_room("")
         self._box.textEdited.connect(self._on_text_edited)
+        self._box.inputRejected.connect(self._on_input_rejected)
         self._box.editingFinished.connect(self._on_editing_finished)
         look.changed.connect(self._on_look_changed)
         self.set_unit(unit)
@@ -108,6 +115,7 @@ class Field(QWidget):
 
     def set_text(self, text: str) -> None:
         if text != self._box.text():  # else the cursor would jump
+            self._make_room(text)
             self._box.setText(text)
 
     def set_unit(self, unit: str) -> None:
@@ -140,7 +148,24 @@ class Field(QWidget):
 
     def _on_text_edited(self, text: str) -> None:
         self._is_pending = True
-        self.edited.emit(text)
+        clean = text if self._is_secret else one_line(text)
+        if clean != text:
+            cursor = len(one_line(text[: self._box.cursorPosition()]))
+            self._box.setText(clean)
+            self._box.setCursorPosition(cursor)
+        if self._is_too_long and len(clean) < self._box.maxLength():
+            self._is_too_long = False
+            self.set_wrong("")
+        self.edited.emit(clean)
+
+    def _make_room(self, text: str) -> None:
+        """For what is typed, and for all that was written elsewhere."""
+        if self._most is not None:
+            self._box.setMaxLength(max(self._most, len(text)))
+
+    def _on_input_rejected(self) -> None:
+        self._is_too_long = True
+        self.set_wrong(tr("There is room for {count} characters.").format(count=self._box.maxLength()))
 
     def _on_editing_finished(self) -> None:
         self._is_pending = False
@@ -152,6 +177,12 @@ class Field(QWidget):
         self._column.setSpacing(px(6))
         self._above.setSpacing(px(8))
         self._below.setSpacing(px(8))
+
+
+def one_line(text: str) -> str:
+    """What can be seen of a text: its breaks are spaces, and what only steers how it is shown is gone."""
+    kinds = ((letter, unicodedata.category(letter)) for letter in text)
+    return "".join(" " if kind in ("Cc", "Zl", "Zp") else letter for letter, kind in kinds if kind != "Cf")
 
 
 class NumberField(Field):

@@ -18,7 +18,8 @@ from core.samples import Patient, RecordingKind, Session
 if TYPE_CHECKING:
     from uuid import UUID
 
-    from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+    from app.pages.patient_cards import LastVisit
+    from app.pages.patient_page import PatientDraft, PatientPage
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient, StoredSession
     from app.wizard.visit import Visit
@@ -216,7 +217,7 @@ def _about(patient: Patient) -> str:
 
 def _last_visit(session: "StoredSession") -> "LastVisit":
     from app.home.words import date
-    from app.pages.patient_page import LastVisit
+    from app.pages.patient_cards import LastVisit
 
     told = session.told
     try:

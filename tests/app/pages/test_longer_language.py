@@ -16,7 +16,8 @@ from app.pages.home_lists import PatientLine, SessionLine
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
-from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+from app.pages.patient_cards import LastVisit
+from app.pages.patient_page import PatientDraft, PatientPage
 from app.pages.sensor_row import SensorRow
 from app.pages.sensors_page import SensorsPage, Way
 from app.pages.settings_page import OperatorLine, SettingsPage
@@ -152,6 +153,12 @@ def no_sensors(look: Look) -> QWidget:
     page = SensorsPage(look)
     page.show_sources([SourceOption("serial", tr("Serial ports"))])
     page.show_no_source()
+    page.nothing.show_left_out(
+        tr(
+            "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
+            "so that they never pass for a real patient's."
+        )
+    )
     return page
 
 

@@ -8,7 +8,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.pages.patient_page import LastVisit, PatientDraft, PatientPage
+from app.pages.patient_cards import LastVisit
+from app.pages.patient_page import PatientDraft, PatientPage
 from app.theme import Look
 from core.body import Side
 from core.samples import Patient

@@ -68,6 +68,51 @@ def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look:
     assert edited.args == ["P-01478"]
 
 
+@pytest.mark.parametrize(
+    ("pasted", "taken"),
+    [
+        ("P-0147\nMiller", "P-0147 Miller"),
+        ("P\u202e-7\u200b\u2028b", "P-7 b"),
+        ("P\x00-7\t", "P -7 "),
+        ("Ä 日本", "Ä 日本"),
+    ],
+)
+def test_what_is_pasted_is_one_line_that_can_be_seen(
+    qtbot: QtBot, window: QWidget, look: Look, pasted: str, taken: str
+) -> None:
+    field = Field(look, "Code", is_code=True)
+    shown(qtbot, window, field)
+    field.set_text("A")
+    with qtbot.waitSignal(field.edited) as edited:
+        field.line_edit.insert(pasted)
+        field.line_edit.textEdited.emit(field.line_edit.text())  # as a paste tells it
+    assert edited.args == [f"A{taken}"]
+    assert field.text == f"A{taken}"
+    assert field.line_edit.cursorPosition() == len(field.line_edit.text())
+
+
+def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: Look) -> None:
+    field = Field(look, "Passphrase", is_secret=True)
+    shown(qtbot, window, field)
+    field.line_edit.setText("a\tb")
+    field.line_edit.textEdited.emit(field.line_edit.text())
+    assert field.text == "a\tb"
+
+
+def test_what_has_no_room_is_told_and_what_was_written_elsewhere_is_kept_whole(
+    qtbot: QtBot, window: QWidget, look: Look
+) -> None:
+    field = Field(look, "Code", most=5)
+    shown(qtbot, window, field)
+    QTest.keyClicks(field.line_edit, "P-01478")
+    assert field.text == "P-014"
+    assert field.line_edit.accessibleName() == "Code, There is room for 5 characters."
+    QTest.keyClick(field.line_edit, Qt.Key.Key_Backspace)
+    assert not field.is_wrong
+    field.set_text("P-0147 of another clinic")
+    assert field.text == "P-0147 of another clinic"
+
+
 def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget, look: Look) -> None:
     one, other = Field(look, "Device"), Field(look, "Clinic number")
     shown(qtbot, window, one, other)

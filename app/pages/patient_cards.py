@@ -1,0 +1,171 @@
+"""What stands beside the form of a patient: the reference band, whose code it is, and the visit before this one."""
+
+from dataclasses import dataclass
+
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
+
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.icons import Icon, IconMark
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr
+from core.norms import ReferenceCurves
+
+BAND_AGES = (18, 39)  # "young adults", in the words of the band's source
+DRAWING_HEIGHT = 108
+
+
+@dataclass(frozen=True, slots=True)
+class LastVisit:
+    """The visit before this one: its title with the date, and what it is known by, as label and value."""
+
+    title: str
+    facts: tuple[tuple[str, str], ...]
+
+
+class BandCard(Card):
+    """The group that the patient's curves will lie on, and whether the patient is like them."""
+
+    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+        super().__init__(look, padding=20, spacing=6)
+        group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
+            n=curves.n, speed=f"{curves.speed_m_s:.2f}"
+        )
+        self._mark = IconMark(look, Icon.INFO)
+        self._words = Text(look, size=14, wraps=True)
+        self._advice = QHBoxLayout()
+        self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
+        self._advice.addWidget(self._words, 1)
+        self.column.addWidget(Text(look, tr("Reference band"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(Text(look, group, size=14, wraps=True))
+        self.column.addWidget(_BandDrawing(look, curves))
+        self.column.addLayout(self._advice)
+        look.changed.connect(self._on_spacing_changed)
+        self._on_spacing_changed()
+
+    def judge(self, age: int | None) -> None:
+        """Say whether a patient of `age` years is of the group's age."""
+        youngest, oldest = BAND_AGES
+        if age is None:
+            words = tr("Type the birth year to hear whether the band fits the age.")
+        elif age > oldest:
+            words = tr("Younger and faster than most patients of {age}. Read with care.").format(age=age)
+        elif age < youngest:
+            words = tr("Adults: children of {age} walk otherwise. Read with care.").format(age=age)
+        else:
+            words = tr("Of the patient's age. The speed still has to fit.")
+        self._words.setText(words)
+
+    def _on_spacing_changed(self) -> None:
+        self._advice.setSpacing(self._look.theme.px(10))
+
+
+class _BandDrawing(QWidget):
+    """The knee of the group over one stride: one and two standard deviations in two greys."""
+
+    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+        super().__init__()
+        self._look, self._curves = look, curves
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAccessibleName(self._title())
+        peak = int(curves.knee_mean_deg.argmax())
+        self.setAccessibleDescription(
+            tr("Peak {angle}° at {percent} % of the stride").format(
+                angle=f"{curves.knee_mean_deg[peak]:.0f}", percent=peak
+            )
+        )
+        look.changed.connect(self.updateGeometry)
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(200), px(DRAWING_HEIGHT))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        mean, sd = self._curves.knee_mean_deg, self._curves.knee_sd_deg
+        low, high = float((mean - 2 * sd).min()), float((mean + 2 * sd).max())
+        room = QRectF(0, px(4), self.width(), self.height() - px(8))
+
+        def at(percent: int, angle_deg: float) -> QPointF:
+            return QPointF(
+                room.left() + percent / (len(mean) - 1) * room.width(),
+                room.bottom() - (angle_deg - low) / (high - low) * room.height(),
+            )
+
+        painter.setPen(Qt.PenStyle.NoPen)
+        for width, colour in ((2, c.band_2sd), (1, c.band_1sd)):
+            edge = [at(i, mean[i] + width * sd[i]) for i in range(len(mean))]
+            edge += [at(i, mean[i] - width * sd[i]) for i in reversed(range(len(mean)))]
+            painter.setBrush(QColor(colour))
+            painter.drawPolygon(QPolygonF(edge))
+        painter.setPen(theme.pen(c.control, 1))
+        painter.drawLine(at(0, 0.0), at(len(mean) - 1, 0.0))
+        painter.setPen(QColor(c.ink2))
+        painter.setFont(theme.font(12))
+        painter.drawText(0, 0, self.width(), px(16), Qt.AlignmentFlag.AlignLeft, self._title())
+
+    def _title(self) -> str:
+        return tr("Knee, 1 and 2 SD")
+
+
+class TakenCard(Card):
+    """The patient who has the code that was typed."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=20, spacing=12)
+        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self.open = Button(look, tr("Open this patient"), Kind.SECONDARY, Icon.FOLDER)
+        self.column.addWidget(self._title)
+        self.column.addWidget(self.open)
+
+    def show_code(self, code: str) -> None:
+        self._title.setText(tr("{code} is in the library").format(code=code))
+        self.open.setAccessibleDescription(code)
+
+
+class LastVisitCard(Card):
+    """What was worn and recorded last time, and the way to have the same again."""
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=20, spacing=10)
+        self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
+        self.same = Button(look, tr("Same set-up as last visit"), Kind.SECONDARY, Icon.REPEAT)
+        self._facts = QGridLayout()
+        self._facts.setColumnStretch(1, 1)
+        self._shown: list[Text] = []
+        self.column.addWidget(self._title)
+        self.column.addLayout(self._facts)
+        self.column.addStretch(1)
+        self.column.addWidget(self.same)
+        look.changed.connect(self._on_spacing_changed)
+        self._on_spacing_changed()
+
+    def show_visit(self, visit: LastVisit) -> None:
+        self._title.setText(visit.title)
+        for text in self._shown:
+            text.setParent(None)
+            text.deleteLater()
+        self._shown = []
+        for row, (label, value) in enumerate(visit.facts):
+            for column, text in enumerate(
+                (
+                    Text(self._look, label, size=14, tone="ink2"),
+                    Text(self._look, value, size=14, weight=MEDIUM, wraps=True),
+                )
+            ):
+                self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
+                self._shown.append(text)
+
+    def _on_spacing_changed(self) -> None:
+        px = self._look.theme.px
+        self._facts.setHorizontalSpacing(px(16))
+        self._facts.setVerticalSpacing(px(8))
