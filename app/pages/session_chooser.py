@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from uuid import UUID
 
 from PySide6.QtCore import Signal
-from PySide6.QtWidgets import QHBoxLayout, QStackedWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
 from app.pages.home_lists import LineList, PatientLine
 from app.theme import Look
@@ -51,6 +51,7 @@ class SessionChooser(QWidget):
         )
         self.notice = Notice(look, size=16)
         self.sessions = LineList(look, tr("Stored sessions"))
+        self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # it scrolls by itself
         self._none = Text(look, tr("No other session with recordings is stored in this library."), 15, wraps=True)
         self.folder = Button(look, tr("Choose a session folder"), Kind.SECONDARY, Icon.FOLDER)
         self.back = Button(look, tr("Other sources"), Kind.QUIET)
