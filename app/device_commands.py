@@ -20,15 +20,18 @@ MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 def list_devices() -> Iterator[str]:
     """What is heard now, at which port nothing is, and how each driver was proved; takes a second or two."""
+    from app.known_columns import known_columns
     from devices.catalogue import DRIVERS
     from devices.search import search
 
-    found = search()
+    found = search(columns=known_columns())
     names = {driver.key: driver.name for driver in DRIVERS}
     yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
     for sensor in found.sensors:
         simulated = ", simulated" if sensor.is_simulated else ""
         yield f"- {names[sensor.driver]}: {sensor.name} at {sensor.place}{simulated}"
+    for lines in (one for one in found.lines if one.columns is None):
+        yield f"- Lines of {lines.count} numbers at {lines.port.device}: tell the application what they are."
     if found.passed:
         yield "Ports without one:"
     for passed in found.passed:

@@ -33,6 +33,11 @@ class PortInfo:
     """Somebody named it, so that it is looked at whatever it is."""
 
     @property
+    def key(self) -> str:
+        """What is plugged in, whichever port it is at; the port where that cannot be told."""
+        return f"{self.usb[0]:04x}:{self.usb[1]:04x} {self.serial}" if self.serial and self.usb else self.device
+
+    @property
     def is_likely(self) -> bool:
         """Whether a sensor may be there: most other ports of a machine are empty, or another's and slow to open."""
         return bool(self.usb or self.is_told or any(name in self.device for name in SENSORS_RADIO))

@@ -4,13 +4,17 @@ import json
 import socket
 import threading
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 
 from devices.catalogue import DRIVERS, Driver
 from devices.channels import Channel, TcpChannel, UdpChannel
+from devices.csv_serial import DRIVER as CSV
+from devices.csv_serial import Columns, CsvSerial
+from devices.lines import LinesAt, columns_in
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
 from devices.lsl import DRIVER as LSL
 from devices.lsl import LslSource, OtherStreamError, find_streams, told_sensors
@@ -22,10 +26,11 @@ from devices.ximu3 import Ximu3
 
 LISTEN_S = 0.4  # ten samples of the slowest rate that is of use, and a sensor's whole burst
 LEAST = 3  # messages
-ANSWER_S, MOST_ANSWER = 0.3, 4096  # what says more is something else
+ANSWER_S, MOST_ANSWER = 0.5, 4096  # what says more is something else
 ANNOUNCED_AT = 10000  # the port where x-IMU3s tell once a second that they are there
 ANNOUNCED_S = 1.3
 MOST_DATAGRAM = 2048
+NO_COLUMNS: Mapping[str, Columns] = MappingProxyType({})
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,20 +61,33 @@ class Passed:
 class Found:
     sensors: tuple[FoundSensor, ...] = ()
     passed: tuple[Passed, ...] = ()
+    lines: tuple[LinesAt, ...] = ()
 
     def of(self, driver: str) -> tuple[FoundSensor, ...]:
         return tuple(sensor for sensor in self.sensors if sensor.driver == driver)
 
 
-def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCED_AT) -> Found:
+def search(
+    ports: Sequence[PortInfo] | None = None,
+    announced_at: int = ANNOUNCED_AT,
+    columns: Mapping[str, Columns] = NO_COLUMNS,
+) -> Found:
     """Listen to all ports at once, to the network and for streams; takes a second or two. Each sensor is named once.
 
     Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open, but for
     those that somebody bound or that are a sensor's by their name.
+
+    Parameters
+    ----------
+    columns
+        What the columns of lines of numbers are, by the `key` of the port that sends them.
     """
     looked_at = [port for port in (list_ports() if ports is None else ports) if port.is_likely]
-    heard: list[FoundSensor | Passed] = []
-    works = [threading.Thread(target=lambda port=port: heard.append(_at_port(port)), daemon=True) for port in looked_at]
+    heard: list[FoundSensor | Passed | LinesAt] = []
+    works = [
+        threading.Thread(target=lambda port=port: heard.append(_at_port(port, columns)), daemon=True)
+        for port in looked_at
+    ]
     on_network: list[FoundSensor] = []
     works.append(threading.Thread(target=lambda: on_network.extend(_announced(announced_at)), daemon=True))
     works.append(threading.Thread(target=lambda: heard.extend(_streamed()), daemon=True))
@@ -79,19 +97,25 @@ def search(ports: Sequence[PortInfo] | None = None, announced_at: int = ANNOUNCE
         work.join()
     by_name: dict[tuple[str, str], FoundSensor] = {}
     at_ports = sorted((one for one in heard if isinstance(one, FoundSensor)), key=lambda one: one.place)
+    lines = sorted((one for one in heard if isinstance(one, LinesAt)), key=lambda one: one.port.device)
+    at_ports += [_of_lines(one) for one in lines if one.columns is not None]
     for one in [*at_ports, *on_network]:  # by cable rather than by radio
         by_name.setdefault((one.driver, one.name), one)
     passed = sorted((one for one in heard if isinstance(one, Passed)), key=lambda one: one.port.device)
-    return Found(tuple(by_name.values()), tuple(passed))
+    return Found(tuple(by_name.values()), tuple(passed), tuple(lines))
 
 
-def _at_port(port: PortInfo) -> FoundSensor | Passed:
+def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:
     bauds = dict.fromkeys(baud for driver in DRIVERS if driver.dialect for baud in driver.bauds)
     for baud in bauds:
         channel = SerialPort(port, baud)
         try:
             channel.open()
-            driver = _recognised(channel, port) or _answering(channel)
+            driver, is_sure, said = _recognised(channel, port)
+            if driver is None and (count := columns_in(said)):
+                return LinesAt(port, baud, count, columns.get(port.key))
+            if not is_sure:
+                driver = _answering(channel) or driver
             if driver is not None and driver.dialect is not None:
                 info, _ = driver.dialect().greet(channel)
                 return FoundSensor(
@@ -108,8 +132,21 @@ def _at_port(port: PortInfo) -> FoundSensor | Passed:
     )
 
 
-def _recognised(channel: Channel, port: PortInfo) -> Driver | None:
-    """Whose messages these are; of several, whose are damaged least."""
+def _of_lines(lines: LinesAt) -> FoundSensor:
+    port, columns, name = lines.port, lines.columns, lines.port.serial or Path(lines.port.device).name
+
+    def make() -> LiveSource:
+        return ByteSource(CsvSerial(columns, name), SerialPort(port, lines.baud))
+
+    return FoundSensor(CSV, name, port.device, make)
+
+
+def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, bytes]:
+    """Whose messages these are, of several, whose are damaged least; whether that is sure; and what was heard.
+
+    Messages without a sample among damaged ones are no proof: another sensor's packets may look like them.
+    """
+    said = b""
     candidates = [
         (driver, driver.dialect().framer(SourceInfo(driver.key, "")))
         for driver in DRIVERS
@@ -118,17 +155,19 @@ def _recognised(channel: Channel, port: PortInfo) -> Driver | None:
     until_s = time.monotonic() + LISTEN_S
     while time.monotonic() < until_s:
         data, now_s = channel.read(), time.monotonic()
+        said += data
         for _, framer in candidates:
             framer.feed(data, now_s)
     # a sensor may send what it is not asked for yet; noise is understood by nobody
     understood = [
-        (whole - framer.heard.damaged, driver)
+        (bool(framer.heard.rows) or not framer.heard.damaged, whole - framer.heard.damaged, driver)
         for driver, framer in candidates
         if (whole := len(framer.heard.rows) + framer.heard.skipped) >= LEAST and whole > framer.heard.damaged
     ]
     if understood:
-        return max(understood, key=lambda one: one[0])[1]
-    return next((driver for driver in DRIVERS if driver.hint and driver.hint in port.description), None)
+        is_sure, _, found = max(understood, key=lambda one: one[:2])
+        return found, is_sure, said
+    return next((one for one in DRIVERS if one.hint and one.hint in port.description), None), False, said
 
 
 def _answering(channel: SerialPort) -> Driver | None:

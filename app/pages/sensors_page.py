@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.pages.columns_form import ColumnsForm
 from app.pages.sensor_list import SensorList
 from app.pages.sensor_places import PlaceShown, SensorPlaces
 from app.pages.sensor_row import SensorRow
@@ -105,6 +106,7 @@ class SensorsPage(QWidget):
         self.nothing = NoSource(look)
         self.searching = Searching(look)
         self.stored = SessionChooser(look)
+        self.columns = ColumnsForm(look)
         self._build()
         self._connect()
         self.show_no_source()
@@ -124,7 +126,7 @@ class SensorsPage(QWidget):
     @property
     def tab_order(self) -> list[QWidget]:
         rows = [one for row in self.list.rows.values() for one in (row, row.worn, row.identify)]
-        before = [*self.nothing.buttons, self.searching.stop, *self.stored.tab_order]
+        before = [*self.nothing.buttons, self.searching.stop, *self.stored.tab_order, *self.columns.tab_order]
         return [self.sources, *before, *self._tiles, *self.ways.segments, *rows]
 
     def focus(self) -> None:
@@ -135,6 +137,8 @@ class SensorsPage(QWidget):
             self.searching.stop.setFocus()
         elif self._in_sight is self.stored:
             self.stored.focus()
+        elif self._in_sight is self.columns:
+            self.columns.focus()
         elif row := self.list.rows.get(self.list.selection):
             row.setFocus()
 
@@ -183,6 +187,10 @@ class SensorsPage(QWidget):
     def show_stored(self) -> None:
         """Ask which stored session is to be replayed."""
         self._show(self.stored)
+
+    def show_columns(self) -> None:
+        """Ask what the columns of lines of numbers mean."""
+        self._show(self.columns)
 
     def show_reading(self, session: str) -> None:
         """Say that a session is read, to be replayed."""
@@ -293,7 +301,7 @@ class SensorsPage(QWidget):
         self._column = QVBoxLayout(content)
         self._column.addLayout(self._head)
         # not stacked: each would ask room for all
-        for page in (self.nothing, self.searching, self.stored, self._lists):
+        for page in (self.nothing, self.searching, self.stored, self.columns, self._lists):
             self._column.addWidget(page, 1)
             page.hide()
         self._in_sight: QWidget = self.nothing
@@ -391,6 +399,7 @@ class SensorsPage(QWidget):
         above = px(12 if self._is_compact else 20)
         self._column.setContentsMargins(side, above, side, above)
         room = self.width() - 2 * side
+        self.columns.set_room(room)
         self.places.set_narrow(self._is_compact)
         figure, rows = self.places.minimumSizeHint().width(), self.list.minimumSizeHint().width()
         rows = max(rows + px(SCROLL_BAR), self.ways.minimumSizeHint().width())

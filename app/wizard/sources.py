@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 DEMONSTRATION = "demonstration"
 SEARCH = "search"
+COLUMNS = "columns"
 SEARCH_ENDS_S = 10.0
 
 _log = logging.getLogger(__name__)
@@ -77,7 +78,7 @@ class Sources(Sequence[SourceChoice]):
     def _every(self) -> tuple[SourceChoice, ...]:
         demonstration = SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True)
         anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
-        return (demonstration, *self._of_drivers(), anew)
+        return (demonstration, *self._of_drivers(), *self._of_lines(), anew)
 
     def _of_drivers(self) -> list[SourceChoice]:
         found = self._found
@@ -87,6 +88,11 @@ class Sources(Sequence[SourceChoice]):
 
         by_driver = {driver: found.of(driver.key) for driver in DRIVERS}
         return [self._choice(driver.key, driver.name, sensors) for driver, sensors in by_driver.items() if sensors]
+
+    def _of_lines(self) -> list[SourceChoice]:
+        lines = self._found.lines if self._found is not None else ()
+        name = tr("Lines of numbers")
+        return [SourceChoice(COLUMNS, name, self._open_all, lines=lines)] if lines else []
 
     def _choice(self, key: str, name: str, sensors: "Sequence[FoundSensor]") -> SourceChoice:
         count = sum(sensor.count for sensor in sensors)
@@ -106,6 +112,10 @@ class Sources(Sequence[SourceChoice]):
         self._found = found = self._looked()
         if found.sensors:
             return _opening(found.sensors)
+        if found.lines:
+            raise SourceRefusedError(
+                tr("Lines of numbers are heard, and nobody said what they mean"), tr("Choose them as the source")
+            )
         if len(found.passed) == 1:  # then it is this one that is meant
             raise SourceRefusedError(found.passed[0].what, found.passed[0].remedy)
         raise SourceRefusedError(
@@ -127,6 +137,7 @@ def _opening(sensors: "Sequence[FoundSensor]") -> "Acquisition":
 
 
 def _search() -> "Found":
+    from app.known_columns import known_columns
     from devices.search import search
 
-    return search()
+    return search(columns=known_columns())

@@ -16,6 +16,7 @@ from devices.live import SourceRefusedError
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition, SensorStatus
     from app.storage.stored import PlacedSensor
+    from devices.lines import LinesAt
 
 _log = logging.getLogger(__name__)
 
@@ -25,7 +26,8 @@ class SourceChoice:
     """Something that sensors can be heard through. `make` may take seconds: it is called beside the screen.
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
-    `worn` gives the site by the sensor's name where the source tells it, as a stored session does.
+    `worn` gives the site by the sensor's name where the source tells it, as a stored session does. Of `lines` it has to
+    be told what they mean; they are heard through another choice then.
     """
 
     key: str
@@ -33,6 +35,7 @@ class SourceChoice:
     make: Callable[[], "Acquisition"]
     is_simulated: bool = False
     worn: Mapping[str, Site] = field(default_factory=dict)
+    lines: "tuple[LinesAt, ...]" = ()
 
 
 class WornSensors(QObject):

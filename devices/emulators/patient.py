@@ -27,6 +27,7 @@ from devices.ximu3 import G
 from devices.xsens_mti import EMULATED as XSENS_MTI
 
 KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
+AVERAGING, AVERAGED_OVER = frozenset({"xsens-mti"}), 6  # sensors that tell how far they turned since the last sample
 FINE_HZ = 500.0  # of the table that sensors measure from: between its rows the motion is straight to a thousandth
 MOST_DEG_S, MOST_G, MOST_RAW = 1999.0, 15.9, 32767
 # each begins and ends with the patient's pose while standing, so that one goes on where the one before has ended
@@ -81,10 +82,15 @@ class EmulatedPatient:
         self.clips = [*self.clips, self._clip(wanted, start_ns)]  # others are looking at the old ones
         return self.clips[-1]
 
-    def measured(self, site: Site, at_ns: float, rate_hz: float, chance: np.random.Generator) -> FloatArray:
-        """Rate in rad/s and force in m/s2 (6,) of a sample taken then."""
-        recording, passed_ns = self._performed(at_ns)
-        value = _between(self._tables[recording.name, site], passed_ns)
+    def measured(
+        self, site: Site, at_ns: float, rate_hz: float, chance: np.random.Generator, is_averaged: bool = False
+    ) -> FloatArray:
+        """Rate in rad/s and force in m/s2 (6,) of a sample taken then; the rate of the whole interval, or of now."""
+        value = self._at(site, at_ns)
+        if is_averaged:
+            steps_ns = np.linspace(0.0, 1e9 / rate_hz, AVERAGED_OVER + 1).tolist()
+            rates = np.array([self._at(site, at_ns - step_ns)[:3] for step_ns in steps_ns])
+            value = np.concatenate([(rates[1:] + rates[:-1]).mean(axis=0) / 2, value[3:]])
         density = np.repeat([self._errors.gyro_noise_rad_s, self._errors.acc_noise_m_s2], 3)
         noisy: FloatArray = value + density * np.sqrt(0.5 * rate_hz) * chance.normal(size=6)
         return noisy
@@ -93,6 +99,10 @@ class EmulatedPatient:
         """The truth: how far the joint is bent then, 0 in the anatomical neutral position."""
         recording, passed_ns = self._performed(at_ns)
         return float(_between(self.simulated.truth.recordings[recording.name].joints[joint].angle_rad, passed_ns))
+
+    def _at(self, site: Site, at_ns: float) -> FloatArray:
+        recording, passed_ns = self._performed(at_ns)
+        return _between(self._tables[recording.name, site], passed_ns)
 
     def _performed(self, at_ns: float) -> tuple[Recording, float]:
         """Which recording is performed then, and for how long already; the standing over and over in between."""
@@ -126,13 +136,13 @@ class EmulatedSensor:
         self.site = list(Site)[number % len(Site)]
         self.sent: list[FloatArray] = []
         self.sent_ns: list[float] = []
-        self._patient, self._rate_hz = patient, rate_hz
+        self._patient, self._kind, self._rate_hz = patient, kind, rate_hz
         self._chance = np.random.default_rng(number)
-        self.voice: EmulatedVoice = self._voice(kind, number, says_so)
+        self.voice: EmulatedVoice = self._voice(number, says_so)
 
-    def _voice(self, kind: str, number: int, says_so: bool) -> "EmulatedVoice":
+    def _voice(self, number: int, says_so: bool) -> "EmulatedVoice":
         rate_hz = self._rate_hz
-        match kind:
+        match self._kind:
             case "ximu3":
                 name = XIMU3 if says_so else "x-IMU3"
                 return Ximu3Voice(f"EMU{number + 1:05d}", self._in_degrees, rate_hz=rate_hz, name=name)
@@ -152,11 +162,12 @@ class EmulatedSensor:
                 )
             case "shimmer3":
                 return Shimmer3Voice(self._raw, name=f"{SHIMMER3 if says_so else 'Shimmer3'} {number + 1:04X}")
-        raise ValueError(f"{kind} is none of {KINDS}")
+        raise ValueError(f"{self._kind} is none of {KINDS}")
 
     def _measured(self, number: int) -> FloatArray:
         at_ns = self.voice.sampled_ns(number)
-        row = self._patient.measured(self.site, at_ns, self._rate_hz, self._chance)
+        is_averaged = self._kind in AVERAGING
+        row = self._patient.measured(self.site, at_ns, self._rate_hz, self._chance, is_averaged)
         self.sent.append(row)
         self.sent_ns.append(at_ns)
         return row

@@ -93,6 +93,20 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
     source.close()
 
 
+def test_a_sensor_that_was_left_streaming_is_found_again(tmp_path: Path) -> None:
+    """Its packets hold bytes that look like messages of an x-IMU3."""
+    voice = Shimmer3Voice(lambda number: (10, 200 + number % 2, 10, 1000, 10, 1000), name=f"{SHIMMER3} E")
+    emulation = Emulation(voice, partial(Terminal, tmp_path / "port"))
+    port = PortInfo(emulation.place, is_told=True)
+    for _ in range(2):
+        found = search([port], free_port())
+        assert [one.driver for one in found.sensors] == ["shimmer3"]
+        while not voice.is_streaming:
+            time.sleep(0.01)
+        time.sleep(0.5)
+    emulation.close()
+
+
 def test_a_port_in_use_says_so(emulated: list[PortInfo]) -> None:
     holding = SerialPort(emulated[0])
     holding.open()

@@ -16,6 +16,8 @@ from app.widgets.sensor_strip import SILENT_FROM_S
 from app.widgets.step_rail import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.replays import Replays
+from app.wizard.sources import SEARCH
+from app.wizard.steps.columns_telling import ColumnsTelling
 from app.wizard.steps.step import Step
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
@@ -53,6 +55,8 @@ class SensorsStep(Step):
         self._is_choosing = False  # which stored session is to be replayed
         self._names: dict[UUID, str] = {}  # of stored sessions
         self._dialog: QFileDialog | None = None
+        self._telling = ColumnsTelling(self)
+        self._telling.changed.connect(self.changed)
         self._replays = Replays(visit.desk, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
@@ -76,6 +80,7 @@ class SensorsStep(Step):
             page.stored.opened.connect(self._replay)
             page.stored.folder_pressed.connect(self._choose_folder)
             page.stored.back_pressed.connect(self._on_stored_left)
+            page.columns.back_pressed.connect(self._on_columns_left)
         return self._page
 
     @property
@@ -123,6 +128,7 @@ class SensorsStep(Step):
     def leave(self) -> None:
         self._is_in_sight = self._is_choosing = False
         self._replays.stop()
+        self._telling.end()
         sensors = self._visit.sensors
         if sensors.acquisition is not None:
             sensors.acquisition.set_work(None)
@@ -138,7 +144,8 @@ class SensorsStep(Step):
         self._ticks += 1
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
-        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading:
+            self._telling.tick()
+        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._telling.is_on:
             return
         if self._work is not None:
             state = self._work.state
@@ -156,6 +163,9 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if self._replays.reading:
             return BarState()
+        if self._telling.is_on:
+            is_whole = self._telling.columns is not None
+            return BarState(primary=Verb(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
         if self._is_choosing:
             is_any = self.page.stored.session is not None
             return BarState(primary=Verb(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
@@ -176,7 +186,9 @@ class SensorsStep(Step):
         return BarState(primary=Verb(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:
-        if self._is_choosing:
+        if self._telling.is_on:
+            self._use_columns()
+        elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
                 self._replay(session)
         elif self._silent_site is not None:
@@ -219,6 +231,8 @@ class SensorsStep(Step):
             page.show_reading(self._replays.reading)
         elif sensors.is_searching and sensors.choice is not None:
             page.show_searching(sensors.choice.name)
+        elif self._telling.is_on:
+            page.show_columns()
         elif self._is_choosing:
             page.show_stored()
         elif sensors.acquisition is None:
@@ -347,9 +361,33 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         known = (*self._visit.choices, *([sensors.choice] if sensors.choice is not None else []))
         choice = next((one for one in known if one.key == key), None)
-        if choice is not None:
-            self._is_choosing = False
+        if choice is None:
+            return
+        self._is_choosing = False
+        self._telling.end()
+        if choice.lines:
+            sensors.close()  # they may be at the same ports
+            self._telling.begin(self.page.columns, choice.lines)
+            self._show()
+            self.page.focus()
+            self.changed.emit()
+        else:
             sensors.search(choice)
+
+    def _use_columns(self) -> None:
+        """Remember what is told, and search again: all that is known is heard then."""
+        try:
+            self._telling.keep()
+        except OSError as problem:
+            self.told.emit(tr("What the columns mean cannot be kept."), str(problem))
+            return
+        self._on_source_chosen(SEARCH)
+
+    def _on_columns_left(self) -> None:
+        self._telling.end()
+        self._show()
+        self.page.focus()
+        self.changed.emit()
 
     def _on_stop_pressed(self) -> None:
         if self._replays.reading:

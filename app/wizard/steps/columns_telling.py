@@ -1,0 +1,162 @@
+"""What do the columns mean of sensors that send lines of numbers? Asked within the sensors' step, and remembered."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from app.wording import tr
+from core.samples import FloatArray
+
+if TYPE_CHECKING:
+    from app.pages.columns_form import ColumnsForm, ColumnsTold
+    from devices.csv_serial import Columns
+    from devices.lines import LinePreview, LinesAt
+
+TICKS_HZ = {"s": 1.0, "ms": 1e3, "us": 1e6}
+SLOWEST_HZ, FASTEST_HZ = 20.0, 2000.0
+FASTEST_RAD_S = 40.0  # nobody's leg turns so fast
+
+
+class ColumnsTelling(QObject):
+    """One port is listened to; what is told of it holds for all ports that send as many columns."""
+
+    changed = Signal()
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self._form: ColumnsForm | None = None
+        self._lines: Sequence[LinesAt] = ()
+        self._preview: LinePreview | None = None
+        self._separator, self._is_shown, self._could_use = "comma", False, False
+
+    @property
+    def is_on(self) -> bool:
+        return self._preview is not None
+
+    @property
+    def columns(self) -> "Columns | None":
+        """What is told; None while something is missing."""
+        from app.pages.columns_form import AXES, Meaning
+        from devices.csv_serial import Columns
+
+        told = self._form.told if self._form is not None and self._is_shown else None
+        if told is None or not told.is_whole:
+            return None
+        places = {meaning: number for number, meaning in enumerate(told.meanings) if meaning}
+        axes = [places[meaning] for meaning in AXES]
+        return Columns(
+            time=places[Meaning.TIME],
+            rate=tuple(axes[:3]),
+            force=tuple(axes[3:]),
+            tick_hz=TICKS_HZ[told.time_unit],
+            wraps_bits=told.wraps_bits,
+            rate_unit=told.rate_unit,
+            force_unit=told.force_unit,
+            separator=self._separator,
+            signs=tuple(-1 if number in told.turned else 1 for number in axes),
+            count=len(told.meanings),
+        )
+
+    def begin(self, form: "ColumnsForm", lines: "Sequence[LinesAt]") -> None:
+        """Listen to the first of these ports, and ask what it sends."""
+        from devices.lines import LinePreview
+        from devices.ports import SerialPort
+
+        self.end()
+        if self._form is None:
+            self._form = form
+            form.changed.connect(self.changed)
+        first = lines[0]
+        self._lines = [one for one in lines if one.count == first.count]
+        self._is_shown = False
+        form.show_places([one.port.device for one in self._lines])
+        form.tell("")
+        self._preview = LinePreview(SerialPort(first.port, first.baud))
+        self._preview.start()
+
+    def tick(self) -> None:
+        """Show what comes, and whether it can be what it is said to be."""
+        from devices.lines import guessed, table_of
+
+        if self._preview is None or self._form is None:
+            return
+        lines = self._preview.lines
+        table, separator = table_of(lines)
+        if not len(table):
+            return
+        if not self._is_shown or table.shape[1] != len(self._form.told.meanings):
+            known = self._lines[0].columns or guessed(lines)
+            self._form.show_told(_told_of(known, table.shape[1]))
+            self._is_shown = True
+            self.changed.emit()
+            self._form.focus()
+        self._separator = separator
+        self._form.show_values([f"{value:g}" for value in table[-1]])
+        columns = self.columns
+        self._form.tell(*(_missing() if columns is None else _said_of(columns, table)))
+
+    def keep(self) -> None:
+        """Remember what is told, and let go of the port.
+
+        Raises
+        ------
+        OSError
+            It cannot be written.
+        """
+        from app.known_columns import keep_columns
+
+        columns = self.columns
+        if columns is not None:
+            keep_columns([one.port.key for one in self._lines], columns)
+        self.end()
+
+    def end(self) -> None:
+        """Listen no longer."""
+        preview, self._preview = self._preview, None
+        if preview is not None:
+            preview.close()
+
+
+def _told_of(columns: "Columns | None", count: int) -> "ColumnsTold":
+    """As the form shows it; nothing is told of the columns of something unknown."""
+    from app.pages.columns_form import AXES, ColumnsTold, Meaning
+
+    meanings = [Meaning.UNUSED] * count
+    if columns is None:
+        return ColumnsTold(tuple(meanings))
+    axes = (*columns.rate, *columns.force)
+    for place, meaning in zip((columns.time, *axes), (Meaning.TIME, *AXES), strict=True):
+        meanings[place] = meaning
+    turned = frozenset(place for place, sign in zip(axes, columns.signs, strict=True) if sign < 0)
+    unit = next((name for name, hz in TICKS_HZ.items() if hz == columns.tick_hz), "ms")
+    return ColumnsTold(tuple(meanings), turned, unit, columns.wraps_bits, columns.rate_unit, columns.force_unit)
+
+
+def _missing() -> tuple[str, str, bool]:
+    what = tr("Time, three angular rates and three accelerations are needed, each once.")
+    return what, tr("Set columns that are something else to “not needed”."), False
+
+
+def _said_of(columns: "Columns", table: FloatArray) -> tuple[str, str, bool]:
+    """Whether numbers (n, columns) can be what they are said to be, by their size."""
+    from devices.csv_serial import FORCE_UNITS, RATE_UNITS
+    from devices.lines import STILL, G
+
+    step_s = float(np.median(np.diff(table[:, columns.time]))) / columns.tick_hz if len(table) > 1 else 0.0
+    rate_hz = 1.0 / step_s if step_s > 0 else 0.0
+    rates = table[:, columns.rate] * RATE_UNITS[columns.rate_unit]
+    force = float(np.median(np.linalg.norm(table[:, columns.force] * FORCE_UNITS[columns.force_unit], axis=1)))
+    if not SLOWEST_HZ <= rate_hz <= FASTEST_HZ:
+        what = tr("By this time, {rate} samples come in a second.").format(rate=f"{rate_hz:.3g}")
+        return what, tr("Choose another column or unit of the time."), False
+    if not STILL[0] * G < force < STILL[1] * G:
+        what = tr("The acceleration reads {force} m/s²; at rest it must be 9.8.").format(force=f"{force:.3g}")
+        return what, tr("Hold the sensor still, or choose other columns or another unit."), False
+    if float(np.abs(rates).max()) > FASTEST_RAD_S:
+        return tr("The angular rate is faster than a leg turns."), tr("Choose other columns or another unit."), False
+    what = tr("{rate} samples a second, {force} m/s²: this can be so.").format(
+        rate=f"{rate_hz:.3g}", force=f"{force:.2g}"
+    )
+    return what, tr("Turn the sensor by hand: the three angular rates must follow, and rest near 0."), True

@@ -1,0 +1,115 @@
+"""Sensors that send lines of numbers: asked what they mean, shown what comes, remembered."""
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app import known_columns as kept
+from app.pages.columns_form import ColumnsForm, Meaning
+from app.theme import Look
+from app.wizard.sources import COLUMNS, SEARCH
+from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.visit import Visit
+from app.wizard.worn_sensors import SourceChoice
+from devices.emulators.csv_lines import COLUMNS as EMULATED
+from devices.emulators.csv_lines import LineVoice
+from devices.emulators.transports import Emulation, Terminal
+from devices.lines import LinesAt
+from devices.live import SourceRefusedError
+from devices.ports import PortInfo
+
+
+def still(number: int) -> tuple[float, ...]:
+    return (0.1 * (number % 3), 0.0, 0.0, 0.1, 0.0, 0.99)
+
+
+@pytest.fixture
+def place(tmp_path: Path) -> Iterator[str]:
+    emulation = Emulation(LineVoice(still, rate_hz=200.0), partial(Terminal, tmp_path / "port"))
+    yield emulation.place
+    emulation.close()
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
+    def search() -> None:
+        raise SourceRefusedError("Searched", "again")
+
+    lines = (LinesAt(PortInfo(place), 115200, 7), LinesAt(PortInfo("/dev/other"), 115200, 7))
+    visit._choices = (
+        SourceChoice(COLUMNS, "Lines of numbers", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
+        SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
+    )
+    step = SensorsStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.enter()
+    step.page.resize(1064, 672)
+    step.page.show()
+    yield step
+    step.leave()
+    step.deleteLater()
+
+
+def asked(qtbot: QtBot, step: SensorsStep) -> ColumnsForm:
+    """Choose the lines, and wait until what comes is shown."""
+    step.page.source_chosen.emit(COLUMNS)
+
+    def is_guessed() -> bool:
+        step._telling.tick()
+        return step._telling.columns is not None
+
+    qtbot.waitUntil(is_guessed)
+    return step.page.columns
+
+
+def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, place: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setattr(kept, "_place", lambda: tmp_path / "columns.json")
+    form = asked(qtbot, step)
+    assert form.isVisible()
+    assert step._telling.columns == EMULATED
+    assert form.notice.text.startswith("200 samples a second, 9.8 m/s²: this can be so.")
+    primary = step.bar().primary
+    assert primary is not None
+    assert (primary.text, primary.is_enabled) == ("Use these columns", True)
+    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+        step.on_primary()
+    assert refused.args == ["Searched", "again"]
+    assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}
+    assert not step._telling.is_on
+
+
+def test_what_cannot_be_is_said(qtbot: QtBot, step: SensorsStep) -> None:
+    form = asked(qtbot, step)
+    form.force.setCurrentIndex(form.force.findData("m/s2"))
+    step._telling.tick()
+    assert "at rest it must be 9.8" in form.notice.text
+    form.force.setCurrentIndex(form.force.findData("g"))
+    form.time.setCurrentIndex(form.time.findData("s"))
+    step._telling.tick()
+    assert "samples come in a second" in form.notice.text
+    form.meanings[3].setCurrentIndex(form.meanings[3].findData(str(Meaning.RATE_X)))
+    step._telling.tick()
+    assert "each once" in form.notice.text
+    assert step._telling.columns is None
+    primary = step.bar().primary
+    assert primary is not None
+    assert not primary.is_enabled
+
+
+def test_an_axis_can_be_turned_round(qtbot: QtBot, step: SensorsStep) -> None:
+    form = asked(qtbot, step)
+    form.meanings[2].setCurrentIndex(form.meanings[2].findData(f"-{Meaning.RATE_Y}"))
+    columns = step._telling.columns
+    assert columns is not None
+    assert columns.signs == (1, -1, 1, 1, 1, 1)
+
+
+def test_other_sources_are_a_step_away(qtbot: QtBot, step: SensorsStep) -> None:
+    asked(qtbot, step).back.click()
+    assert not step._telling.is_on
+    assert step.page.nothing.isVisible()
