@@ -1,7 +1,6 @@
 """Home: whose sessions are in the library, what begins from here, what comes in, what goes out of sight for 30 days."""
 
 import datetime
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
+from app.home.deleting import Deleting
 from app.home.recovering import Recovering
 from app.home.settings_desk import SettingsDesk
 from app.home.words import patient_line, person, session_line
@@ -64,7 +64,6 @@ class Home(QWidget):
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._recovered: set[UUID] = set()  # patients
         self._looked_at: set[UUID] = set()  # sessions
-        self._undo: Callable[[], None] | None = None
         self._to_import: Session | None = None
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
@@ -76,6 +75,7 @@ class Home(QWidget):
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
+        self.deleting = Deleting(desk, self)
         self._build()
         self._connect()
         self._go_to(self.page)
@@ -101,8 +101,9 @@ class Home(QWidget):
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
-        self._state, self._undo, self._to_import = None, None, None
+        self._state, self._to_import = None, None
         self._patients.clear()
+        self.deleting.forget()
         self.toast.hide()
         self.banner.hide()
         self.page.search.clear()
@@ -170,7 +171,7 @@ class Home(QWidget):
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
         page.patient_deleted.connect(self._on_patient_deleted)
-        page.session_deleted.connect(self._on_session_deleted)
+        page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
         self.rail.below_pressed.connect(self._on_below_pressed)
         self.bar.primary_pressed.connect(self._on_primary)
@@ -182,7 +183,10 @@ class Home(QWidget):
         self.recovering.recovered.connect(self._on_recovered)
         self.settings.told.connect(self.banner.tell)
         self.settings.restored.connect(self.refresh)
-        self.toast.undone.connect(self._on_undone)
+        self.toast.undone.connect(self.deleting.undo)
+        self.deleting.done.connect(self._on_deleted)
+        self.deleting.undone.connect(self.refresh)
+        self.deleting.refused.connect(self._on_refused)
         self._look.changed.connect(self._on_look_changed)
         for keys, slot in (
             ("Ctrl+F", self._on_find),
@@ -357,46 +361,11 @@ class Home(QWidget):
     # what is deleted can be had back
 
     def _on_patient_deleted(self, patient_id: UUID) -> None:
-        patient = self._patients[patient_id]
+        self.deleting.patient(self._patients[patient_id])
 
-        def undo() -> None:
-            def restore(opened: "OpenedLibrary") -> "stored.StoredPatient":
-                return opened.library.patients.restore(opened.library.patients.get(patient_id))
-
-            self._desk.run(restore, self._on_restored_patient, self._on_refused, self)
-
-        self._undo = undo
-        self._deleting = tr("{code} is deleted, for good in 30 days.").format(code=patient.told.code)
-        self._desk.run(lambda opened: opened.library.patients.delete(patient), self._on_deleted, self._on_refused, self)
-
-    def _on_session_deleted(self, session_id: UUID) -> None:
-        def delete(opened: "OpenedLibrary") -> None:
-            opened.library.sessions.delete(opened.library.sessions.get(session_id))
-
-        def undo() -> None:
-            def restore(opened: "OpenedLibrary") -> None:
-                opened.library.sessions.restore(opened.library.sessions.get(session_id))
-
-            self._desk.run(restore, self._on_restored_session, self._on_refused, self)
-
-        self._undo = undo
-        self._deleting = tr("The session is deleted, for good in 30 days.")
-        self._desk.run(delete, self._on_deleted, self._on_refused, self)
-
-    def _on_deleted(self, _what: object) -> None:
-        self.toast.offer(self._deleting)
+    def _on_deleted(self, words: str) -> None:
+        self.toast.offer(words)
         self._fit()
-        self.refresh()
-
-    def _on_undone(self) -> None:
-        undo, self._undo = self._undo, None
-        if undo is not None:
-            undo()
-
-    def _on_restored_patient(self, patient: "stored.StoredPatient") -> None:
-        self.refresh(patient.id)
-
-    def _on_restored_session(self, _nothing: object) -> None:
         self.refresh()
 
     # what comes in

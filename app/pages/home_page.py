@@ -4,19 +4,16 @@ from collections.abc import Sequence
 from uuid import UUID
 
 from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QPalette
+from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent, QPalette
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
-from app.plots.visit_chart import VisitChart, VisitRange
 from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.chip import Chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr, tr_n
-from core.body import Side
 
 SEARCH_HEIGHT = 48
 PATIENTS_SHARE, SESSIONS_SHARE = 414, 586  # of the picture's 1016, without the gutter
@@ -49,9 +46,6 @@ class HomePage(QWidget):
         self._code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
         self._person = Text(look, tone="ink2", wraps=True)
         self.delete_patient = Button(look, tr("Delete patient"), Kind.QUIET, Icon.DELETE, height=44)
-        self.ranges = VisitChart(look)
-        self._latest = {side: Text(look, size=20, weight=SEMIBOLD) for side in Side}
-        self._change = Text(look, tone="ink2", wraps=True)
         self._sessions_title = Text(look, tr("Sessions"), size=16, weight=SEMIBOLD)
         self._stored = Text(look, size=12, tone="ink2")
         self.delete_session = Button(look, tr("Delete session"), Kind.QUIET, Icon.DELETE, height=44)
@@ -61,7 +55,6 @@ class HomePage(QWidget):
         self._connect()
         self.show_patients(())
         self.show_patient("", "")
-        self.show_ranges(())
         self._on_look_changed()
 
     @property
@@ -97,16 +90,6 @@ class HomePage(QWidget):
         for part in (self._code, self._person, self._card, self.delete_patient):
             part.setVisible(bool(code))
 
-    def show_ranges(self, visits: Sequence[VisitRange], change: str = "") -> None:
-        """Show the knee's range by visit, and in words what the latest change amounts to; nothing without values."""
-        self.ranges.show_visits(visits)
-        self._change.setText(change)
-        self._change.setVisible(bool(change))
-        for side, label in self._latest.items():
-            values = [value for visit in visits if (value := visit.of(side)) is not None]
-            label.setText(tr("{value}°").format(value=f"{values[-1]:.1f}") if values else tr("none"))
-        self._range_card.setVisible(bool(visits))
-
     def show_sessions(self, lines: Sequence[SessionLine]) -> None:
         self.sessions.show_lines(lines)
         self.sessions.setVisible(bool(lines))
@@ -121,6 +104,10 @@ class HomePage(QWidget):
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Let the arrow keys move in the list while the search has the focus, and Delete delete in the lists."""
+        is_undo = isinstance(event, QKeyEvent) and event.matches(QKeySequence.StandardKey.Undo)
+        if event.type() == QEvent.Type.ShortcutOverride and watched is self.search and is_undo:
+            event.ignore()  # what was deleted comes back by it, not what was searched for
+            return True
         if isinstance(event, QKeyEvent) and event.type() == QEvent.Type.KeyPress:
             steps = {Qt.Key.Key_Down: 1, Qt.Key.Key_Up: -1, Qt.Key.Key_PageDown: 6, Qt.Key.Key_PageUp: -6}
             key = Qt.Key(event.key())
@@ -159,17 +146,6 @@ class HomePage(QWidget):
         self._who = QHBoxLayout()
         self._who.addLayout(names, 1)
         self._who.addWidget(self.delete_patient, 0, Qt.AlignmentFlag.AlignBottom)
-        self._range_card = Card(self._look, padding=20)
-        range_head = QHBoxLayout()
-        range_head.addWidget(Text(self._look, tr("Knee range by visit"), size=16, weight=SEMIBOLD))
-        range_head.addWidget(Text(self._look, tr("(°)"), size=12, tone="ink2"))
-        range_head.addStretch(1)
-        for side in Side:
-            range_head.addWidget(Chip(self._look, side))
-            range_head.addWidget(self._latest[side])
-        self._range_card.column.addLayout(range_head)
-        self._range_card.column.addWidget(self.ranges)
-        self._range_card.column.addWidget(self._change)
         self._card = Card(self._look, padding=0)
         self._card_head = QHBoxLayout()
         self._card_head.addWidget(self._sessions_title, 1)
@@ -181,7 +157,6 @@ class HomePage(QWidget):
         self._card.column.addStretch(0)
         self._right = QVBoxLayout()
         self._right.addLayout(self._who)
-        self._right.addWidget(self._range_card)
         self._right.addWidget(self._card, 1)
         self._right.addStretch(0)
         self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)

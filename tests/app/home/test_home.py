@@ -190,6 +190,21 @@ def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
 
 
+def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(qtbot: QtBot, home: Home) -> None:
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    home.page.sessions.setFocus()
+    QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
+    home.page.delete_patient.click()
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    assert home.toast.text == "P-0163 is deleted, for good in 30 days."
+    home.page.search.setFocus()
+    home.page.search.insert("0")  # what may be taken back here, too
+    QTest.keyClick(home.page.search, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0163", "P-0147"], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)  # the session stays deleted
+    assert home.page.search.text() == "0"
+
+
 def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
     time_s = np.arange(300) / 100
     block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
