@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from PySide6.QtWidgets import QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.storage.exchange import import_session
@@ -78,6 +79,14 @@ def test_a_folder_becomes_the_sensors_with_their_places(
     assert step.page.list.isVisible()
     assert step.page.sources.currentText() == "Replay of last_week: 6 found"
     assert step.state.name == "DONE"
+    sending = visit.sensors.acquisition
+    step.page.source_chosen.emit(REPLAY)
+    for _ in range(16):
+        step.tick()
+    assert step.page.stored.isVisible()
+    step.page.stored.back.click()
+    assert step.page.list.isVisible()
+    assert visit.sensors.acquisition is sending, "it goes on while another one is looked for"
 
 
 def test_a_session_of_the_library_is_chosen_by_code_and_date(
@@ -96,6 +105,21 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert visit.sensors.site_of == {f"S-{site}": site for site in Site}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
+    replays = Replays(desk, visit)
+    with qtbot.waitSignal(replays.listed, timeout=5000) as listed:
+        replays.list_sessions(line.id)
+    assert listed.args == [[]], "neither the session itself, nor one without recordings"
+
+
+def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
+    step.page.source_chosen.emit(REPLAY)
+    step.page.stored.folder.click()
+    dialog = step._dialog
+    assert dialog is not None
+    assert dialog.fileMode() is QFileDialog.FileMode.Directory
+    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
+        dialog.fileSelected.emit(str(folder))
+        dialog.close()
 
 
 def test_what_cannot_be_read_is_said_in_the_page(
@@ -114,28 +138,13 @@ def test_what_cannot_be_read_is_said_in_the_page(
     assert step.page.nothing.isVisible()
 
 
-def test_what_sends_goes_on_while_another_is_looked_for(
-    qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path
-) -> None:
-    with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):
-        step.replay_folder(folder)
-    sending = visit.sensors.acquisition
-    step.page.source_chosen.emit(REPLAY)
-    for _ in range(16):
-        step.tick()
-    assert step.page.stored.isVisible()
-    step.page.stored.back.click()
-    assert step.page.list.isVisible()
-    assert visit.sensors.acquisition is sending
-
-
 def test_a_reading_is_stopped(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.replay_folder(folder)
     assert step.page.searching.isVisible()
     step.page.searching.stop.click()
     assert step.page.stored.isVisible()
-    qtbot.wait(300)
+    qtbot.wait(100)
     assert visit.sensors.choice is None
 
 
@@ -161,16 +170,3 @@ def test_discarded_walks_are_not_played(short_session: Session) -> None:
     acquisition = choice.make()
     assert acquisition.is_simulated
     assert choice.is_simulated
-
-
-def test_the_list_leaves_out_the_session_itself_and_empty_ones(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: SensorsStep, short_session: Session
-) -> None:
-    stored(desk, short_session)
-    replays = Replays(desk, visit)
-    with qtbot.waitSignal(replays.listed, timeout=5000) as listed:
-        replays.list_sessions(None)
-    (line,) = listed.args[0]  # the visit's own session holds no recordings yet
-    with qtbot.waitSignal(replays.listed, timeout=5000) as listed:
-        replays.list_sessions(line.id)
-    assert listed.args == [[]]
