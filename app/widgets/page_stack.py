@@ -20,6 +20,8 @@ class PageStack(QStackedWidget):
         page = self.currentWidget()
         if page is None:
             return 0
+        if isinstance(page, PageStack):
+            return page.heightForWidth(width)
         layout = page.layout()
         wrapped = layout.minimumHeightForWidth(width) if layout is not None and layout.hasHeightForWidth() else 0
         return max(wrapped, page.minimumSizeHint().height())
