@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 TICKS_HZ = {"s": 1.0, "ms": 1e3, "us": 1e6}
 SLOWEST_HZ, FASTEST_HZ = 20.0, 2000.0
+ENOUGH_LINES = 15  # to guess by
 FASTEST_RAD_S = 40.0  # nobody's leg turns so fast
 
 
@@ -84,7 +85,7 @@ class ColumnsTelling(QObject):
             return
         lines = self._preview.lines
         table, separator = table_of(lines)
-        if not len(table):
+        if len(table) < ENOUGH_LINES:
             return
         if not self._is_shown or table.shape[1] != len(self._form.told.meanings):
             known = self._lines[0].columns or guessed(lines)
