@@ -10,6 +10,7 @@ from app.reports.reference_bands import reference_curves, time_distance_classes
 from app.reports.walk_figures import (
     Figure,
     both_sides,
+    by_hand_in_words,
     doubt_of,
     few_strides_in_words,
     peak_figures,
@@ -47,12 +48,15 @@ class CyclePage(QWidget):
         super().__init__()
         self._look = look
         self._reference = reference_curves()
+        self._is_tight = False
         self.charts = CycleCharts(look, self._reference)
         self.note = BandNote(look)
+        self.by_hand = Text(look, size=12, weight=MEDIUM, wraps=True)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.charts, 1)
         column.addWidget(self.note)
+        column.addWidget(self.by_hand)
         self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
         self.peaks_note = BandNote(look)
         self.peaks.column.addWidget(self.peaks_note)
@@ -67,8 +71,13 @@ class CyclePage(QWidget):
     def set_room(self, is_tight: bool, has_two_charts: bool) -> None:
         """Put the charts side by side where that is the better use of the page, and the note on the band under them."""
         self.charts.set_side_by_side(has_two_charts)
-        self.note.setVisible(is_tight)
+        self._is_tight = is_tight
         self.peaks_note.setVisible(not is_tight)
+
+    def set_notes_shown(self, is_shown: bool) -> None:
+        """Say under the charts whose band it is, where no table beside them does, and what was left out by hand."""
+        self.note.setVisible(is_shown and self._is_tight)
+        self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
     def show_walk(
         self, recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], is_simulated: bool
@@ -86,7 +95,9 @@ class CyclePage(QWidget):
         self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))
         feet = both_sides(recording)
         figures, group = time_distance_figures(recording, feet, time_distance_classes())
-        self.time_distance.show_figures(figures, strides, _group_in_words(group))
+        by_hand = by_hand_in_words(recording)
+        self.by_hand.setText(by_hand)
+        self.time_distance.show_figures(figures, strides, " ".join(filter(None, [by_hand, _group_in_words(group)])))
         for note in (self.note, self.peaks_note):
             note.show_band(self._reference, feet.speed_m_s)
 

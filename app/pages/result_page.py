@@ -1,6 +1,6 @@
 """What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from PySide6.QtCore import Qt
@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.pages.compare_page import ComparePage
 from app.pages.cycle_page import CyclePage
+from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
 from app.reports.comparison import calibrated_for, conditions_of
@@ -23,13 +24,14 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
+from core.body import Joint
 from core.results import Analysis, JointAngle, RecordingAnalysis
-from core.samples import Recording, RecordingKind
+from core.samples import FloatArray, Recording, RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
 # the views; the last two only where room is short
-MEAN, WHOLE, COMPARE, FIGURES, FACTS = "mean", "whole", "compare", "figures", "facts"
+MEAN, WHOLE, STRIDES, COMPARE, FIGURES, FACTS = "mean", "whole", "strides", "compare", "figures", "facts"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
 COMPACT_BELOW = (940, 656)  # what the charts of a mean cycle need with one table beside them
@@ -54,6 +56,8 @@ class ResultPage(QWidget):
         super().__init__()
         self._look = look
         self._analysis: Analysis | None = None
+        self._can_choose = False
+        self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._is_compact = False
         self._is_narrow = False
         self._has_two_charts = False
@@ -66,6 +70,7 @@ class ResultPage(QWidget):
             [
                 (MEAN, tr("Mean cycle"), ""),
                 (WHOLE, tr(WALK), ""),
+                (STRIDES, tr("Strides"), ""),
                 (COMPARE, tr("Compare"), ""),
                 (FIGURES, tr("Figures"), ""),
                 (FACTS, tr("Findings"), ""),
@@ -85,6 +90,7 @@ class ResultPage(QWidget):
         self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
         self.band = Toggle(look, tr("Band"), "B", is_on=True)
         self.cycles = CyclePage(look)
+        self.strides = StridesPage(look)
         self.compare = ComparePage(look)
         self.charts = JointCharts(look)
         self.shown = Text(look, size=14, tone="ink2")
@@ -97,9 +103,14 @@ class ResultPage(QWidget):
         self._on_look_changed()
 
     def show_analysis(
-        self, analysis: Analysis, session: Sequence[Recording] = (), *, is_prosthetic: bool = False
+        self,
+        analysis: Analysis,
+        session: Sequence[Recording] = (),
+        *,
+        is_prosthetic: bool = False,
+        can_choose: bool = False,
     ) -> None:
-        """Show the first walk of `analysis`, or its first recording.
+        """Show the recording that was on the screen, if `analysis` has it, else its first walk or first recording.
 
         Parameters
         ----------
@@ -107,8 +118,11 @@ class ResultPage(QWidget):
             The session's recordings in order, whose conditions are compared; without them every walk is one of its own.
         is_prosthetic
             Whether the affected side of `analysis` wears a prosthesis.
+        can_choose
+            Whether somebody keeps which strides are left out: see `strides`.
         """
-        self._analysis = analysis
+        self._analysis, self._can_choose = analysis, can_choose
+        shown = self.recordings.currentText()
         parts = conditions_of(analysis, session)
         self.compare.show_conditions(parts, analysis.affected_side, is_prosthetic, analysis.is_simulated)
         names = [recording.name for recording in analysis.recordings]
@@ -116,7 +130,8 @@ class ResultPage(QWidget):
         self.recordings.blockSignals(True)
         self.recordings.clear()
         self.recordings.addItems(names)
-        self.recordings.setCurrentIndex(walks[0] if walks else 0)
+        first = walks[0] if walks else 0
+        self.recordings.setCurrentIndex(names.index(shown) if shown in names else first)
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
         self.recordings.setVisible(bool(names))
@@ -151,7 +166,7 @@ class ResultPage(QWidget):
     def tab_order(self) -> list[QWidget]:
         """What takes the focus, in the order of reading."""
         choices = [*self.view.segments, self.recordings, self.single_strides, self.band, *self.methods.segments]
-        shown = [self.charts, self.whole, *self.cycles.tables, *self.compare.tab_order]
+        shown = [self.charts, self.whole, *self.strides.tab_order, *self.cycles.tables, *self.compare.tab_order]
         return [*choices, *shown, self.facts, self.findings]
 
     def _build(self) -> None:
@@ -201,6 +216,7 @@ class ResultPage(QWidget):
         for widget, share in (
             (self._curves, 1),
             (self.cycles, 2),
+            (self.strides, 0),
             (self.compare, 1),
             (self.cycles.peaks, 0),
             (self._beside, 0),
@@ -220,8 +236,10 @@ class ResultPage(QWidget):
         self.recordings.currentIndexChanged.connect(self._on_recording_changed)
         self.charts.view_changed.connect(self._on_view_changed)
         self.whole.clicked.connect(self.charts.show_whole)
+        self.strides.chosen.connect(self._on_stride_chosen)
+        self.cycles.charts.picked.connect(self._on_stride_picked)
         for toggle, slot in (
-            (self.single_strides, self.cycles.charts.set_strides_shown),
+            (self.single_strides, self._show_strides),
             (self.band, self._on_band_toggled),
         ):
             toggle.toggled.connect(slot)
@@ -273,7 +291,8 @@ class ResultPage(QWidget):
         self.view.set_word(WHOLE, tr(WALK if is_walk else RECORDING))
         self.view.set_offered(MEAN, is_walk)
         self.view.set_offered(COMPARE, is_walk)
-        for view in (MEAN, COMPARE):
+        self.view.set_offered(STRIDES, is_walk)
+        for view in (MEAN, STRIDES, COMPARE):
             self.view.set_reason(view, "" if has_strides else tr("no strides"))
         self.view.set_offered(FIGURES, self._columns_wanted < 3 and has_strides)
         self.view.set_offered(FACTS, self._is_compact)
@@ -291,15 +310,20 @@ class ResultPage(QWidget):
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
         self._against.setVisible(view == COMPARE)
         self.compare.setVisible(view == COMPARE)
-        self._toggles.setVisible(view == MEAN)
+        self._toggles.setVisible(view == MEAN or (view == STRIDES and not self._is_narrow))
+        self.single_strides.setVisible(view == MEAN)
         self._curves.setVisible(view == WHOLE)
-        self.cycles.setVisible(view == MEAN)
+        self.cycles.setVisible(view == MEAN or (view == STRIDES and not self._is_narrow))
+        self.cycles.charts.set_side_by_side(self._has_two_charts and view == MEAN)
+        self.cycles.set_notes_shown(view == MEAN)
+        self.strides.setVisible(view == STRIDES)
+        self._show_strides()
         self.cycles.peaks.setVisible(has_figures)
         self.cycles.time_distance.setVisible(has_figures and (self._columns_wanted != 2 or view == FIGURES))
         self._joints.setVisible(view == FACTS or (view == WHOLE and is_wide))
-        has_findings = view == FACTS or (is_wide and view not in (COMPARE, FIGURES))
+        has_findings = view == FACTS or (is_wide and view not in (COMPARE, STRIDES, FIGURES))
         self._noticed.setVisible(has_findings)
-        self._beside.setVisible((is_wide and view != COMPARE) or view in (FIGURES, FACTS))
+        self._beside.setVisible((is_wide and view not in (COMPARE, STRIDES)) or view in (FIGURES, FACTS))
         is_row = (view == FACTS and not self._is_narrow) or (view == FIGURES and self._columns_wanted == 2)
         self._right.setDirection(QBoxLayout.Direction.LeftToRight if is_row else QBoxLayout.Direction.TopToBottom)
         is_stack = view == FIGURES and self._is_narrow
@@ -332,6 +356,7 @@ class ResultPage(QWidget):
         calibrated, is_simulated = calibrated_for(self._analysis, recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
         self.cycles.show_walk(recording, calibrated, is_simulated)
+        self.strides.show_walk(recording, self._can_choose)
         self.facts.show_joints(calibrated)
         self._on_method_chosen()
         self._offer()
@@ -346,6 +371,20 @@ class ResultPage(QWidget):
         self.hint.setText(
             " ".join(filter(None, [tr(HINTS[method]), tr(KEYS), tr(EVENT_KEYS) if recording.gait else ""]))
         )
+
+    def _show_strides(self) -> None:
+        """Draw single strides where they are wished, or chosen from; the one in force only there."""
+        is_choosing = self.view.choice == STRIDES
+        self.cycles.charts.set_strides_shown(is_choosing or self.single_strides.isChecked())
+        self.cycles.charts.show_stride(self._stride if is_choosing else {})
+
+    def _on_stride_chosen(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
+        self._stride = curves_deg
+        self._show_strides()
+
+    def _on_stride_picked(self, is_knee: bool, percent: float, angle_deg: float) -> None:
+        if self.view.choice == STRIDES:
+            self.strides.choose_nearest(is_knee, percent, angle_deg)
 
     def _on_band_toggled(self, is_shown: bool) -> None:
         self.cycles.charts.set_band_shown(is_shown)

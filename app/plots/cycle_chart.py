@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.plots.axes import (
@@ -65,6 +65,8 @@ class Band:
 class CycleCharts(QWidget):
     """Both charts, with what they share: the band and the single strides, each on or off."""
 
+    picked = Signal(bool, float, float)  # whether of the knee; percent of the stride, degrees
+
     def __init__(self, look: Look, reference: ReferenceCurves) -> None:
         super().__init__()
         self._look = look
@@ -77,6 +79,7 @@ class CycleCharts(QWidget):
         self._box.setContentsMargins(0, 0, 0, 0)
         for frame in self.frames:
             self._box.addWidget(frame, 1)
+            frame.chart.picked.connect(self._on_picked)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
@@ -93,6 +96,13 @@ class CycleCharts(QWidget):
                 is_simulated,
             )
 
+    def show_stride(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
+        """Draw one stride (101,) over all others, bold; none: no stride is in force."""
+        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+            found = [(joint.side, curve) for joint, curve in curves_deg.items() if joint.is_knee is is_knee]
+            frame.chart.stride = found[0] if found else None
+            frame.chart.redraw()
+
     def set_strides_shown(self, is_shown: bool) -> None:
         for frame in self.frames:
             frame.chart.has_strides = is_shown
@@ -106,6 +116,9 @@ class CycleCharts(QWidget):
     def set_side_by_side(self, is_side_by_side: bool) -> None:
         way = QBoxLayout.Direction.LeftToRight if is_side_by_side else QBoxLayout.Direction.TopToBottom
         self._box.setDirection(way)
+
+    def _on_picked(self, percent: float, angle_deg: float) -> None:
+        self.picked.emit(self.sender() is self.knee.chart, percent, angle_deg)
 
     def _on_look_changed(self) -> None:
         self._box.setSpacing(self._look.theme.px(12))
@@ -196,6 +209,8 @@ class CycleFrame(Card):
 class CycleChart(QWidget):
     """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
 
+    picked = Signal(float, float)  # percent of the stride, degrees
+
     def __init__(self, look: Look, fixed_deg: tuple[float, float]) -> None:
         super().__init__()
         self._look, self._fixed = look, fixed_deg
@@ -204,6 +219,7 @@ class CycleChart(QWidget):
         self.band: Band | None = None
         self.is_simulated = False
         self.has_band, self.has_strides = True, False
+        self.stride: tuple[Side, FloatArray] | None = None
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         look.changed.connect(self._on_look_changed)
@@ -248,6 +264,15 @@ class CycleChart(QWidget):
             self._paint(QPainter(self._picture))
         QPainter(self).drawPixmap(0, 0, self._picture)
 
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        area, (lowest, highest) = self.plot_area(), self.range_deg
+        at = event.position()
+        if event.button() is not Qt.MouseButton.LeftButton or not area.contains(at):
+            super().mousePressEvent(event)
+            return
+        share = (area.bottom() - at.y()) / area.height()
+        self.picked.emit(100 * (at.x() - area.left()) / area.width(), lowest + (highest - lowest) * share)
+
     def plot_area(self) -> QRectF:
         """The room inside the axes, 4:3 where the page gives that much, in px of the widget."""
         px = self._look.theme.px
@@ -280,6 +305,8 @@ class CycleChart(QWidget):
         for side, cycle in self.cycles.items():
             if cycle.mean.n:
                 self._paint_mean(painter, side, cycle)
+        if self.stride is not None:
+            self._paint_stride(painter, *self.stride)
         painter.restore()
         self._paint_labels(painter)
 
@@ -321,6 +348,16 @@ class CycleChart(QWidget):
         for stride_deg in cycle.strides_deg:
             painter.drawPolyline(self._polygon(PERCENT, stride_deg))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+
+    def _paint_stride(self, painter: QPainter, side: Side, stride_deg: FloatArray) -> None:
+        """The stride in force in ink, whether it is used or not; solid or dashed, as its side is."""
+        theme, curve = self._look.theme, self._polygon(PERCENT, stride_deg)
+        painter.setPen(theme.pen(theme.colours.surface, CASING_PX))
+        painter.drawPolyline(curve)
+        pen = theme.side_pen(side, MEAN_PX)
+        pen.setColor(QColor(theme.colours.ink))
+        painter.setPen(pen)
+        painter.drawPolyline(curve)
 
     def _paint_mean(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
         """Left solid, right dashed, on a casing that lifts it off the band; grey where too few strides make a mean."""

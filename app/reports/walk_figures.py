@@ -10,8 +10,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.reports.gait_csv import parameter, used_cycles
-from app.wording import NAMES, joined, later, tr, tr_n
+from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
+from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import Reason, strides_of
@@ -87,6 +88,16 @@ def strides_in_words(side: Side, gait: SideGait) -> str:
         used,
     )
     return said.format(side=letter, used=used, out=left_out.total(), reasons=", ".join(reasons))
+
+
+def by_hand_in_words(recording: RecordingAnalysis) -> str:
+    """How many strides of which side a person has left out; empty where none was."""
+    said = []
+    for side, gait in recording.gait.items():
+        if count := left_out_by_hand(gait):
+            told = tr("{count} of {of} {side} strides left out by hand.")
+            said.append(told.format(count=count, of=len(gait.strides), side=side_name(side)))
+    return " ".join(said)
 
 
 def few_strides_in_words(recording: RecordingAnalysis) -> str:

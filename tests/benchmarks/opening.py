@@ -24,7 +24,7 @@ from uuid import UUID
 os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
 from PySide6.QtCore import QEvent, QObject, QSettings
-from PySide6.QtWidgets import QApplication, QWidget
+from PySide6.QtWidgets import QApplication, QStackedWidget, QWidget
 
 from app.settings import Settings
 from app.storage.exchange import import_session
@@ -40,7 +40,7 @@ from devices.walker import DEMONSTRATION, simulate
 
 PASSPHRASE = "four short words here"
 WALKS = 3
-LONGEST_S = 120.0
+LONGEST_S = 60.0
 
 
 class Opening(NamedTuple):
@@ -122,14 +122,10 @@ def row(name: str, openings: list[Opening]) -> str:
 
 
 def _results(wizard: Wizard) -> QWidget | None:
-    """The page of results, once it is in sight with what came of the session."""
-    page = wizard.shell.page
-    current = getattr(page, "currentWidget", lambda: None)()
-    return current if current is not None and getattr(page, "has_results", False) and _is_results(current) else None
-
-
-def _is_results(widget: QWidget) -> bool:
-    return type(widget).__name__ == "ResultPage"
+    """The page of results, once it is in sight."""
+    frame = wizard.shell.page
+    page = frame.currentWidget() if isinstance(frame, QStackedWidget) else None
+    return page if type(page).__name__ == "ResultPage" else None
 
 
 def main() -> None:

@@ -6,18 +6,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QWidget
+from PySide6.QtWidgets import QStackedWidget, QWidget
 
 from app.pages.sentence_page import SentencePage
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
-from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepState
 from app.wizard.keys import Action as KeyAction
 from app.wizard.keys import Intent
 from app.wizard.steps.step import Step
+from app.wizard.stride_choice import StrideChoice
 from app.wording import capitalised, name_of, place, tr
 from core.body import Joint
 
@@ -41,7 +41,9 @@ class ResultsStep(Step):
         self._shown: Analysis | None = None
         self._is_correcting = self._is_asking = False
         self._how_found: HowFoundDesk | None = None
-        self._undo: Callable[[], object] | None = None
+        self._undos: list[Callable[[], object]] = []  # the latest last
+        self._strides = StrideChoice(visit.takes, self)
+        self._strides.offered.connect(self._offer)
         visit.takes.changed.connect(self._on_takes_changed)
         visit.changed.connect(self._on_visit_changed)
         visit.evaluation.done.connect(self._on_evaluated)
@@ -120,9 +122,9 @@ class ResultsStep(Step):
         return False
 
     def undo(self) -> None:
-        if self._undo is not None:
-            self._undo()
-            self._undo = None
+        """Take back what was put right last; again, what was before that."""
+        if self._undos:
+            self._undos.pop()()
 
     def leave(self) -> None:
         self._is_correcting = self._is_asking = False
@@ -156,11 +158,14 @@ class ResultsStep(Step):
             if is_new:
                 results.compare.set_has_visits(True)
                 results.compare.visits_wished.connect(self._visit.read_earlier)
+                results.strides.turned.connect(self._strides.turn)
+                results.strides.all_wanted.connect(self._strides.take_all_in)
             if self._shown is not evaluation.analysis:
                 self._shown = evaluation.analysis
                 self._show_analysis(results, evaluation.analysis)
-            page.setCurrentWidget(results)
-            results.focus()
+            if page.currentWidget() is not results:
+                page.setCurrentWidget(results)
+                results.focus()
         self.changed.emit()
 
     def _show_analysis(self, results: "ResultPage", analysis: "Analysis") -> None:
@@ -169,6 +174,7 @@ class ResultsStep(Step):
             analysis,
             session.recordings if session is not None else (),
             is_prosthetic=bool(self._visit.prosthetic_sides),
+            can_choose=True,
         )
 
     # how a joint was found
@@ -303,7 +309,7 @@ class ResultsStep(Step):
         self._show()
 
     def _offer(self, words: str, undo: Callable[[], object]) -> None:
-        self._undo = undo
+        self._undos.append(undo)
         self.offered.emit(words)
 
     # earlier visits
@@ -338,6 +344,7 @@ class ResultsStep(Step):
 
     def _on_evaluated(self) -> None:
         if self._is_in_sight():
+            self._evaluate_if_stale()  # something may have been put right meanwhile
             self._show()
 
     def _on_progressed(self, share: float, what: str) -> None:
@@ -357,7 +364,7 @@ def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]
     )
 
 
-class _ResultsFrame(PageStack):
+class _ResultsFrame(QStackedWidget):
     """The results, or what stands in their place."""
 
     def __init__(self, look: Look) -> None:

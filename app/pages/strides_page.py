@@ -1,0 +1,127 @@
+"""Which strides of this walk count? Each in a line beside the charts, left out and taken in again by hand."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtWidgets import QHBoxLayout, QWidget
+
+from app.reports.gait_csv import parameter
+from app.reports.walk_figures import by_hand_in_words
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.icons import Icon
+from app.widgets.stride_list import StrideLine, StrideList
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import NAMES, tr
+from core.body import Joint, Side
+from core.gait.strides import Reason
+from core.results import RecordingAnalysis
+from core.samples import FloatArray
+
+
+class StridesPage(Card):
+    """`turned` and `all_wanted` name a walk; nothing is changed here, but by whoever shows the walk anew."""
+
+    turned = Signal(str, object, bool)  # StrideLine, and whether it is to be left out
+    all_wanted = Signal(str)
+    chosen = Signal(object)  # curves in degrees by joint, of the stride in force
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=12)
+        self._recording: RecordingAnalysis | None = None
+        self._can_choose = False
+        self.list = StrideList(look, tr("Strides"))
+        self.turn = Button(look, "", Kind.SECONDARY, key=tr("Space"), height=44)
+        self.all = Button(look, tr("Take all in again"), Kind.QUIET, Icon.REPEAT, height=44)
+        self.note = Text(look, size=12, tone="ink2", wraps=True)
+        self._buttons = QHBoxLayout()
+        self._buttons.addWidget(self.turn)
+        self._buttons.addWidget(self.all)
+        self._buttons.addStretch(1)
+        self.column.addWidget(Text(look, tr("Strides"), size=16, weight=SEMIBOLD))
+        self.column.addWidget(self.list, 1)
+        self.column.addLayout(self._buttons)
+        self.column.addWidget(self.note)
+        self.list.chosen.connect(self._on_chosen)
+        self.list.turned.connect(self._on_turned)
+        self.turn.clicked.connect(self.list.turn)
+        self.all.clicked.connect(self._on_all)
+
+    @property
+    def tab_order(self) -> list[QWidget]:
+        return [self.list, self.turn, self.all]
+
+    def show_walk(self, recording: RecordingAnalysis, can_choose: bool) -> None:
+        """Show the strides of a walk; `can_choose`: there is a library that keeps what is chosen."""
+        self._recording, self._can_choose = recording, can_choose
+        self.list.show_lines(stride_lines(recording))
+        told = by_hand_in_words(recording)
+        if not can_choose:
+            told = tr("Strides are left out in the library: import this session first.")
+        self.note.setText(told or tr("What is left out stays in the files, with the reason beside it."))
+        self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.strides.lines))
+
+    def choose_nearest(self, is_knee: bool, percent: float, angle_deg: float) -> None:
+        """Go to the stride whose curve runs nearest to a point of its chart."""
+        best: tuple[float, int] | None = None
+        at = int(np.clip(round(percent), 0, 100))
+        for row, line in enumerate(self.list.strides.lines):
+            curve = self._curves(line).get(Joint(f"{line.side}_{'knee' if is_knee else 'ankle'}"))
+            if curve is not None and line.is_used:
+                distance = abs(float(curve[at]) - angle_deg)
+                best = min(best or (distance, row), (distance, row))
+        if best is not None:
+            self.list.choose(best[1])
+
+    def _curves(self, line: StrideLine) -> Mapping[Joint, FloatArray]:
+        """The joints over one stride, degrees, where they are known over all of it."""
+        if self._recording is None or line.side not in self._recording.gait:
+            return {}
+        cycles = self._recording.gait[line.side].cycles
+        curves = {joint: np.rad2deg(curve[line.number - 1]) for joint, curve in cycles.items()}
+        return {joint: curve for joint, curve in curves.items() if np.isfinite(curve).all()}
+
+    def _on_chosen(self, line: StrideLine | None) -> None:
+        can_turn = self._can_choose and line is not None and line.can_be_turned
+        self.turn.setEnabled(can_turn)
+        is_out = line is not None and line.is_by_hand
+        words = tr("Take this stride in again") if is_out else tr("Leave this stride out")
+        self.turn.setText(words)
+        self.turn.setAccessibleName(words)
+        self.turn.updateGeometry()
+        self.chosen.emit(self._curves(line) if line is not None else {})
+
+    def _on_turned(self, line: StrideLine) -> None:
+        if self._can_choose and self._recording is not None:
+            self.turned.emit(self._recording.name, line, not line.is_by_hand)
+
+    def _on_all(self) -> None:
+        if self._recording is not None:
+            self.list.setFocus(Qt.FocusReason.OtherFocusReason)  # the button goes
+            self.all_wanted.emit(self._recording.name)
+
+
+def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:
+    """Both sides' strides, the left one's first, as they followed each other."""
+    lines = []
+    for side in Side:
+        if side not in recording.gait:
+            continue
+        gait = recording.gait[side]
+        knee, ankle = parameter(gait, "knee_range_deg"), parameter(gait, "ankle_range_deg")
+        for k, reason in enumerate(gait.strides.reason):
+            lines.append(
+                StrideLine(
+                    side=side,
+                    number=k + 1,
+                    start_s=float(gait.strides.start_s[k]),
+                    end_s=float(gait.strides.end_s[k]),
+                    knee_range_deg=float(knee[k]),
+                    ankle_range_deg=float(ankle[k]),
+                    reason=tr(NAMES["reason"][reason]) if reason else "",
+                    is_by_hand=reason is Reason.BY_HAND,
+                )
+            )
+    return tuple(lines)

@@ -1,0 +1,76 @@
+"""Which strides of a visit's walks are left out by hand, and how is that taken back?"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from PySide6.QtCore import QObject, Signal
+
+from app.wording import tr
+from core.body import Side
+
+if TYPE_CHECKING:
+    from app.widgets.stride_list import StrideLine
+    from app.wizard.takes import Take, Takes
+
+LeftOut = Mapping[Side, tuple[float, ...]]
+
+
+class StrideChoice(QObject):
+    """Says at once what is wanted; the library follows, and `Takes.changed` tells when it has."""
+
+    offered = Signal(str, object)  # what was done, and what undoes it
+
+    def __init__(self, takes: "Takes", parent: QObject) -> None:
+        super().__init__(parent)
+        self._takes = takes
+        self._wanted: dict[UUID, LeftOut] = {}  # until the library has it
+        takes.changed.connect(self._on_takes_changed)
+        takes.refused.connect(self._on_refused)
+
+    def turn(self, walk: str, line: "StrideLine", is_left_out: bool) -> None:
+        """Leave one stride out, or take it in again."""
+        take = self._take(walk)
+        if take is None:
+            return
+        before = self._left_out(take)
+        others = tuple(time_s for time_s in before.get(line.side, ()) if not line.start_s <= time_s < line.end_s)
+        middle_s = (line.start_s + line.end_s) / 2
+        times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
+        told = tr("{stride} of {walk} is left out.") if is_left_out else tr("{stride} of {walk} counts again.")
+        self._change(take, {**before, line.side: times_s}, told.format(stride=line.name, walk=walk))
+
+    def take_all_in(self, walk: str) -> None:
+        """Let all strides of a walk count that were left out by hand."""
+        if (take := self._take(walk)) is not None:
+            self._change(take, {}, tr("All strides of {walk} count that can be used.").format(walk=walk))
+
+    def _change(self, take: "Take", left_out_s: LeftOut, told: str) -> None:
+        before = self._left_out(take)
+        self._set(take.id, left_out_s)
+        self.offered.emit(told[:1].upper() + told[1:], self._undoing(take.id, before))
+
+    def _undoing(self, take_id: UUID, before: LeftOut) -> Callable[[], None]:
+        return lambda: self._set(take_id, before)
+
+    def _set(self, take_id: UUID, left_out_s: LeftOut) -> None:
+        take = next((take for take in self._takes.walks if take.id == take_id), None)
+        if take is not None:
+            wanted = {side: left_out_s[side] for side in Side if left_out_s.get(side)}
+            self._wanted[take_id] = wanted
+            self._takes.change(take, replace(take.told, left_out_s=wanted))
+
+    def _take(self, walk: str) -> "Take | None":
+        return next((take for take in self._takes.walks if take.told.name == walk), None)
+
+    def _left_out(self, take: "Take") -> LeftOut:
+        return self._wanted.get(take.id, take.told.left_out_s)
+
+    def _on_takes_changed(self) -> None:
+        for take in self._takes.walks:
+            if self._wanted.get(take.id) == take.told.left_out_s:
+                del self._wanted[take.id]
+
+    def _on_refused(self) -> None:
+        self._wanted.clear()
