@@ -16,6 +16,16 @@ from babel.messages.pofile import write_po
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of sentences each takes
+# of app.storage, which are put into the user's language where they are shown: what, remedy; the first says where
+REFUSALS = {
+    "LibraryError": 0,
+    "LibraryBusyError": 0,
+    "LibraryFaultError": 0,
+    "ChangedMeanwhileError": 0,
+    "NotAllowedError": 0,
+    "KeyRefusedError": 0,
+    "JournalRefusedError": 1,
+}
 
 HEAD = b"""\
 # Every sentence that Gaitwright shows. Made by packaging/catalogue.py; change the sentences in the code.
@@ -37,6 +47,9 @@ def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
         said = [one.value for one in taken if isinstance(one, ast.Constant) and isinstance(one.value, str)]
         if said and len(said) == len(taken):
             yield said[0] if len(said) == 1 else tuple(said)
+        if (function := ast.unparse(call.func)) in REFUSALS:
+            told = call.args[REFUSALS[function] :]
+            yield from (one.value for one in told if isinstance(one, ast.Constant) and isinstance(one.value, str))
 
 
 def gathered() -> Catalog:

@@ -72,7 +72,7 @@ class Recovering(QObject):
 
             for number, one in enumerate(lost, 1):
                 began = f" {one.began_at.astimezone():%Y-%m-%d %H-%M}" if one.began_at else ""
-                export_orphan(opened, one, folder / f"recording {number}{began}", DECODERS, report)
+                export_orphan(opened, one, folder / f"{number}{began}", DECODERS, report)
             return str(folder)
 
         self._desk.run_long(work, self._on_exported, self._on_refused, None, self)

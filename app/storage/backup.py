@@ -31,6 +31,7 @@ from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
 from app.storage.library import FILE_NAME, Library, now_utc
 from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, Report, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
+from app.wording import tr
 
 FORMAT = "gaitwright-backup/1"
 LIST = "backup.json"
@@ -169,7 +170,9 @@ class _Work:
             self.database_bytes = database.stat().st_size
             self.bytes = sum(path.stat().st_size for path in files)
         except OSError as error:
-            raise LibraryError(f"{Path(error.filename).name} is missing", "Choose another backup") from error
+            raise LibraryError(
+                tr("{file} is missing").format(file=Path(error.filename).name), "Choose another backup"
+            ) from error
         report(0.0, "backup")
 
     def refuse_too_little_room(self, into: Path) -> None:
@@ -178,7 +181,9 @@ class _Work:
             into = into.parent
         if (free := shutil.disk_usage(into).free) < needed:
             raise LibraryError(
-                f"This needs {needed / 1e6:.0f} MB of free disk, and {free / 1e6:.0f} MB are left",
+                tr("This needs {needed_mb:.0f} MB of free disk, and {free_mb:.0f} MB are left").format(
+                    needed_mb=needed / 1e6, free_mb=free / 1e6
+                ),
                 "Make room, or choose another disk",
             )
 
@@ -245,7 +250,9 @@ def _check(
     """
     for name, sha256 in hashes.items():
         if _sha256(folder / name, work) != sha256:
-            raise LibraryError(f"{name} was not copied as it is", "Try again, or choose another disk")
+            raise LibraryError(
+                tr("{file} was not copied as it is").format(file=name), "Try again, or choose another disk"
+            )
     database = Database(sqlite_engine(folder / FILE_NAME, data_key))
     try:
         if database.faults():
@@ -325,5 +332,5 @@ def _read_list(folder: Path) -> tuple[Backup, dict[str, str]]:
         made_at, checkpoint = datetime.datetime.fromisoformat(told["made_at"]), Checkpoint.parsed(told["checkpoint"])
         return Backup(folder, made_at, checkpoint, len(hashes) + 1, int(told["bytes"])), hashes
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        what = "This folder is not a backup that this version can read"
-        raise LibraryError(what, f"Choose a folder whose name starts with {NAME}") from None
+        remedy = tr("Choose a folder whose name starts with {name}").format(name=NAME)
+        raise LibraryError("This folder is not a backup that this version can read", remedy) from None

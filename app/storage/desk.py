@@ -10,6 +10,7 @@ from sqlalchemy.orm import Session as OrmSession
 from app.storage.database.engine import Database
 from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
 from app.storage.stored import LibraryError, NotAllowedError, Operator, Role
+from app.wording import tr
 
 DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
 
@@ -64,7 +65,9 @@ class Desk:
             # as it is now: an administrator at another station may have changed it
             row = session.get(OperatorRow, code)
             if row is None or not row.is_active or not row.role.includes(needed):
-                raise NotAllowedError(f"This needs the role of {needed}", "Ask somebody who has it")
+                raise NotAllowedError(
+                    tr("This needs the role of {role}").format(role=needed), "Ask somebody who has it"
+                )
             yield session
             session.flush()
             self._keep_simulated_apart(session)
@@ -83,6 +86,6 @@ class Desk:
         )
         if session.scalar(select(misplaced.exists())):
             raise LibraryError(
-                f"Simulated recordings belong to patients whose code starts with {DEMO}",
+                tr("Simulated recordings belong to patients whose code starts with {start}").format(start=DEMO),
                 "Choose or create such a patient",
             )

@@ -30,7 +30,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
-from app.wording import later, tr
+from app.wording import tr
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, SensorInfo, Session
@@ -204,7 +204,7 @@ def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:
     if decoded.undecoded:
         what = tr("{recording} was recorded with {driver}, which this version cannot read")
         told = what.format(recording=name, driver=decoded.undecoded[0])
-        raise LibraryError(told, later("Install the version that recorded it, or a later one"))
+        raise LibraryError(told, "Install the version that recorded it, or a later one")
 
 
 def _import_recordings(opened: OpenedLibrary, session_id: UUID, session: Session, report: Report, room: Room) -> None:

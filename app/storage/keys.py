@@ -22,6 +22,7 @@ from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
 
 from app.storage.files import held, replace_file
+from app.wording import tr
 
 FORMAT = "gaitwright-keys/1"
 KEY_BYTES = 32
@@ -163,7 +164,7 @@ class KeySlots:
         """
         with self._changing() as slots:
             if _checked_code(code) in slots:
-                raise KeyRefusedError(f"{_normal(code)} is taken", "Choose another code")
+                raise KeyRefusedError(tr("{code} is taken").format(code=_normal(code)), "Choose another code")
             own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
             self._write({**slots, own.code: own})
 
@@ -177,7 +178,9 @@ class KeySlots:
         """
         with self._changing() as slots:
             if _checked_code(code) not in slots:
-                raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+                raise KeyRefusedError(
+                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
+                )
             own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
             self._write({**slots, own.code: own})
 
@@ -217,7 +220,9 @@ class KeySlots:
         """
         with self._changing() as slots:
             if _checked_code(code) not in slots:
-                raise KeyRefusedError(f"{_normal(code)} has no key to this library", "Add the operator first")
+                raise KeyRefusedError(
+                    tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
+                )
             own = Slot.wrapping(data_key, KEYRING + _normal(code), secret, self._cost)
             self._write({**slots, own.code: own})
             return own
@@ -249,9 +254,13 @@ class KeySlots:
                 raise ValueError(content["format"])
             slots = [_whole(Slot(**slot)) for slot in content["slots"]]
         except FileNotFoundError:
-            raise KeyRefusedError(f"{self._path.name} is not there", "Restore the library from a backup") from None
+            raise KeyRefusedError(
+                tr("{file} is not there").format(file=self._path.name), "Restore the library from a backup"
+            ) from None
         except (ValueError, KeyError, TypeError):
-            raise KeyRefusedError(f"{self._path.name} is damaged", "Restore it from a backup of this library") from None
+            raise KeyRefusedError(
+                tr("{file} is damaged").format(file=self._path.name), "Restore it from a backup of this library"
+            ) from None
         return {slot.code: slot for slot in slots}
 
     def _write(self, slots: dict[str, Slot]) -> None:
@@ -304,7 +313,8 @@ def _recovery_bytes(text: str) -> bytes:
     count = RECOVERY_BYTES * 8 // 5
     if len(letters) != count + 1 or any(c not in LETTERS for c in letters):
         raise KeyRefusedError(
-            f"A recovery key has {count + 1} letters, this has {len(letters)}", "Compare with the sheet"
+            tr("A recovery key has {wanted} letters, this has {count}").format(wanted=count + 1, count=len(letters)),
+            "Compare with the sheet",
         )
     number = 0
     for c in letters[:-1]:
@@ -339,13 +349,16 @@ def _is_operators(code: str) -> bool:
 def _checked_code(code: str) -> str:
     code = _normal(code)
     if not (code.isalnum() and len(code) <= 12) or code == RECOVERY:
-        raise KeyRefusedError(f"{code or 'An empty code'} cannot be a code", "Take up to 12 letters and figures")
+        what = tr("{code} cannot be a code").format(code=code) if code else tr("An operator needs a code")
+        raise KeyRefusedError(what, "Take up to 12 letters and figures")
     return code
 
 
 def _checked(passphrase: str) -> bytes:
     if len(passphrase.strip()) < MIN_PASSPHRASE:
-        raise KeyRefusedError(f"A passphrase has {MIN_PASSPHRASE} letters or more", "Take a few words")
+        raise KeyRefusedError(
+            tr("A passphrase has {count} letters or more").format(count=MIN_PASSPHRASE), "Take a few words"
+        )
     return _secret(passphrase)
 
 

@@ -19,6 +19,7 @@ from app.storage.files import held, sync_folder
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator
+from app.wording import tr
 
 KEYS = "keys.json"
 RECORDINGS = "recordings"
@@ -119,7 +120,9 @@ def made_beside(folder: Path) -> Iterator[Path]:
         finally:
             shutil.rmtree(beside, ignore_errors=True)
     except OSError as error:
-        raise LibraryError(f"This folder cannot be written ({error.strerror})", "Choose another folder") from error
+        raise LibraryError(
+            tr("This folder cannot be written ({why})").format(why=error.strerror), "Choose another folder"
+        ) from error
 
 
 @contextmanager

@@ -15,6 +15,7 @@ from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_p
 from app.storage.desk import Desk
 from app.storage.sessions import refuse_early
 from app.storage.stored import Action, LibraryError, PatientFile, Role, StoredPatient
+from app.wording import tr
 from core.samples import Patient
 from devices.files.session_toml import PATIENT
 
@@ -223,5 +224,5 @@ def _checked(told: Patient) -> Patient:
             if value is not None:
                 check(value)
         except ValueError as error:
-            raise LibraryError(f"{key} has to be {error}", "Correct it") from None
+            raise LibraryError(tr("{field} has to be {wanted}").format(field=key, wanted=error), "Correct it") from None
     return told

@@ -20,7 +20,7 @@ from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
-from app.wording import later
+from app.wording import tr
 from core.samples import Recording
 from devices.files.imports import folder_for, free_name
 
@@ -142,7 +142,7 @@ def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Re
         As `adopt`; a LibraryError too where it does not say which session that is.
     """
     if orphan.belonging is None:
-        raise LibraryError(later("This recording does not say which session it is of"), later("Export it"))
+        raise LibraryError("This recording does not say which session it is of", "Export it")
     told, visit = orphan.belonging.told, opened.library.sessions.get(orphan.belonging.session_id)
     if any(other.name == told.name for other in visit.told.recordings):
         name = free_name(visit.told, told.kind)
@@ -155,7 +155,7 @@ def _look(
 ) -> Interrupted:
     keys = _row_keys(stored)
     if missing := sorted(keys.keys() - segments.keys()):
-        problem = f"part {missing[0]} of this recording is missing"
+        problem = tr("part {number} of this recording is missing").format(number=missing[0])
         return Interrupted(recording_id, stored, segments, None, 0.0, problem, RESTORE)
     began_at, recorded_s = None, 0.0
     try:

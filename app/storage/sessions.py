@@ -34,6 +34,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.wording import tr
 from core.body import Joint, Site
 from core.samples import Session
 from devices.files.session_toml import SIGN, ZERO
@@ -269,7 +270,9 @@ def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -
         It was not.
     """
     if deleted_at is None or now - deleted_at < KEPT_DELETED:
-        raise LibraryError(f"Only what was deleted {KEPT_DELETED.days} days ago is destroyed", "Wait until then")
+        raise LibraryError(
+            tr("Only what was deleted {days} days ago is destroyed").format(days=KEPT_DELETED.days), "Wait until then"
+        )
 
 
 def _is_absent(joint: Joint, limits: Limits) -> bool:
@@ -284,7 +287,7 @@ def _refuse_wrong_joints(told: Session) -> None:
         for joint, sign in told.turned_sign.items():
             SIGN[joint][1](sign)
     except ValueError as error:
-        raise LibraryError(f"The value of a joint has to be {error}", "Correct it") from None
+        raise LibraryError(tr("The value of a joint has to be {wanted}").format(wanted=error), "Correct it") from None
 
 
 def _existing(session: OrmSession, session_id: UUID) -> SessionRow:

@@ -3,7 +3,7 @@
 import logging
 from typing import NamedTuple
 
-from app.wording import tr
+from app.wording import capitalised, tr
 
 _log = logging.getLogger(__name__)
 
@@ -31,7 +31,8 @@ def refusal_of(error: Exception) -> Refusal:
     if isinstance(error, LibraryError | KeyRefusedError):
         return Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
     if isinstance(error, JournalRefusedError | FileRefusedError):
-        return Refusal(f"{error.where}: {error.what}.", f"{error.remedy}.")
+        where = tr("Where: {place}.").format(place=error.where)  # last: a path is long, and helps the fewest
+        return Refusal(f"{capitalised(tr(error.what))}.", f"{tr(error.remedy)}. {where}")
     if isinstance(error, NothingOpenError):
         return nothing_open()
     _log.error("a call of the library ended early", exc_info=error)

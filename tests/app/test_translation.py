@@ -28,6 +28,7 @@ UNSEEN_ERRORS = re.compile(
     r"^(ValueError|TypeError|RuntimeError|KeyError|LookupError|AssertionError|NotImplementedError)"
 )
 UNSEEN_ARGUMENTS = {"tone"}
+REFUSALS = re.compile(r"(Library|Refused|Busy|Fault|Allowed|Meanwhile)\w*Error$")
 SAME_EVERYWHERE = {"Gaitwright"}
 AS_IN_FILES = {"free motion", "parallel bars"}  # data, which are put into words where they are shown
 
@@ -133,6 +134,25 @@ def test_what_is_to_be_translated_is_written_out() -> None:
                 if any(isinstance(part, ast.JoinedStr | ast.BinOp) for part in node.args[:count]):
                     found.append(f"{file.relative_to(ROOT).as_posix()}:{node.lineno}")
     assert found == []
+
+
+def test_no_refusal_of_the_library_is_put_together_past_the_catalogue() -> None:
+    """Constants are gathered where they are raised; what has fields goes through tr(...) there."""
+    found = []
+    for file in sorted((ROOT / "app" / "storage").rglob("*.py")):
+        for node in ast.walk(parsed(file)):
+            if isinstance(node, ast.Call) and REFUSALS.search(ast.unparse(node.func)):
+                said = node.args
+            elif isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) in ("what", "remedy", "problem"):
+                said = [node.value]
+            else:
+                continue
+            found += [
+                f"{file.relative_to(ROOT).as_posix()}:{one.lineno}"
+                for one in said
+                if isinstance(one, ast.JoinedStr) and is_sentence_with_fields(one)
+            ]
+    assert found == [], "write tr(...).format(...)"
 
 
 def test_no_constant_is_translated_before_a_language_is_chosen() -> None:

@@ -14,6 +14,7 @@ from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.exc import StaleDataError
 
 from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError, LibraryFaultError
+from app.wording import tr
 
 OLDEST_SQLITE = (3, 51, 3)  # before it a reset of the write-ahead log could lose pages
 BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician waits no longer
@@ -74,7 +75,9 @@ class Database:
         with _told(), self._locked_session(self._build_engine) as session:
             yield session.connection()
             if self.engine.dialect.name == "sqlite" and (lost := _dangling(session)):
-                raise LibraryError(f"The library cannot be updated: {lost[0]}", "Restore it from a backup")
+                raise LibraryError(
+                    tr("The library cannot be updated: {why}").format(why=lost[0]), "Restore it from a backup"
+                )
             session.commit()
 
     def _locked_session(self, engine: Engine) -> OrmSession:
@@ -163,7 +166,9 @@ def refuse_old_sqlite(version: tuple[int, ...]) -> None:
     if version < OLDEST_SQLITE:
         found, needed = (".".join(map(str, numbers)) for numbers in (version, OLDEST_SQLITE))
         raise LibraryError(
-            f"This installation has SQLite {found}, which can lose what was saved; {needed} or later is needed",
+            tr(
+                "This installation has SQLite {found}, which can lose what was saved; {needed} or later is needed"
+            ).format(found=found, needed=needed),
             "Run packaging/start.py again: it installs the right one",
         )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from app.storage.files import replace_file
 from app.storage.journal.header import JournalRefusedError
+from app.wording import later, tr
 
 FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magnetic field, sealed
 
@@ -27,28 +28,28 @@ class Trouble(StrEnum):
 
 TOLD = {
     Trouble.LITTLE_ROOM: (
-        "The disk has room for less than five more minutes",
-        "Stop soon, and delete or move files that are not needed",
+        later("The disk has room for less than five more minutes"),
+        later("Stop soon, and delete or move files that are not needed"),
     ),
     Trouble.NO_ROOM: (
-        "The disk is almost full, so the recording was stopped and closed",
-        "What was recorded is kept. Delete or move files, then record again",
+        later("The disk is almost full, so the recording was stopped and closed"),
+        later("What was recorded is kept. Delete or move files, then record again"),
     ),
     Trouble.DISK_FULL: (
-        "The disk is full, so the recording was stopped",
-        "What was recorded is kept. Delete or move files, then record again",
+        later("The disk is full, so the recording was stopped"),
+        later("What was recorded is kept. Delete or move files, then record again"),
     ),
     Trouble.DISK_GONE: (
-        "The recording can no longer be written, so it was stopped",
-        "What was recorded until then is kept. Check the disk, then record again",
+        later("The recording can no longer be written, so it was stopped"),
+        later("What was recorded until then is kept. Check the disk, then record again"),
     ),
     Trouble.DISK_SLOW: (
-        "The disk answers late",
-        "Nothing is lost yet. Close programs that copy or download to it",
+        later("The disk answers late"),
+        later("Nothing is lost yet. Close programs that copy or download to it"),
     ),
     Trouble.DROPPED: (
-        "The disk has not answered for too long, and samples had to be dropped",
-        "They are counted and stay gaps. Check the disk before recording again",
+        later("The disk has not answered for too long, and samples had to be dropped"),
+        later("They are counted and stay gaps. Check the disk before recording again"),
     ),
 }
 
@@ -84,10 +85,12 @@ class Room:
         try:
             free = shutil.disk_usage(folder).free
         except OSError as error:
-            what = f"the folder of the recordings cannot be read ({error.strerror})"
+            what = tr("the folder of the recordings cannot be read ({why})").format(why=error.strerror)
             raise JournalRefusedError(str(folder), what, "Check that its disk is connected") from error
         if free < needed:
-            what = f"a recording needs {needed / 1e6:.0f} MB of free disk, and {free / 1e6:.0f} MB are left"
+            what = tr("a recording needs {needed_mb:.0f} MB of free disk, and {free_mb:.0f} MB are left").format(
+                needed_mb=needed / 1e6, free_mb=free / 1e6
+            )
             raise JournalRefusedError(str(folder), what, "Delete or move files that are not needed")
 
 

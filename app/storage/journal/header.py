@@ -20,6 +20,7 @@ from cryptography.hazmat.primitives.hashes import SHA256
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
 from app.storage.files import sync_folder
+from app.wording import later, tr
 
 MAGIC = b"\x89GWJ\r\n\x1a\n"  # what takes a journal for text, and mends its line ends, shows here first
 FORMAT = 1
@@ -30,7 +31,7 @@ WRAPPED_BYTES = NONCE_BYTES + KEY_BYTES + TAG_BYTES
 NO_KEY = bytes(WRAPPED_BYTES)
 HEADER_BYTES = IDENTITY.size + WRAPPED_BYTES + 4
 SUFFIX = ".journal"
-RESTORE = "Restore this recording from a backup"
+RESTORE = later("Restore this recording from a backup")
 
 
 class JournalRefusedError(Exception):
@@ -93,7 +94,9 @@ class JournalHeader:
         header = cls(UUID(bytes=recording), segment, wall_ns, opened_ns, own if flags & SEALED else b"")
         is_whole = struct.unpack_from("<I", content, HEADER_BYTES - 4)[0] == crc32c(content[: HEADER_BYTES - 4])
         if version != FORMAT:
-            what = f"this recording is of format {version}, this version reads {FORMAT}, or its beginning is damaged"
+            what = tr(
+                "this recording is of format {found}, this version reads {known}, or its beginning is damaged"
+            ).format(found=version, known=FORMAT)
             raise JournalRefusedError(where, what, "Install the latest version, or restore it from a backup")
         # with the row's key only the rest has to be right, and the key's own tag proves it
         if header.identity != content[: IDENTITY.size] or not (is_whole or (wrapped_key and header.is_sealed)):
@@ -128,8 +131,9 @@ class JournalHeader:
         try:
             return AESGCM(_wrapping_key(data_key)).decrypt(nonce, wrapped, self.identity)
         except (InvalidTag, ValueError):
-            what = "the key of this recording is damaged or another library's"
-            raise JournalRefusedError(where, what, RESTORE) from None
+            raise JournalRefusedError(
+                where, "the key of this recording is damaged or another library's", RESTORE
+            ) from None
 
 
 def _wrapping_key(data_key: bytes) -> bytes:

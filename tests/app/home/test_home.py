@@ -296,7 +296,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     assert home.banner._act.text() == "Export"
     home.recovering.export(tmp_path / "out")
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
-    assert len(list((tmp_path / "out").glob("recording */LT-1.csv"))) == 2
+    assert len(list((tmp_path / "out").glob("*/LT-1.csv"))) == 2
     assert home.banner._act.isHidden()
 
 

@@ -11,12 +11,15 @@ import pytest
 from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot
 
+from app.storage.journal.disk import Room
+from app.storage.journal.header import JournalRefusedError
 from app.storage.keys import Cost, KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary, held_alone
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from app.workers.refusals import refusal_of
 from core.body import Site
 from core.samples import Patient
 from devices.replay import DEMONSTRATION_NAMES
@@ -141,6 +144,22 @@ def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, desk: LibraryDesk, fol
         ("Another patient has this code.", "Open that patient, or choose another code."),
     ]
     assert len(asker.results) == 1
+
+
+def test_a_refusal_begins_with_what_happened_and_ends_with_where(tmp_path: Path) -> None:
+    with pytest.raises(JournalRefusedError) as caught:
+        Room(start_bytes=10**18).check(tmp_path, 0.0)
+    what, remedy = refusal_of(caught.value)
+    assert what.startswith("A recording needs 1000000000000 MB of free disk, and ")
+    assert remedy == f"Delete or move files that are not needed. Where: {tmp_path}."
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_what_the_library_refuses_is_told_in_the_users_language(tmp_path: Path) -> None:
+    with pytest.raises(JournalRefusedError) as caught:
+        Room(start_bytes=10**18).check(tmp_path, 0.0)
+    for error in (caught.value, LibraryError("Another patient has this code", "Open that patient")):
+        assert all(sentence.startswith("[") for sentence in refusal_of(error))
 
 
 def test_what_nobody_foresaw_is_logged_and_told_plainly(
