@@ -50,6 +50,7 @@ DROP_EDGE = 2.5
 POLL_MS = 1000
 SWITCH_S = 0.001  # a frame needs Python several times, and waits so long each time while an analysis runs beside it
 PREPARE_AFTER_MS = 200  # the first frame goes before
+MAKE_EVERY_MS = 300  # of what is made before it is needed; what the user does comes between
 COMPACT_BELOW = (1180, 720)
 ACTIVITY = frozenset(
     (
@@ -172,6 +173,7 @@ class MainWindow(QWidget):
 
     def _connect(self) -> None:
         self.session.left.connect(self._on_session_left)
+        self.preparing.done.connect(self._on_prepared)
         self._settings.changed.connect(self._apply_settings)
         self._look.changed.connect(self._on_look_changed)
         QGuiApplication.styleHints().colorSchemeChanged.connect(self._apply_settings)
@@ -246,7 +248,17 @@ class MainWindow(QWidget):
 
     # a library is open
 
-    def _on_entered(self, state: OpenedState) -> None:
+    def _on_prepared(self) -> None:
+        """Make what was imported before somebody waits for it, one thing at a time."""
+        if self.entry is None or (self._home is not None and self._wizard is not None):
+            return
+        if self._home is None:
+            self._made_home()
+        else:
+            self._made_wizard()
+        QTimer.singleShot(MAKE_EVERY_MS, self, self._on_prepared)
+
+    def _made_home(self) -> "Home":
         if self._home is None:
             from app.home.home import Home
 
@@ -258,9 +270,13 @@ class MainWindow(QWidget):
             self._home.own_library_wished.connect(self._log_out)
             self._home.help_wished.connect(self._show_help)
             self._home.settings_left.connect(self._on_settings_left)
+        return self._home
+
+    def _on_entered(self, state: OpenedState) -> None:
+        home = self._made_home()
         self.idle.unlock()
-        self._home.show_library(state)
-        self._show(self._home)
+        home.show_library(state)
+        self._show(home)
         if self._wizard is None:
             self.prepare()
 
@@ -272,6 +288,11 @@ class MainWindow(QWidget):
 
     def _entered_wizard(self) -> "Wizard":
         """The wizard, in sight: the one place where a session with a patient is entered."""
+        wizard = self._made_wizard()
+        self._show(wizard)
+        return wizard
+
+    def _made_wizard(self) -> "Wizard":
         if self._wizard is None:
             from app.wizard.wizard import Wizard
 
@@ -280,7 +301,6 @@ class MainWindow(QWidget):
             self._wizard.left.connect(self._on_wizard_left)
             self._wizard.settings_wanted.connect(self._on_settings_wanted)
             self._wizard.help_wanted.connect(self._show_help)
-        self._show(self._wizard)
         return self._wizard
 
     def _on_wizard_left(self) -> None:
@@ -440,7 +460,7 @@ def open_window(argv: list[str]) -> int:
     load_fonts()
     window = MainWindow(Look(app), Settings(own_settings()), default_folder())
     window.show()
-    garbage = GarbageCollector(window)
+    garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)
     QTimer.singleShot(PREPARE_AFTER_MS, window.prepare)
     folders = [argument for argument in app.arguments()[1:] if not argument.startswith("-")]

@@ -1,6 +1,7 @@
 """What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 import numpy as np
 from PySide6.QtCore import Qt
@@ -51,9 +52,42 @@ KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves,
 EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
 
 
-class ResultPage(QWidget):
+class ResultParts:
+    """The parts of a result page that take long to be made: one at a time before they are wanted, or else when."""
+
     def __init__(self, look: Look) -> None:
+        self._look = look
+
+    @cached_property
+    def cycles(self) -> CyclePage:
+        return CyclePage(self._look)
+
+    @cached_property
+    def strides(self) -> StridesPage:
+        return StridesPage(self._look)
+
+    @cached_property
+    def compare(self) -> ComparePage:
+        return ComparePage(self._look)
+
+    @cached_property
+    def charts(self) -> JointCharts:
+        return JointCharts(self._look)
+
+    def make_next(self) -> bool:
+        """Make one part; whether there was one left to be made."""
+        left = [name for name in ("cycles", "strides", "compare", "charts") if name not in vars(self)]
+        if left:
+            getattr(self, left[0])
+        return bool(left)
+
+
+class ResultPage(QWidget):
+    """`parts`: those that were made before."""
+
+    def __init__(self, look: Look, parts: ResultParts | None = None) -> None:
         super().__init__()
+        parts = parts or ResultParts(look)
         self._look = look
         self._analysis: Analysis | None = None
         self._can_choose = False
@@ -89,10 +123,10 @@ class ResultPage(QWidget):
         )
         self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
         self.band = Toggle(look, tr("Band"), "B", is_on=True)
-        self.cycles = CyclePage(look)
-        self.strides = StridesPage(look)
-        self.compare = ComparePage(look)
-        self.charts = JointCharts(look)
+        self.cycles = parts.cycles
+        self.strides = parts.strides
+        self.compare = parts.compare
+        self.charts = parts.charts
         self.shown = Text(look, size=14, tone="ink2")
         self.whole = Button(look, tr("Whole recording"), Kind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(look, size=12, tone="ink2", wraps=True)

@@ -28,6 +28,7 @@ from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit, patient_line
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
+from app.workers.preload import is_preloaded
 from core.body import Site
 
 if TYPE_CHECKING:
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
 
 PATIENT, SENSORS, STAND_STILL, FREE_MOTION, WALKING, RESULTS, REPORT = range(7)
 TICK_MS = 33
+PREPARE_MS = 400  # between one page that is made ahead and the next: what the user does comes first
 SLOW_TICKS = 8  # tiles and stopwatch: four times a second
 MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
 
@@ -70,6 +72,9 @@ class Wizard(QWidget):
         self._keys = Keys(self)
         self._timer = QTimer(self)
         self._timer.setInterval(TICK_MS)
+        self._to_prepare: list[Step] = []
+        self._preparing = QTimer(self)
+        self._preparing.setInterval(PREPARE_MS)
         self._connect()
 
     @property
@@ -103,6 +108,7 @@ class Wizard(QWidget):
     def close_visit(self) -> None:
         """Let go of sensors and visit; what was recorded is in the library."""
         self._timer.stop()
+        self._preparing.stop()
         self._forget_closed()
         if self._visit is not None:
             if self._steps:
@@ -112,7 +118,7 @@ class Wizard(QWidget):
             self._closing.append(self._visit)
         for step in self._steps:
             step.deleteLater()
-        self._visit, self._steps = None, []
+        self._visit, self._steps, self._to_prepare = None, [], []
         self.shell.clear_pages()
 
     def _forget_closed(self) -> None:
@@ -142,6 +148,7 @@ class Wizard(QWidget):
         shell.room_changed.connect(self._on_room_changed)
         self._keys.pressed.connect(self._on_intent)
         self._timer.timeout.connect(self._on_tick)
+        self._preparing.timeout.connect(self._on_prepare)
         self._settings.changed.connect(self._on_settings_changed)
         self._on_settings_changed()
 
@@ -173,6 +180,8 @@ class Wizard(QWidget):
         visit.takes.begun.connect(self.shell.banner.hide)
         self._current = PATIENT
         self._timer.start()
+        self._to_prepare = [*self._steps]
+        self._preparing.start()
         return visit
 
     def _listen_no_more(self, visit: Visit) -> None:
@@ -254,6 +263,18 @@ class Wizard(QWidget):
             self._show_slow()
             if self.is_recording:
                 self.shell.bar.show_state(self._bar())
+
+    def _on_prepare(self) -> None:
+        """Make the next page before somebody comes to it, who would wait for it then; not amid a recording."""
+        if self.is_recording or not self.isVisible() or not is_preloaded():
+            return
+        if not self._to_prepare:
+            self._preparing.stop()
+            return
+        step = self._to_prepare[0]
+        self.shell.add_page(self._steps.index(step), step.page)
+        if not step.prepare():
+            del self._to_prepare[0]
 
     def _on_intent(self, intent: Intent) -> None:
         if not self._steps:

@@ -1,6 +1,7 @@
 """Who collects garbage? The screen's thread alone, between frames: what it holds of Qt must not end on another."""
 
 import gc
+from collections.abc import Callable
 
 from PySide6.QtCore import QObject, QTimer
 
@@ -9,11 +10,12 @@ LOOK_MS = 1000
 
 class GarbageCollector(QObject):
     """From when it is made until the program ends, nothing else collects. As often as Python would, but once a second
-    at most.
+    at most, and not while much is imported, which is about to be passed over.
     """
 
-    def __init__(self, parent: QObject) -> None:
+    def __init__(self, parent: QObject, is_importing: Callable[[], bool]) -> None:
         super().__init__(parent)
+        self._is_importing = is_importing
         gc.disable()
         self._timer = QTimer(self)
         self._timer.timeout.connect(self._on_timeout)
@@ -26,5 +28,5 @@ class GarbageCollector(QObject):
     def _on_timeout(self) -> None:
         pairs = enumerate(zip(gc.get_count(), gc.get_threshold(), strict=True))
         due = [generation for generation, (count, limit) in pairs if count > limit]
-        if due:
+        if due and not self._is_importing():
             gc.collect(max(due))

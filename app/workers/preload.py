@@ -1,6 +1,7 @@
 """What the first session would wait for is imported beside the screen, once the window is there: two seconds' worth."""
 
 import gc
+import sys
 from importlib import import_module
 
 from app.workers.background import Report
@@ -27,6 +28,11 @@ MODULES = (
     "app.pages.result_page",
     "app.pages.help_page",
 )
+
+
+def is_preloaded() -> bool:
+    """Whether nothing of it is left to be imported."""
+    return MODULES[-1] in sys.modules
 
 
 def preload(report: Report) -> None:

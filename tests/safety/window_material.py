@@ -96,7 +96,7 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(QSettings(f"{folder}/settings.ini", QSettings.Format.IniFormat))
         window = MainWindow(Look(application), settings, Path(folder) / "library")
-        garbage = GarbageCollector(window)
+        garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
         window.preparing.done.connect(garbage.pass_over_imported)
         window.show()
         window.open_demonstration()

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from app.pages.correct_page import CorrectPage
     from app.pages.found_page import FoundPage
-    from app.pages.result_page import ResultPage
+    from app.pages.result_page import ResultPage, ResultParts
     from app.wizard.takes import Take
     from app.wizard.visit import Visit
     from app.workers.how_found_desk import HowFoundDesk
@@ -77,6 +77,9 @@ class ResultsStep(Step):
     @property
     def _kept_walks(self) -> list[object]:
         return [take for take in self._visit.takes.walks if take.told.is_kept]
+
+    def prepare(self) -> bool:
+        return self.page.prepare()
 
     def enter(self) -> None:
         if self._kept_walks:
@@ -153,7 +156,7 @@ class ResultsStep(Step):
             )
             page.setCurrentWidget(page.sentence)
         else:
-            is_new = not page.has_results
+            is_new = self._shown is None
             results = page.results()
             if is_new:
                 results.compare.set_has_visits(True)
@@ -373,6 +376,7 @@ class _ResultsFrame(QStackedWidget):
         self.sentence = SentencePage(look)
         self.working = WorkingPage(look)
         self.working.stop.hide()  # an analysis takes a second; there is nothing to go back to
+        self._parts: ResultParts | None = None
         self._results: ResultPage | None = None
         self._correct: CorrectPage | None = None
         self._found: FoundPage | None = None
@@ -381,15 +385,22 @@ class _ResultsFrame(QStackedWidget):
         for page in (self.sentence, self.working):
             self.addWidget(page)
 
-    @property
-    def has_results(self) -> bool:
-        return self._results is not None
+    def prepare(self) -> bool:
+        """Make the next part of the results; whether there was one."""
+        if self._results is not None:
+            return False
+        from app.pages.result_page import ResultParts
+
+        self._parts = self._parts or ResultParts(self._look)
+        if not self._parts.make_next():
+            self.results()
+        return True
 
     def results(self) -> "ResultPage":
         if self._results is None:
             from app.pages.result_page import ResultPage  # its imports take a second
 
-            self._results = ResultPage(self._look)
+            self._results = ResultPage(self._look, self._parts)
             self._results.set_room(*self._room)
             self.addWidget(self._results)
         return self._results

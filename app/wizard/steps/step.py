@@ -76,6 +76,13 @@ class Step(QObject):
         """The page of the manual that F1 opens."""
         raise NotImplementedError
 
+    def prepare(self) -> bool:
+        """Make the next part of what would take long when it comes into sight; whether there was one.
+
+        The page itself is there already.
+        """
+        return False
+
     def enter(self) -> None:
         """It comes into sight: show the visit as it is, begin what begins by itself."""
 

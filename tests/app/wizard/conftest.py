@@ -6,14 +6,19 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
+from app.settings import Settings
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS
 from app.storage.stored import Operator, Role
+from app.theme import Look, load_fonts
 from app.wizard.visit import Visit
+from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
@@ -63,6 +68,19 @@ def visit(desk: LibraryDesk, source: ReplaySource) -> Iterator[Visit]:
     yield visit
     visit.close()
     visit.finish()
+
+
+@pytest.fixture
+def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
+    load_fonts()
+    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+    wizard = Wizard(Look(), desk, settings)
+    qtbot.addWidget(wizard)
+    wizard.resize(1280, 800)
+    wizard.show()
+    yield wizard
+    wizard.finish()
+    qapp.setStyleSheet("")
 
 
 @pytest.fixture

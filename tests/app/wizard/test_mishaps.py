@@ -3,20 +3,16 @@
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
-from pathlib import Path
 from uuid import uuid4
 
 import pytest
-from PySide6.QtCore import QSettings
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.recorder import Recorder
-from app.settings import Settings
 from app.storage.journal.disk import Trouble
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
-from app.theme import Look, load_fonts
+from app.theme import Look
 from app.wizard import takes as takes_module
 from app.wizard import wizard as wizard_module
 from app.wizard.keys import Action, Intent
@@ -43,19 +39,6 @@ def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: py
     if visit.takes.is_recording:
         with qtbot.waitSignal(visit.takes.ended, timeout=WAIT_MS):
             visit.takes.stop()
-
-
-@pytest.fixture
-def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
-    load_fonts()
-    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    wizard = Wizard(Look(), desk, settings)
-    qtbot.addWidget(wizard)
-    wizard.resize(1280, 800)
-    wizard.show()
-    yield wizard
-    wizard.finish()
-    qapp.setStyleSheet("")
 
 
 def failing(times: int, error: Exception, otherwise: Callable[..., object]) -> Callable[..., object]:

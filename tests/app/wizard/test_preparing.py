@@ -1,0 +1,84 @@
+"""Pages are made before somebody comes to them, and none of them holds up the screen."""
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.acquisition import Acquisition
+from app.pages.result_page import ResultPage
+from app.wizard import wizard as wizard_module
+from app.wizard.wizard import FREE_MOTION, PATIENT, REPORT, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
+from app.wizard.worn_sensors import SourceChoice
+from app.workers.preload import preload
+from core.body import Site
+from core.samples import Patient, Session
+from devices.replay import ReplaySource
+from tests.app.watchdog import Watchdog
+
+WAIT_MS = 60_000
+LOOK_MS = 700  # at each page
+
+
+@pytest.fixture
+def preparing(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> Wizard:
+    """A wizard for which all is imported, in a hurry."""
+    monkeypatch.setattr(wizard_module, "is_preloaded", lambda: True)
+    wizard._preparing.setInterval(1)
+    return wizard
+
+
+def test_all_pages_are_made_while_the_first_is_looked_at(qtbot: QtBot, preparing: Wizard) -> None:
+    preparing.begin(None)
+    qtbot.waitUntil(lambda: not preparing._to_prepare, timeout=WAIT_MS)
+    made = dict(preparing.shell._by_index)
+    assert set(made) == set(range(PATIENT, REPORT + 1))
+    assert preparing.shell.page is made[PATIENT]
+    assert made[RESULTS].findChildren(ResultPage)
+
+
+def test_nothing_is_made_ahead_amid_a_recording(
+    qtbot: QtBot, preparing: Wizard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(Wizard, "is_recording", True)
+    preparing.begin(None)
+    qtbot.wait(50)
+    assert list(preparing.shell._by_index) == [PATIENT]
+
+
+@pytest.mark.endurance
+def test_a_whole_session_never_holds_up_the_screen(
+    qtbot: QtBot, wizard: Wizard, simulated_session: Session, watchdog: Watchdog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    source = ReplaySource(simulated_session, finishes=True)
+    choice = SourceChoice("patient", "Patient", lambda: Acquisition([source]), is_simulated=True)
+    monkeypatch.setattr(wizard_module, "choices", lambda: (choice,))
+    with watchdog.paused():
+        preload(lambda _share, _what: None)
+    wizard.begin(None)
+    visit = wizard.visit
+    assert visit is not None
+    qtbot.waitUntil(lambda: not wizard._to_prepare, timeout=WAIT_MS)
+    visit.patient.edit(Patient(code="DEMO-9"))
+    visit.patient.commit()
+    qtbot.waitUntil(lambda: visit.patient.stored is not None, timeout=WAIT_MS)
+    wizard.go_to(SENSORS)
+    qtbot.waitUntil(lambda: visit.session is not None, timeout=WAIT_MS)
+    visit.sensors.search(visit.choices[0])
+    qtbot.waitUntil(lambda: bool(visit.sensors.status), timeout=WAIT_MS)
+    visit.sensors.assign_all(dict(zip(visit.sensors.status, Site, strict=True)))
+    qtbot.wait(LOOK_MS)
+    wizard.go_to(STAND_STILL)
+    qtbot.wait(LOOK_MS)
+    wizard._on_primary()
+    qtbot.waitUntil(lambda: wizard._current == FREE_MOTION, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    qtbot.wait(LOOK_MS)
+    wizard._on_primary()
+    qtbot.waitUntil(lambda: wizard.is_recording, timeout=WAIT_MS)
+    qtbot.wait(12_000)
+    wizard._on_primary()
+    qtbot.waitUntil(lambda: bool(visit.takes.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    visit.takes.keep(visit.takes.walks[-1], True)
+    for step in (RESULTS, REPORT, PATIENT):
+        wizard.go_to(step)
+        qtbot.wait(3 * LOOK_MS)
+    qtbot.waitUntil(lambda: visit.preview.is_idle, timeout=WAIT_MS)
