@@ -64,7 +64,6 @@ class Wizard(QWidget):
         self._steps: list[Step] = []
         self._current = PATIENT
         self._ticks = 0
-        self._lands_on = PATIENT
         self.shell = WizardShell(look)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -97,13 +96,9 @@ class Wizard(QWidget):
             visit.patient.choose(patient)
         self._go_to(PATIENT)
 
-    def resume(self, session_id: UUID) -> None:
-        """Go on with a session where it was left."""
-        self._take_up(session_id, WALKING)
-
     def show_session(self, session_id: UUID) -> None:
-        """Look at what came of a session."""
-        self._take_up(session_id, RESULTS)
+        """Look at what came of a session, or go on with it where nothing has come of it yet."""
+        self._begin_visit().resume(session_id)
 
     def close_visit(self) -> None:
         """Let go of sensors and visit; what was recorded is in the library."""
@@ -193,11 +188,6 @@ class Wizard(QWidget):
         visit.refused.connect(self._desk.refused)
         visit.takes.troubled.disconnect(self._on_troubled)
         visit.takes.begun.disconnect(self.shell.banner.hide)
-
-    def _take_up(self, session_id: UUID, step: int) -> None:
-        visit = self._begin_visit()
-        self._lands_on = step
-        visit.resume(session_id)
 
     def go_to(self, number: int) -> None:
         """Go to a step, if it can be entered and the current one left; else say why not."""
@@ -388,8 +378,12 @@ class Wizard(QWidget):
             self._tell(what, then)
 
     def _on_resumed(self) -> None:
-        can = not self._steps[self._lands_on].cannot_enter
-        self._go_to(self._lands_on if can else SENSORS)
+        """Land where something is to be answered or seen, else where it goes on."""
+        walks = self._visit.takes.walks if self._visit is not None else ()
+        if not walks:
+            self._go_to(SENSORS)
+        else:
+            self._go_to(RESULTS if all(walk.is_decided for walk in walks) else WALKING)
 
     def _on_room_changed(self, is_compact: bool, width: float, height: float) -> None:
         page = self.current.page if self.current is not None else None

@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject, QTimer
 
 from app import sounds
 from app.sounds import Sound
+from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
@@ -92,8 +93,10 @@ class FreeMotionStep(Step):
     @property
     def note(self) -> str:
         joints = self._motion.joints
-        if not self._has_moved or not joints:
+        if not self._has_moved:
             return ""
+        if not joints:
+            return tr("cut short") if self._is_cut_short else ""
         ready = sum(state.is_closed for state in joints.values())
         if ready == len(joints):
             return tr("All {count} ready").format(count=ready)
@@ -103,7 +106,7 @@ class FreeMotionStep(Step):
     def state(self) -> StepState:
         if not self._has_moved:
             return StepState.TODO
-        is_whole = all(state.is_closed for state in self._motion.joints.values())
+        is_whole = all(state.is_closed for state in self._motion.joints.values()) and not self._is_cut_short
         return StepState.DONE if is_whole else StepState.ATTENTION
 
     @property
@@ -199,6 +202,12 @@ class FreeMotionStep(Step):
     @property
     def _has_moved(self) -> bool:
         return self._visit.takes.has_moved
+
+    @property
+    def _is_cut_short(self) -> bool:
+        """Whether the one in force is what was recovered after a crash."""
+        moved = self._visit.takes.free_motion
+        return moved is not None and moved.stored.state is RecordingState.RECOVERED
 
     @property
     def _repeatable(self) -> list[Side]:

@@ -18,6 +18,7 @@ from app.wizard.steps.step import Step
 from app.wizard.takes import Take
 from app.wording import tr
 from core.body import Joint
+from core.live.standing import WANTED_S
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 
 SHOWN_MS = 600  # the check mark, before the next step comes by itself
 TICKS = 3  # of 30 Hz: ten looks a second
+SLACK_S = 0.1
 
 
 class StandStillStep(Step):
@@ -149,7 +151,8 @@ class StandStillStep(Step):
 
     @property
     def _has_stood(self) -> bool:
-        return bool(self._visit.rests) and not self._visit.takes.is_restrapped
+        """For as long as it takes: what a crash cut short was recovered, and is not enough."""
+        return self._stood_s > WANTED_S - SLACK_S and not self._visit.takes.is_restrapped
 
     @property
     def _stood_s(self) -> float:

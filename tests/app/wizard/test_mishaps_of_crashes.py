@@ -1,0 +1,90 @@
+"""A session that a crash cut short is taken up where it was left, and nothing cut short passes for whole."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.settings import Settings
+from app.storage.stored import RecordingState
+from app.theme import Look, load_fonts
+from app.widgets.step_rail import StepState
+from app.wizard import wizard as wizard_module
+from app.wizard.steps.free_motion_step import FreeMotionStep
+from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.visit import Visit
+from app.wizard.wizard import RESULTS, SENSORS, WALKING, Wizard
+from app.workers.library_desk import LibraryDesk
+from core.body import Site
+from core.calibration.rest import rest_of
+from core.samples import RecordingKind
+from tests.app.wizard.test_visit import begin, record
+
+WAIT_MS = 20_000
+
+
+@pytest.fixture
+def left(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
+    """A visit with sensors on, whose recordings nobody evaluates."""
+    monkeypatch.setattr(Visit, "evaluate", lambda *_: None)
+    begin(qtbot, visit, worn)
+    return visit
+
+
+@pytest.fixture
+def wizard(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Wizard]:
+    load_fonts()
+    monkeypatch.setattr(wizard_module, "choices", tuple)
+    wizard = Wizard(Look(), desk, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
+    qtbot.addWidget(wizard)
+    yield wizard
+    wizard.finish()
+    qapp.setStyleSheet("")
+
+
+def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> int:
+    """Open the session that was left as Home does, and say at which step that is."""
+    assert left.session is not None
+    wizard.show_session(left.session.id)
+    qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None, timeout=WAIT_MS)
+    assert wizard.current is not None
+    return wizard._steps.index(wizard.current)
+
+
+def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizard: Wizard, left: Visit) -> None:
+    record(qtbot, left, RecordingKind.STANDING, 0.5)
+    assert landed(qtbot, wizard, left) == SENSORS
+    walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
+    assert landed(qtbot, wizard, left) == RESULTS
+    assert left.desk.state is not None
+    library = left.desk.state.library.library
+    files = {journal.segment: journal.sha256 for journal in walk.stored.journals}
+    library.recordings.close(walk.id, RecordingState.RECOVERED, files)
+    assert landed(qtbot, wizard, left) == WALKING  # where it is kept or discarded
+
+
+def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
+    standing = record(qtbot, left, RecordingKind.STANDING, 6.0)
+    moved = record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
+    assert standing.recording is not None
+    imu = standing.recording.imu
+    stands, moves = StandStillStep(Look(), left), FreeMotionStep(Look(), left)
+
+    def rest(seconds: float) -> None:
+        rests = {site: rest_of(block) for site, block in imu.items()}
+        left.rests = {str(site): replace(found, duration_s=seconds) for site, found in rests.items() if found}
+
+    rest(2.1)
+    assert (stands.state, stands.note) == (StepState.TODO, "")
+    rest(3.0)
+    assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, zero set")
+    assert moves.state is StepState.DONE
+    recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
+    left.takes.every = tuple(recovered if take.id == moved.id else take for take in left.takes.every)
+    assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
