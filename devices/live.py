@@ -53,6 +53,10 @@ class LiveSource(Protocol):
         Nothing else is asked of such a source than that it calls `keep` before it decodes.
         """
 
+    @property
+    def sent(self) -> Sequence[bytes]:
+        """What was written to it since it was opened last: its settings, its light. None where it is only read."""
+
     def open(self) -> None:
         """Begin to listen.
 

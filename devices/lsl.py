@@ -170,6 +170,7 @@ class LslSource:
     """
 
     has_bytes = False
+    sent: Sequence[bytes] = ()
 
     def __init__(
         self,

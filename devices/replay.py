@@ -97,6 +97,7 @@ class ReplaySource:
     """
 
     has_bytes = False
+    sent: Sequence[bytes] = ()
 
     def __init__(
         self,

@@ -152,13 +152,43 @@ class Decoder:
             self._framer = None
 
 
+class _Noting:
+    """A `Channel` that remembers what was written since it was opened."""
+
+    def __init__(self, channel: Channel) -> None:
+        self._channel = channel
+        self.sent: list[bytes] = []
+
+    @property
+    def place(self) -> str:
+        return self._channel.place
+
+    @property
+    def serial(self) -> str:
+        return self._channel.serial
+
+    def open(self) -> None:
+        self.sent = []
+        self._channel.open()
+
+    def read(self) -> bytes:
+        return self._channel.read()
+
+    def write(self, data: bytes) -> None:
+        self._channel.write(data)
+        self.sent.append(data)
+
+    def close(self) -> None:
+        self._channel.close()
+
+
 class ByteSource:
     """The `LiveSource` of every dialect: journal first, then messages, then stamps. One sensor."""
 
     has_bytes = True
 
     def __init__(self, dialect: Dialect, channel: Channel, now_ns: Callable[[], int] = host_time_ns) -> None:
-        self._dialect, self._channel, self._now_ns = dialect, channel, now_ns
+        self._dialect, self._channel, self._now_ns = dialect, _Noting(channel), now_ns
         self._info = SourceInfo(dialect.driver, dialect.version)
         self._told = SensorTold()
         self._framer: Framer | None = None
@@ -169,6 +199,10 @@ class ByteSource:
     @property
     def info(self) -> SourceInfo:
         return self._info
+
+    @property
+    def sent(self) -> Sequence[bytes]:
+        return tuple(self._channel.sent)
 
     @property
     def clock_residual_s(self) -> float:

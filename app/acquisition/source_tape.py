@@ -20,11 +20,16 @@ class SourceTape:
         self._begin_s = writer.header.opened_ns / 1e9
         self._told: dict[str, tuple[int, SourceInfo, SampleLayout | None]] = {}
         self._shapes: dict[str, Shape] = {}
+        self._sent = 0  # how much of what was written to the source is kept
 
     def keep_bytes(self, data: bytes) -> None:
         if BYTES not in self._told:
             self._tell(BYTES, self._source.info, None)
-        self._writer.received(self._told[BYTES][0], data)
+        number, sent = self._told[BYTES][0], self._source.sent
+        for written in sent[self._sent :]:
+            self._writer.sent(number, written)
+        self._sent = len(sent)
+        self._writer.received(number, data)
 
     def keep_samples(self, block: ImuBlock, rate_hz: float | None = None) -> None:
         """Keep samples stamped in seconds of the host's clock, from the recording's beginning on."""
@@ -35,6 +40,7 @@ class SourceTape:
     def come_back(self) -> None:
         """The source was lost and is there again: its settings may be others, and bytes do not join those before."""
         self._shapes.clear()
+        self._sent = 0
         if BYTES in self._told:
             self._tell(BYTES, self._source.info, None, is_cut=True)
 

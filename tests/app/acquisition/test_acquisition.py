@@ -177,6 +177,7 @@ class Scripted:
     """A source that gives what it is told to."""
 
     has_bytes = False
+    sent: Sequence[bytes] = ()
 
     def __init__(self, info: SourceInfo, blocks: Sequence[Sequence[ImuBlock] | Exception]) -> None:
         self.info = info
