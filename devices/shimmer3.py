@@ -157,11 +157,9 @@ class Shimmer3Framer:
         """None: that cannot be told yet."""
         if held[at] != Command.PACKET:
             return False
-        following = at + shape.size
         if shape.has_checksum:
-            return crc_hqx(held[at : following - 2] + shape.padding, CHECKSUM_SEED) == (
-                held[following - 2] | held[following - 1] << 8
-            )
+            return shape.is_whole(held, at) and self._is_meant(shape, held, at, is_end)
+        following = at + shape.size
         ticks = _ticks(held, at)
         is_due = self._last is not None and shape.is_step(ticks - self._last, round(MOST_STEPS_S * TICK_HZ))
         if len(held) < following + HEAD:
@@ -169,6 +167,20 @@ class Shimmer3Framer:
         if held[following] == Command.PACKET and shape.is_step(_ticks(held, following) - ticks, shape.period):
             return True
         return is_due and not shape.is_cut(held, at, ticks)
+
+    def _is_meant(self, shape: "_Shape", held: bytes, at: int, is_end: bool) -> bool | None:
+        """Whether a checksum is right not just by chance, as one in 65 536 beside damage; None: not to be told yet."""
+        if self._last is None:
+            return True
+        inner = shape.find_due(held, at, self._last)
+        if inner < 0:
+            is_due = shape.is_step(_ticks(held, at) - self._last, round(MOST_STEPS_S * TICK_HZ))
+            if is_due or not self._is_lost:
+                return True
+            inner = at + shape.size  # after a long loss any time may be right: the next packet tells
+        if len(held) < inner + shape.size:
+            return True if is_end else None
+        return shape.is_whole(held, inner) == (inner == at + shape.size)
 
     def _take(self, shape: "_Shape", held: bytes, at: int) -> None:
         counter = _ticks(held, at)
@@ -215,6 +227,22 @@ class _Shape:
         ticks %= TURN
         steps = (ticks + self._slack) // self.period
         return steps > 0 and ticks <= most + self._slack and ticks - steps * self.period <= self._slack
+
+    def is_whole(self, held: bytes, at: int) -> bool:
+        """Whether the checksum of what is at `at` is right, in full length."""
+        end = at + self.size
+        told = held[end - 2] | held[end - 1] << 8
+        return held[at] == Command.PACKET and crc_hqx(held[at : end - 2] + self.padding, CHECKSUM_SEED) == told
+
+    def find_due(self, held: bytes, at: int, last: int) -> int:
+        """Where within the packet at `at` one begins that is due after `last`; -1 if none does."""
+        end = min(at + self.size, len(held) - HEAD + 1)
+        start = held.find(Command.PACKET, at + 1, end)
+        while start >= 0:
+            if self.is_step(_ticks(held, start) - last, CUT_STEPS * self.period):
+                return start
+            start = held.find(Command.PACKET, start + 1, end)
+        return -1
 
     def is_cut(self, held: bytes, at: int, ticks: int) -> bool:
         """Whether a later packet begins within the one at `at`, which was taken at `ticks`."""

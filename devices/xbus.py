@@ -167,13 +167,15 @@ class Framer:
             self._pass_over(start - at)
             at = start
             one, end = self._message(held, start, is_end)
-            if one is not None and (inner := held.find(BEGIN, start + 1, end + 2)) >= 0:
+            inner = held.find(BEGIN, start + 1, end + 2) if one is not None else -1
+            while inner >= 0 and one is not None and end <= len(held):
                 # bytes were lost, so that its end was found in the next one, and its checksum is right by chance
                 following, until = self._message(held, inner, is_end)
                 if until > len(held):
-                    break
-                if following is not None:
+                    end = until  # whose rest is on the way
+                elif following is not None:
                     one, end = None, start + 1
+                inner = held.find(BEGIN, inner + 1, end + 2)
             is_doubtful = held.endswith((PREAMBLE, PREAMBLE[:1])) and end <= len(held) < end + 2 and not is_end
             if end > len(held) or is_doubtful:
                 break  # its rest is on the way, or what tells whether the next one begins within it
