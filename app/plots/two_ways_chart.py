@@ -5,10 +5,10 @@ from typing import TypeVar
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QPainter, QPaintEvent, QPen
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.plots.angle_chart import runs
+from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, range_for
 from app.plots.thinning import thin
 from app.theme import Look
@@ -39,6 +39,7 @@ class TwoWaysChart(QWidget):
         self.curves_deg: tuple[FloatArray, ...] = ()
         self.visible_s = (0.0, 1.0)
         self.range_deg = KNEE_DEG
+        self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         look.changed.connect(self._on_look_changed)
 
@@ -63,7 +64,7 @@ class TwoWaysChart(QWidget):
         self.visible_s = first_s, last_s
         is_seen = (self.time_s >= first_s) & (self.time_s <= last_s)
         self.range_deg = range_for(self._fixed, [curve[is_seen] for curve in self.curves_deg[1:]])
-        self.update()
+        self._redraw()
 
     @property
     def cut_share(self) -> float:
@@ -102,14 +103,26 @@ class TwoWaysChart(QWidget):
         return texts
 
     def paintEvent(self, _event: QPaintEvent) -> None:
+        """Paint the picture that was drawn before: who scrolls must not wait for thousands of lines."""
+        ratio = self.devicePixelRatioF()
+        if self._picture is None or self._picture.size() != self.size() * ratio:
+            self._picture = QPixmap(self.size() * ratio)
+            self._picture.setDevicePixelRatio(ratio)
+            self._picture.fill(QColor(self._look.theme.colours.surface))
+            self._paint(QPainter(self._picture))
+        QPainter(self).drawPixmap(0, 0, self._picture)
+
+    def _paint(self, painter: QPainter) -> None:
         theme, area = self._look.theme, self.plot_area()
-        painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         self._paint_axes(painter, area)
         painter.save()
         painter.setClipRect(area)
         casing = theme.pen(theme.colours.surface, CASING_PX)
         casing.setCapStyle(Qt.PenCapStyle.FlatCap)
+        first, last = self.visible_s
+        is_dense = np.count_nonzero((self.time_s >= first) & (self.time_s <= last)) > DENSE_FROM * area.width()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing, not is_dense)
         if self.curves_deg:
             from_forces, from_rates, fused = self.curves_deg
             for pen, curve in (
@@ -118,6 +131,9 @@ class TwoWaysChart(QWidget):
                 (casing, fused),
                 (self.fused_pen(), fused),
             ):
+                if is_dense:
+                    pen.setStyle(Qt.PenStyle.SolidLine)
+                    pen.setWidthF(0)
                 painter.setPen(pen)
                 self._paint_curve(painter, curve, area)
         painter.restore()
@@ -165,7 +181,7 @@ class TwoWaysChart(QWidget):
 
     def _angles(self) -> list[float]:
         lowest, highest = self.range_deg
-        step = next(k * TICK_DEG for k in range(1, 1000) if (highest - lowest) / (k * TICK_DEG) <= MOST_TICKS)
+        step = TICK_DEG * max(1, int(np.ceil((highest - lowest) / TICK_DEG / MOST_TICKS)))
         return [float(k * step) for k in range(int(np.ceil(lowest / step)), int(np.floor(highest / step)) + 1)]
 
     def _times(self) -> list[tuple[float, str]]:
@@ -175,9 +191,13 @@ class TwoWaysChart(QWidget):
         said = [tr("{seconds} s").format(seconds=f"{t:.1f}" if step < 1 else f"{t:.0f}") for t in ticks]
         return [(float(t), words) for t, words in zip(ticks, said, strict=True)]
 
+    def _redraw(self) -> None:
+        self._picture = None
+        self.update()
+
     def _on_look_changed(self) -> None:
         self.updateGeometry()
-        self.update()
+        self._redraw()
 
 
 def _ascending(time_s: FloatArray) -> FloatArray:

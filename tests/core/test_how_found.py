@@ -1,6 +1,8 @@
 """Does what is shown of a joint's finding agree with the analysis, and with the truth where all of it is known?"""
 
+from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,7 +11,7 @@ from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.how_found import how_found
 from core.results import Analysis, Method
-from core.samples import Session
+from core.samples import ImuBlock, Recording, RecordingKind, Session
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 KNEE = Joint.LEFT_KNEE
@@ -39,6 +41,22 @@ def test_a_recording_without_the_joint_shows_nothing(knee_visit: Session, analys
     calibration = analysis.calibrations[0].joints[KNEE]
     assert how_found(knee_visit, calibration, "no such walk") is None
     assert how_found(knee_visit, replace(calibration, joint=Joint.RIGHT_KNEE), "walk") is None
+
+
+@pytest.mark.endurance  # a second of a real hinge
+def test_on_a_real_hinge_the_pictures_agree_with_optics(test_data: Callable[[str], Path]) -> None:
+    with np.load(test_data("hinge_mechanical/1D_02.npz")) as archive:
+        data = {key: np.asarray(archive[key], dtype=float) for key in archive.files}
+    time_s = np.arange(len(data["acc1"])) / float(data["fs"])
+    sites = enumerate((KNEE.proximal, KNEE.distal), start=1)
+    imu = {site: ImuBlock(str(site), time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k, site in sites}
+    session = Session((Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu),))
+    found = how_found(session, analyse(session).calibrations[0].joints[KNEE], "hinge")
+    assert found is not None
+    assert abs(found.costs[0].lowest @ data["j1_ref"]) > np.cos(np.deg2rad(1.0))
+    assert found.off_axis_rate_rad_s < np.deg2rad(3.0)
+    assert found.projected is not None
+    assert found.projected.congruence - found.projected.reversed_congruence > 0.5
 
 
 @pytest.mark.endurance  # seconds for every kind of tissue
