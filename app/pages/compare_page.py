@@ -1,12 +1,22 @@
 """What left the measurement error? Walks, visits or legs on the same axes, and their differences."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.pages.compared_words import (
+    MINUS,
+    change_in_words,
+    part_in_words,
+    plot_row,
+    sentence,
+    side_sentence,
+    side_table_row,
+    table_rows,
+    weight,
+)
 from app.plots.axes import ANKLE_DEG, KNEE_DEG, joint_of
 from app.plots.compared_chart import ComparedChart, ComparedFrame, Line
 from app.plots.cycle_chart import Band, CycleCharts
@@ -15,37 +25,32 @@ from app.reports.comparison import (
     Compared,
     Comparison,
     Kind,
-    Measure,
     Part,
-    Reservation,
     SideRow,
     compare_sides,
     first_and_second,
+    left_out_of_parts,
 )
 from app.reports.reference_bands import reference_curves
-from app.reports.walk_figures import SideCycle, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import SideCycle
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
-from app.widgets.difference_table import Cell, DifferenceTable, DifferenceTableRow
+from app.widgets.difference_table import DifferenceTable
 from app.widgets.icons import Icon, IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
-from app.wording import capitalised, later, side_name, tr
+from app.wording import later, tr
 from core.body import Side
 from core.gait.cycles import POINTS
-from core.gait.spatiotemporal import MeanAndSd
-from core.norms import Verdict
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 CARD, WIDE_CARD = 312, 460
 WIDEST = 16_777_215  # Qt's own
 BRIEF = ("knee_swing_peak_deg", "knee_range_deg", "ankle_stance_dorsiflexion_deg", "stance_percent")
 MOST_SAID = 3  # sentences about differences; the table has all of them
-MINUS = "\N{MINUS SIGN}"
-DASH = "\N{EN DASH}"
 
 ERROR = {
     Kind.CONDITIONS: later("Grey: measurement error within a visit."),
@@ -283,7 +288,7 @@ class ComparePage(QWidget):
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
         chips = Chips(
-            self._look, tr("What is compared"), [(part.letter, _part_in_words(part)) for part in parts] or [("", " ")]
+            self._look, tr("What is compared"), [(part.letter, part_in_words(part)) for part in parts] or [("", " ")]
         )
         chips.choose([part.letter for part in parts])
         chips.turned.connect(self._on_turned)
@@ -347,11 +352,11 @@ class ComparePage(QWidget):
         self.title.setText(tr("Change from {letter}").format(letter=letter))
         is_anew = self.kind is Kind.CONDITIONS and not all(map(found.is_same_attachment, found.others))
         self.error.setText(" ".join([tr(ERROR[self.kind]), tr(RESTRAPPED)] if is_anew else [tr(ERROR[self.kind])]))
-        beyond = sorted((row for row in found.rows if row.exceeds), key=_weight)
-        self._say([_sentence(row) for row in beyond], bool(found.others))
+        beyond = sorted((row for row in found.rows if row.exceeds), key=weight)
+        self._say([sentence(row) for row in beyond], bool(found.others), chosen)
         self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
         heads = ["", *(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
-        self.table.show_rows(heads, _table_rows(found))
+        self.table.show_rows(heads, table_rows(found))
         self.table.setAccessibleDescription(self.conclusion.text())
 
     def _show_sides(self) -> None:
@@ -367,14 +372,14 @@ class ComparePage(QWidget):
         one, other = LETTERS[first], LETTERS[second]
         self.title.setText(f"{self._affected_words}: {one} {MINUS} {other}")
         self.error.setText(tr(ERROR[Kind.SIDES]))
-        self._say([_side_sentence(row, first, second) for row in self.side_rows if row.exceeds], has_any=True)
+        self._say([side_sentence(row, first, second) for row in self.side_rows if row.exceeds], True, parts[:1])
         groups = [
             DifferenceGroup(
                 tr(row.measure.name),
                 (
                     DifferenceRow(
                         None,
-                        _change(row.difference.difference_deg, row.measure) if row.is_told else tr("no value"),
+                        change_in_words(row.difference.difference_deg, row.measure) if row.is_told else tr("no value"),
                         (Dot(one, row.difference.difference_deg, row.exceeds),) if row.is_told else (),
                         row.difference.error_deg,
                     ),
@@ -385,7 +390,7 @@ class ComparePage(QWidget):
         ]
         self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
         heads = ["", one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
-        self.table.show_rows(heads, [_side_table_row(row) for row in self.side_rows])
+        self.table.show_rows(heads, [side_table_row(row) for row in self.side_rows])
         self.table.setAccessibleDescription(self.conclusion.text())
 
     def _groups(self, found: Comparison) -> list[DifferenceGroup]:
@@ -394,16 +399,18 @@ class ComparePage(QWidget):
             if self._is_spacious or row.measure.column in BRIEF:
                 groups.setdefault(tr(row.measure.name), {}).setdefault(row.side, []).append(row)
         return [
-            DifferenceGroup(title, tuple(_plot_row(side, rows) for side, rows in sides.items()))
+            DifferenceGroup(title, tuple(plot_row(side, rows) for side, rows in sides.items()))
             for title, sides in groups.items()
         ]
 
-    def _say(self, beyond: Sequence[str], has_any: bool) -> None:
+    def _say(self, beyond: Sequence[str], has_any: bool, parts: Sequence[Part]) -> None:
         said = list(beyond[:MOST_SAID])
         if len(beyond) > MOST_SAID:
             said.append(tr("The table has all of them."))
         elif not beyond and has_any:
             said.append(tr("No difference lies beyond measurement error."))
+        if by_hand := left_out_of_parts(parts):
+            said.append(by_hand)
         self.conclusion.setText("\n".join(said))
         self._mark.setVisible(bool(beyond))
 
@@ -414,103 +421,3 @@ class ComparePage(QWidget):
         self._grid.setSpacing(px(12))
         self._column.setSpacing(px(8))
         self._fit_card()
-
-
-def _part_in_words(part: Part) -> str:
-    strides = ", ".join(f"{LETTERS[side]} {part.strides(side)}" for side in part.sides)
-    return f"{part.letter} {part.name} · {strides}" if strides else f"{part.letter} {part.name}"
-
-
-def _change(value: float, measure: Measure) -> str:
-    """A difference with its sign; the unit is in the measure's name or the title."""
-    said = f"{value:+.1f}"
-    unit = measure.unit if measure.unit == "°" else ""
-    return ("0.0" if float(said) == 0 else said.replace("-", MINUS)) + unit
-
-
-def _plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
-    told = [row for row in rows if row.is_told]
-    dots = tuple(Dot(row.part.letter, row.difference.difference_deg, row.exceeds) for row in told)
-    if not told:
-        is_height = any(row.reservation is Reservation.OTHER_ZERO for row in rows)
-        return DifferenceRow(side, tr("no zero") if is_height else tr("no value"), (), math.nan)
-    last = told[-1]
-    words = f"{last.part.letter} {_change(last.difference.difference_deg, last.measure)}"
-    return DifferenceRow(side, words, dots, last.difference.error_deg)
-
-
-def _table_rows(found: Comparison) -> list[DifferenceTableRow]:
-    rows: dict[tuple[str, Side], list[Compared]] = {}
-    for row in found.rows:
-        rows.setdefault((row.measure.column, row.side), []).append(row)
-    lines = []
-    for (_, side), compared in rows.items():
-        measure = compared[0].measure
-        values = [_value(part.value(side, measure.column)) for part in found.parts]
-        changes = [_changed(row) for row in compared]
-        lines.append(DifferenceTableRow(tr(measure.name), side, (*values, *changes)))
-    return lines
-
-
-def _side_table_row(row: SideRow) -> DifferenceTableRow:
-    change = Cell(DASH, is_grey=True)
-    if row.is_told:
-        change = Cell(_change(row.difference.difference_deg, row.measure), _doubt(row.difference.verdict), row.exceeds)
-    symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
-    return DifferenceTableRow(
-        tr(row.measure.name), None, (_value(row.first), _value(row.second), change, Cell(symmetry))
-    )
-
-
-def _value(value: MeanAndSd) -> Cell:
-    if not value.n:
-        return Cell(DASH, is_grey=True)
-    spread = f"± {value.sd:.1f}" if is_spread_enough(value.n) else ""
-    mean = f"{value.mean:.1f}"
-    return Cell("0.0" if float(mean) == 0 else mean.replace("-", MINUS), spread, is_grey=not is_mean_enough(value.n))
-
-
-def _changed(row: Compared) -> Cell:
-    if not row.is_told:
-        return Cell(DASH, is_grey=True)
-    words = _change(row.difference.difference_deg, row.measure)
-    return Cell(words, _doubt(row.difference.verdict), row.exceeds)
-
-
-def _doubt(verdict: Verdict) -> str:
-    if verdict is Verdict.TOO_FEW_STRIDES:
-        return tr("few strides")
-    return tr("not judged") if verdict is Verdict.NO_PUBLISHED_FIGURE else ""
-
-
-def _weight(row: Compared) -> tuple[int, float]:
-    """What is said first: of the latest part what lies furthest beyond the error."""
-    return -ord(row.part.letter), -abs(row.difference.difference_deg) / row.difference.error_deg
-
-
-def _sentence(row: Compared) -> str:
-    pattern = tr("{side} {measure} {change} from {first} to {last}: beyond measurement error ({error}).")
-    measure = tr(row.measure.name)
-    return pattern.format(
-        side=capitalised(side_name(row.side)),
-        measure=measure[0].lower() + measure[1:],
-        change=_change(row.difference.difference_deg, row.measure),
-        first=row.against.letter,
-        last=row.part.letter,
-        error=_error(row.difference.error_deg, row.measure),
-    )
-
-
-def _side_sentence(row: SideRow, first: Side, second: Side) -> str:
-    pattern = tr("{measure} {change}, {first} against {second}: beyond measurement error ({error}).")
-    return pattern.format(
-        measure=tr(row.measure.name),
-        change=_change(row.difference.difference_deg, row.measure),
-        first=LETTERS[first],
-        second=LETTERS[second],
-        error=_error(row.difference.error_deg, row.measure),
-    )
-
-
-def _error(value: float, measure: Measure) -> str:
-    return f"{value:.1f}" + ("°" if measure.unit == "°" else "\N{NO-BREAK SPACE}%")

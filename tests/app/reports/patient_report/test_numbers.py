@@ -6,20 +6,25 @@ import math
 import re
 from collections.abc import Iterable
 from dataclasses import replace
-from datetime import datetime
 from pathlib import Path
 from statistics import fmean, stdev
 from typing import Any
 
+import numpy as np
 import pytest
 
+from app.reports.patient_report import comparison_page, consistency_page, curves_page, cycle_chart, panels
+from app.reports.patient_report.cycle_chart import Chart
 from app.reports.patient_report.document import report_data
+from app.reports.patient_report.drawing import Picture
 from app.reports.patient_report.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
-from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.reference_bands import reference_curves, time_distance_classes
 from app.reports.result_folder import write_results
+from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
+DIGITS = 1e-5
 NUMBER = re.compile(rf"[{MINUS}]?\d+(?:\.\d+)?")
 
 
@@ -30,21 +35,38 @@ def results(demonstration: Visit, tmp_path_factory: pytest.TempPathFactory) -> P
     return folder
 
 
-def known(results: Path) -> set[str]:
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def of_used(path: Path, side: Side) -> list[dict[str, str]]:
+    """Give the rows of strides.csv or peaks.csv that count for a side."""
+    return [row for row in table(path) if row["side"] == side and row["used"] == "true"]
+
+
+def column(rows: list[dict[str, str]], name: str) -> list[float]:
+    return [float(row[name]) for row in rows if re.fullmatch(r"-?[\d.]+", row[name])]
+
+
+def known(results: Path, walk: str = "walk_1") -> set[str]:
     """Give every number that the files hold or a band has, as it may be written."""
     values: list[float] = []
-    with (results / "walk_1" / "strides.csv").open(newline="") as file:
-        strides = list(csv.DictReader(file))
-    for side in ("left", "right"):
-        used = [row for row in strides if row["side"] == side and row["used"] == "true"]
-        values.append(len(used))
-        for column in strides[0]:
-            numbers = [float(row[column]) for row in used if re.fullmatch(r"-?[\d.]+", row[column])]
-            if len(numbers) > 1:
-                values += [fmean(numbers), stdev(numbers), 100 * stdev(numbers) / fmean(numbers)]
-    with (results / "walk_1" / "cycles.csv").open(newline="") as file:
-        cycles = list(csv.DictReader(file))
+    for side in Side:
+        strides = of_used(results / walk / "strides.csv", side)
+        peaks = [row for row in of_used(results / "peaks.csv", side) if row["recording"] == walk]
+        values.append(len(strides))
+        for rows in (strides, peaks):
+            for name in rows[0]:
+                numbers = column(rows, name)
+                if len(numbers) > 1:
+                    values += [fmean(numbers), stdev(numbers), 100 * stdev(numbers) / fmean(numbers)]
+    cycles = table(results / walk / "cycles.csv")
     values += [fmean(float(row[name]) for row in cycles) for name in cycles[0] if name.endswith("_sd_deg")]
+    if (results / "differences.csv").exists():
+        differences = table(results / "differences.csv")
+        names = ("mean", "sd", "against_mean", "against_sd", "difference", "error")
+        values += [number for name in names for number in column(differences, name)]
     values += numbers_in(json.loads((results / "summary.json").read_text())["walks"])
     values += [v for value in time_distance_classes()[1].values.values() for v in (value.mean, value.sd)]
     step, stance = (time_distance_classes()[1].values[name] for name in ("step_length", "stance"))
@@ -66,23 +88,81 @@ def tables(data: dict[str, Any]) -> Iterable[dict[str, Any]]:
         yield from (block for block in blocks if block["kind"] == "table")
 
 
-def test_every_number_in_a_table_is_in_a_file(demonstration: Visit, results: Path) -> None:
-    """But for when in the stride a peak comes, of which the files hold the knee's in swing alone."""
-    made_at = datetime.fromisoformat("2026-11-21T22:15:30+01:00")
-    data = report_data(ReportRequest(demonstration, default_walks(demonstration), made_at, "1.2.3"))
-    numbers, files = [], known(results)
-    for table in tables(data):
-        titles = [column["title"] for column in table["columns"]]
-        for row in table["rows"]:
-            if "cells" not in row:
-                continue
+def numbers_of(data: dict[str, Any]) -> list[tuple[str, str]]:
+    """Give every number in a column of numbers, with the name of its row."""
+    numbers = []
+    for one in tables(data):
+        for row in one["rows"]:
             place = 0
-            for k, cell in enumerate(row["cells"]):
-                is_words = k == 0 or not table["columns"][place]["is_number"] or titles[place] == "at %"
+            for k, cell in enumerate(row.get("cells", ())):
+                is_words = k == 0 or not one["columns"][place]["is_number"]
                 place += cell["span"]
                 numbers += [] if is_words else [(row["cells"][0]["said"], n) for n in NUMBER.findall(cell["said"])]
-    assert len(numbers) > 80
+    return numbers
+
+
+def test_every_number_in_a_table_is_in_a_file(request_of_demonstration: ReportRequest, results: Path) -> None:
+    numbers, files = numbers_of(report_data(request_of_demonstration)), known(results)
+    assert len(numbers) > 95
     assert [(where, number) for where, number in numbers if number not in files] == []
+
+
+def test_every_curve_and_mark_is_in_a_file(
+    request_of_demonstration: ReportRequest, results: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Means are of cycles.csv, single strides of angles.csv between the times of strides.csv, marks of both tables."""
+    charts = drawn(request_of_demonstration, monkeypatch)
+    cycles, angles = table(results / "walk_1" / "cycles.csv"), table(results / "walk_1" / "angles.csv")
+    assert len(charts) == 2 + 4
+    for chart in charts:
+        kind = "knee" if "nee" in chart.title else "ankle"
+        for line in chart.lines:
+            strides = of_used(results / "walk_1" / "strides.csv", line.side)
+            peaks = of_used(results / "peaks.csv", line.side)
+            joint = f"{line.side}_{kind}"
+            np.testing.assert_allclose(line.angle_deg, column(cycles, f"{joint}_mean_deg"), atol=DIGITS)
+            assert line.toe_off_percent == pytest.approx(fmean(column(strides, "stance_percent")), abs=DIGITS)
+            for mark, name in zip(line.peaks, panels.PEAK_COLUMNS[kind], strict=False):
+                assert mark.mean_deg == pytest.approx(fmean(column(strides, name)), abs=DIGITS)
+                at = fmean(column(peaks, name.removesuffix("_deg") + "_percent"))
+                assert mark.percent == pytest.approx(at, abs=DIGITS)
+            time_s, angle_deg = column(angles, "time_s"), column(angles, f"{joint}_deg")
+            for stride_deg, row in zip(line.strides_deg, strides, strict=False):
+                at_s = np.linspace(float(row["start_s"]), float(row["end_s"]), 101)
+                np.testing.assert_allclose(stride_deg, np.interp(at_s, time_s, angle_deg), atol=0.2)
+
+
+def drawn(request: ReportRequest, monkeypatch: pytest.MonkeyPatch) -> list[Chart]:
+    """Give every panel of curves, as it was handed to be drawn."""
+    charts: list[Chart] = []
+
+    def draw(chart: Chart) -> Picture:
+        charts.append(chart)
+        return cycle_chart.draw(chart)
+
+    for page in (curves_page, comparison_page, consistency_page):
+        monkeypatch.setattr(page, "draw", draw)
+    report_data(request)
+    return charts
+
+
+@pytest.mark.endurance
+def test_every_number_and_curve_of_a_comparison_is_in_a_file(
+    request_of_alignments: ReportRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    visit = request_of_alignments.visit
+    write_results(visit.session, visit.analysis, tmp_path, has_log=False)
+    numbers, files = numbers_of(report_data(request_of_alignments)), known(tmp_path, "walk_3")
+    assert len(numbers) > 200
+    assert [(where, number) for where, number in numbers if number not in files] == []
+    cycles = table(tmp_path / "compared_cycles.csv")
+    compared = [chart for chart in drawn(request_of_alignments, monkeypatch) if len(chart.lines) == 3]
+    assert len(compared) == 4
+    for chart in compared:
+        kind = "knee" if "nee" in chart.title else "ankle"
+        for line in chart.lines:
+            expected = column(cycles, f"{line.letter}_{line.side}_{kind}_mean_deg")
+            np.testing.assert_allclose(line.angle_deg, expected, atol=DIGITS)
 
 
 def test_the_key_numbers_are_those_of_the_files(request_of_demonstration: ReportRequest, results: Path) -> None:
