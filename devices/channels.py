@@ -1,14 +1,19 @@
 """What carries a sensor's bytes? A port or a socket: opened, read and closed alike."""
 
+import select
 import socket
+import threading
+from collections import deque
 from contextlib import suppress
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from devices.live import SourceLostError, SourceRefusedError
 
 READ_S = 0.015  # several samples come together, and none waits for long
 MOST_BYTES = 65536
 CONNECT_S = 2.0
+
+Address = tuple[str, int]
 
 
 class Channel(Protocol):
@@ -93,7 +98,7 @@ class TcpChannel:
 
 
 class UdpChannel:
-    """Datagrams of one sensor; those of others that come to the same port are left out.
+    """Datagrams of one sensor; others that come to the same port have channels of their own, or are left out.
 
     A datagram that is lost takes whole messages with it. Nobody says when the sensor is gone: it is silent then.
     """
@@ -102,44 +107,112 @@ class UdpChannel:
 
     def __init__(self, address: str, send_port: int, receive_port: int) -> None:
         self._address, self._receive_port = (address, send_port), receive_port
-        self._socket: socket.socket | None = None
+        self._port: _UdpPort | None = None
 
     @property
     def place(self) -> str:
         return f"UDP {self._address[0]}:{self._receive_port}"
 
     def open(self) -> None:
-        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
         try:
-            self._socket.bind(("", self._receive_port))
+            self._port = _UdpPort.shared(self._receive_port, self._address)
         except OSError as problem:
-            self.close()
             raise SourceRefusedError(
-                f"Port {self._receive_port} of this computer is used by another program or sensor",
-                "Close that program, or give each sensor a port of its own",
+                f"Port {self._receive_port} of this computer is used by another program", "Close that program"
             ) from problem
-        self._socket.settimeout(READ_S)
 
     def read(self) -> bytes:
         try:
-            data, (address, _) = _opened(self._socket).recvfrom(MOST_BYTES)
-        except TimeoutError:
-            return b""
-        except ConnectionResetError:  # Windows tells so that what was sent found nobody
-            return b""
+            return self._opened().read(self._address)
         except OSError as problem:
             raise SourceLostError(f"{self.place} was lost") from problem
-        return data if address == self._address[0] else b""
 
     def write(self, data: bytes) -> None:
         try:
-            _opened(self._socket).sendto(data, self._address)
+            self._opened().send(data, self._address)
         except OSError as problem:
             raise SourceLostError(f"{self.place} was lost") from problem
 
     def close(self) -> None:
-        _close(self._socket)
-        self._socket = None
+        port, self._port = self._port, None
+        if port is not None:
+            port.leave(self._address)
+
+    def _opened(self) -> "_UdpPort":
+        if self._port is None:
+            raise SourceLostError("it is closed")
+        return self._port
+
+
+class _UdpPort:
+    """A port of this computer, and the sensors that send to it, told apart by the address that they send from.
+
+    Where several share one address, that of the sensor's own port tells. Whoever reads takes what has come for all.
+    """
+
+    _known: ClassVar[dict[int, "_UdpPort"]] = {}
+    _changing: ClassVar[threading.Lock] = threading.Lock()
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+        self._waiting: dict[Address, deque[bytes]] = {}
+        self._reading = threading.Lock()
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        try:
+            self._socket.bind(("", number))
+        except OSError:
+            self._socket.close()
+            raise
+        self._socket.settimeout(READ_S)
+
+    @classmethod
+    def shared(cls, number: int, sensor: Address) -> "_UdpPort":
+        """Join the port, which is opened by the first."""
+        with cls._changing:
+            port = cls._known.get(number) or cls(number)
+            cls._known[number] = port
+            port._waiting[sensor] = deque()
+            return port
+
+    def leave(self, sensor: Address) -> None:
+        """The last one closes it."""
+        with self._changing:
+            self._waiting.pop(sensor, None)
+            if not self._waiting and self._known.get(self._number) is self:
+                del self._known[self._number]
+                _close(self._socket)
+
+    def read(self, sensor: Address) -> bytes:
+        mine = self._waiting[sensor]
+        if not mine and self._reading.acquire(timeout=READ_S):
+            try:
+                if not mine:  # who read before may have got it
+                    self._receive()
+            finally:
+                self._reading.release()
+        return b"".join(mine.popleft() for _ in range(len(mine)))
+
+    def send(self, data: bytes, sensor: Address) -> None:
+        self._socket.sendto(data, sensor)
+
+    def _receive(self) -> None:
+        """Wait for a datagram, and hand on all that are there."""
+        is_more = True
+        while is_more:
+            try:
+                data, sender = self._socket.recvfrom(MOST_BYTES)
+            except TimeoutError:
+                return
+            except ConnectionResetError:  # Windows tells so that what was sent found nobody
+                return
+            if (waiting := self._waiting.get(self._owner(sender))) is not None:
+                waiting.append(data)
+            is_more = bool(select.select([self._socket], [], [], 0.0)[0])
+
+    def _owner(self, sender: Address) -> Address:
+        """Whose datagram it is; the sender itself where that is nobody's."""
+        near = [sensor for sensor in tuple(self._waiting) if sensor[0] == sender[0]]
+        return near[0] if len(near) == 1 else sender
 
 
 def _opened(one: socket.socket | None) -> socket.socket:
