@@ -14,9 +14,10 @@ from statistics import fmean
 import numpy as np
 
 from app.reports.gait_csv import WINDOWS, parameter, used_cycles
-from app.reports.walk_figures import both_sides
+from app.reports.walk_figures import both_sides, by_hand_in_words
 from app.wording import later
 from core.body import Joint, Side, ankle_of, knee_of
+from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.symmetry import symmetry_index_percent
@@ -145,8 +146,19 @@ class Part:
     def strides(self, side: Side) -> int:
         return sum(int(np.count_nonzero(walk.gait[side].strides.is_used)) for walk in self.walks if side in walk.gait)
 
+    def left_out_by_hand(self, side: Side | None) -> int:
+        """Of one side, or of both."""
+        gaits = [walk.gait[one] for walk in self.walks for one in walk.gait if side in (None, one)]
+        return sum(map(left_out_by_hand, gaits))
+
     def zero(self, joint: Joint) -> ZeroKind:
         return self.calibrated[joint].zero if joint in self.calibrated else ZeroKind.NONE
+
+
+def left_out_of_parts(parts: Sequence[Part]) -> str:
+    """Which strides of what is compared were left out by hand; empty where none was."""
+    told = [(part.letter, by_hand_in_words(walk)) for part in parts for walk in part.walks]
+    return " ".join(f"{letter}: {words}" for letter, words in told if words)
 
 
 @dataclass(frozen=True)

@@ -32,6 +32,7 @@ HEADER = (
     *(f"against_{what}" for what in OF_PART),
     *("side", "parameter", "n", "mean", "sd", "against_n", "against_mean", "against_sd"),
     *JUDGED,
+    *("left_out_by_hand", "against_left_out_by_hand"),
 )
 
 
@@ -167,7 +168,8 @@ def _cells(row: Row) -> list[str]:
         parts += [part.letter, typed_cell(part.name), typed_cell(walks)]
     side = "both" if row.side is None else str(row.side)
     judged = [_cell(row.difference), _cell(row.error), row.verdict]
-    return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged]
+    by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
+    return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged, *by_hand]
 
 
 def _mean(value: MeanAndSd) -> list[str]:

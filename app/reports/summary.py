@@ -13,6 +13,7 @@ from app.reports.reference_bands import reference_curves
 from app.reports.walk_figures import both_sides
 from app.wording import sentence
 from core.body import Joint, Side
+from core.chosen_strides import left_out_by_hand
 from core.findings import Finding
 from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
@@ -123,7 +124,11 @@ def _walk(
 
 def _side(side: Side, gait: SideGait, has_zero: set[Joint]) -> dict[str, Any]:
     used = int(np.count_nonzero(gait.strides.is_used))
-    figures: dict[str, Any] = {"strides_used": used, "strides_left_out": len(gait.strides) - used}
+    figures: dict[str, Any] = {
+        "strides_used": used,
+        "strides_left_out": len(gait.strides) - used,
+        "strides_left_out_by_hand": left_out_by_hand(gait),
+    }
     for name in PARAMETERS:
         found = _mean(gait, name)
         figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.mean), _number(found.sd)

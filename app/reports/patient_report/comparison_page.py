@@ -14,6 +14,7 @@ from app.reports.comparison import (
     Measure,
     Part,
     conditions_of,
+    left_out_of_parts,
 )
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
@@ -85,7 +86,7 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
         legend([*items, *band], columns=2 if len(items) == 2 else 3),
         figures(pictures, columns=2),
         _table(comparison, shown, [side for side in shown.first_and_second if side in comparison.sides]),
-        note(_how_judged(comparison)),
+        note(" ".join(filter(None, [_how_judged(comparison), left_out_of_parts(comparison.parts)]))),
     ]
 
 

@@ -13,7 +13,7 @@ from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.small_charts import StrideValues, stride_strip
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
 
@@ -34,9 +34,10 @@ def consistency_page(facts: Facts) -> list[Block]:
         (panels.cross_swatch(), tr("Stride left out, with its side")),
     ]
     strip = [figures([_strip(facts)])] if facts.has_joint("knee") else []
+    opening = tr("Every stride that was used. Means are printed from 3 strides on, spreads from 10.")
     return [
         heading(tr("Consistency from stride to stride")),
-        note(tr("Every stride that was used. Means are printed from 3 strides on, spreads from 10.")),
+        note(" ".join(filter(None, [opening, by_hand_in_words(facts.walk)]))),
         legend(items),
         figures(pictures, columns=2),
         *strip,

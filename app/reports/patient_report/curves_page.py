@@ -6,7 +6,7 @@ from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.drawing import MM
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
-from app.reports.walk_figures import is_mean_enough
+from app.reports.walk_figures import by_hand_in_words, is_mean_enough
 from app.wording import capitalised, joined, side_name, tr
 from core.body import Side
 
@@ -21,6 +21,7 @@ def curves_page(facts: Facts, condition: str) -> list[Block]:
         ),
         tr("Axes are the same in every report."),
         _band_in_words(facts),
+        by_hand_in_words(facts.walk),
     ]
     blocks = [heading(tr("Joint angles over the stride")), note(" ".join(filter(None, said)))]
     for kind in KINDS:

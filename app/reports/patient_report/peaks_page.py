@@ -16,7 +16,7 @@ from app.reports.patient_report.numbers_in_words import (
     spread,
 )
 from app.reports.patient_report.panels import peak_name
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
 from app.wording import capitalised, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
@@ -81,6 +81,8 @@ def peaks_page(facts: Facts) -> list[Block]:
         said.append(tr("{mark}: the joint's axis is uncertain; read timing, not height.").format(mark=WEAK))
     if any(facts.has_no_zero(kind) for kind in KINDS):
         said.append(tr("Without a zero only ranges and times are given."))
+    if by_hand := by_hand_in_words(facts.walk):
+        said.append(by_hand)
     opening = tr(
         "Degrees, mean ± SD over strides. “at %” is the mean time of the peak in the stride. "
         "Windows in brackets are % of the stride."

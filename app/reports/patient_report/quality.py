@@ -168,6 +168,8 @@ def _left_out(facts: Facts) -> str:
         if out:
             commonest = tr(NAMES["reason"][out.most_common(1)[0][0]])
             words = commonest if len(out) == 1 else tr("mostly {reason}").format(reason=commonest)
+            if len(out) > 1 and out[Reason.BY_HAND]:  # a choice is told also where other reasons are more
+                words = tr("{count} of them by hand").format(count=out[Reason.BY_HAND])
             parts.append(f"{side[0].upper()}\u00a0{out.total()} ({words})")
     return ", ".join(parts) or tr("none")
 

@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.reports.comparison import Part, left_out_of_parts
+from app.reports.gait_csv import gait_tables
 from app.reports.reference_bands import reference_curves, time_distance_classes
+from app.reports.summary import summarise
 from app.reports.walk_figures import (
     MAY_BE_MIRRORED,
     NO_ZERO,
     Figure,
     both_sides,
+    by_hand_in_words,
     few_strides_in_words,
     peak_figures,
     side_cycle,
@@ -19,8 +23,10 @@ from app.reports.walk_figures import (
 )
 from core.analysis import analyse
 from core.body import Joint, Side
+from core.chosen_strides import leave_out
 from core.gait.strides import Reason
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
+from core.samples import Recording
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 Walked = tuple[RecordingAnalysis, dict[Joint, JointCalibration]]
@@ -164,3 +170,31 @@ def test_a_stride_with_a_gap_is_in_no_mean_cycle(walked: Walked) -> None:
     np.testing.assert_allclose(found.mean.mean, kept.mean(axis=0))
     np.testing.assert_allclose(found.strides_deg, kept)
     assert found.toe_off_percent == pytest.approx(float(gait.strides.stance_percent[:5].mean()))
+
+
+def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_table(analysis: Analysis) -> None:
+    """Who reads one file only has to know as well."""
+    (walk,) = (recording for recording in analysis.recordings if recording.gait)
+    strides = walk.gait[Side.RIGHT].strides
+    out = np.flatnonzero(strides.is_used)[:2]
+    middle_s = [float(strides.start_s[k] + strides.end_s[k]) / 2 for k in out]
+    told = Recording(walk.name, walk.kind, walk.folder, {}, left_out_s={Side.RIGHT: tuple(middle_s)})
+    found = leave_out(analysis, [told])
+    (left,) = (recording for recording in found.recordings if recording.gait)
+    assert by_hand_in_words(walk) == ""
+    assert by_hand_in_words(left) == f"2 of {len(strides)} right strides left out by hand."
+    summary = summarise(found)
+    right = summary["walks"]["walk 1"]["right"]
+    before = summarise(analysis)["walks"]["walk 1"]["right"]
+    assert right["strides_left_out_by_hand"] == 2
+    assert right["strides_left_out"] == before["strides_left_out"] + 2
+    assert right["knee_range_deg_mean"] != before["knee_range_deg_mean"]
+    assert [f["text"] for f in summary["findings"] if f["key"] == "strides_left_out_by_hand"] == [
+        f"Walk 1: 2 of {len(strides)} right strides left out by hand."
+    ]
+    header, rows = gait_tables(left)["strides"]
+    reasons = [row[header.index("reason")] for row in rows if row[header.index("used")] == "false"]
+    assert reasons.count("left_out_by_hand") == 2
+    part = Part("A", "walk 1", (left,), {})
+    assert (part.left_out_by_hand(Side.LEFT), part.left_out_by_hand(Side.RIGHT)) == (0, 2)
+    assert left_out_of_parts([part]) == f"A: {by_hand_in_words(left)}"

@@ -8,10 +8,12 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
+from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
+from app.pages.result_page import STRIDES
 from app.reports.comparison import Kind
 from app.review import viewer
 from app.storage.exchange import import_session
@@ -22,6 +24,7 @@ from app.wizard.steps.results_step import ResultsStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side
+from core.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, Session
 from devices.walker import DEMONSTRATION, simulate
@@ -88,6 +91,11 @@ def walk_of(visit: Visit) -> RecordingAnalysis:
     analysis = visit.evaluation.analysis
     assert analysis is not None
     return next(recording for recording in analysis.recordings if recording.gait)
+
+
+def wait_for(qtbot: QtBot, visit: Visit, count: int) -> None:
+    """Until so many of the left side's strides are left out by hand."""
+    qtbot.waitUntil(lambda: left_out_by_hand(walk_of(visit).gait[Side.LEFT]) == count, timeout=10_000)
 
 
 def angle_of(visit: Visit, joint: Joint) -> FloatArray:
@@ -207,6 +215,61 @@ def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.undo()
     np.testing.assert_allclose(np.nanmax(angle_of(visit, Joint.LEFT_KNEE)), np.nanmax(left), atol=0.02)
+
+
+def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a_restart(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: ResultsStep, session_id: UUID
+) -> None:
+    """At once, without another analysis; each by the key, in the history and the audit, and in the kept files."""
+    computed: list[object] = []
+    visit.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
+    page = step.page.results()
+    page.view.choose(STRIDES)
+    strides = page.strides.list
+    rows = [row for row, line in enumerate(strides.strides.lines) if line.is_used][:2]
+    used = int(walk_of(visit).gait[Side.LEFT].strides.is_used.sum())
+    strides.setFocus()
+    for row in rows:  # both before the library has answered
+        strides.choose(row)
+        with qtbot.waitSignal(step.offered):
+            QTest.keyClick(strides, Qt.Key.Key_Space)
+    wait_for(qtbot, visit, 2)
+    assert int(walk_of(visit).gait[Side.LEFT].strides.is_used.sum()) == used - 2
+    assert page.view.choice == STRIDES
+    assert strides.hasFocus() or not page.window().isActiveWindow()
+    assert strides.currentIndex().row() == rows[1]
+    assert not computed
+
+    def told(opened: OpenedLibrary) -> tuple[list[str], str]:
+        corrections = opened.library.corrections.of_session(session_id)
+        fields = [change.field for correction in corrections for change in correction.changes]
+        return fields, opened.library.audit.entries(f"session:{session_id}")[-1].details
+
+    answer = asked(qtbot, desk, told)
+    assert isinstance(answer, tuple)
+    assert answer[0] == ["left_out", "left_out"]
+    assert "left_out" in answer[1]
+
+    again = Visit(desk, [])
+    again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
+    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
+        again.resume(session_id)
+    assert left_out_by_hand(walk_of(again).gait[Side.LEFT]) == 2
+    assert again.evaluation.analysis is not None
+    assert "strides_left_out_by_hand" in {finding.key for finding in again.evaluation.analysis.findings}
+    assert not computed
+    again.finish()
+
+    for left in (1, 0):
+        step.undo()
+        wait_for(qtbot, visit, left)
+    step.undo()  # there is nothing before that
+    assert int(walk_of(visit).gait[Side.LEFT].strides.is_used.sum()) == used
+    strides.choose(rows[0])
+    page.strides.turn.click()
+    wait_for(qtbot, visit, 1)
+    page.strides.all.click()
+    wait_for(qtbot, visit, 0)
 
 
 def test_no_word_of_the_corrections_is_cut(step: ResultsStep) -> None:

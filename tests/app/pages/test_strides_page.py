@@ -1,0 +1,178 @@
+"""Every stride stands in a line, is left out and taken in again by key and mouse, and it is said what was left out."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from PySide6.QtCore import QPoint, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.pages.result_page import MEAN, STRIDES, ResultPage
+from app.theme import Look, load_fonts
+from app.widgets.stride_list import STATE, STRIDE, StrideLine
+from core.analysis import analyse
+from core.body import Joint, Side
+from core.chosen_strides import leave_out
+from core.results import Analysis
+from core.samples import Session
+from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from tests.app.room import words_cut
+
+Turned = list[tuple[str, StrideLine, bool]]
+
+
+@pytest.fixture(scope="module")
+def session() -> Session:
+    return simulate(replace(DEMONSTRATION, recordings=(Standing(), Walk(strides=8)))).session
+
+
+@pytest.fixture(scope="module")
+def analysis(session: Session) -> Analysis:
+    return analyse(session)
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[ResultPage]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    page.resize(1280, 700)
+    page.set_room(1280.0, 672.0)
+    page.show_analysis(analysis, can_choose=True)
+    page.view.choose(STRIDES)
+    with qtbot.waitActive(page):
+        page.show()
+        page.activateWindow()
+    yield page
+    qapp.setStyleSheet("")
+
+
+@pytest.fixture
+def turned(page: ResultPage) -> Turned:
+    told: Turned = []
+    page.strides.turned.connect(lambda walk, line, is_left_out: told.append((walk, line, is_left_out)))
+    return told
+
+
+def without(session: Session, analysis: Analysis, line: StrideLine) -> Analysis:
+    """The analysis, with one stride left out."""
+    chosen = {line.side: ((line.start_s + line.end_s) / 2,)}
+    return leave_out(analysis, [replace(one, left_out_s=chosen) for one in session.recordings if one.name == "walk 1"])
+
+
+def first_used(page: ResultPage) -> int:
+    return next(row for row, line in enumerate(page.strides.list.strides.lines) if line.is_used)
+
+
+def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
+    page: ResultPage, turned: Turned, session: Session, analysis: Analysis
+) -> None:
+    """Space, Enter, the mark and the button do the same; a click on the figures only looks at the stride."""
+    strides = page.strides.list
+    strides.setFocus()
+    row = first_used(page)
+    strides.choose(row)
+    line = strides.line
+    assert line is not None
+    for key in (Qt.Key.Key_Space, Qt.Key.Key_Return):
+        QTest.keyClick(strides, key)
+    page.strides.turn.click()
+    for column, count in ((STRIDE, 4), (STATE, 4)):
+        at = strides.visualRect(strides.strides.index(row, column)).center()
+        QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=at)
+        assert len(turned) == count
+    assert turned == [("walk 1", line, True)] * 4
+    page.show_analysis(without(session, analysis, line), can_choose=True)
+    assert page.view.choice == STRIDES
+    assert strides.hasFocus()
+    assert strides.currentIndex().row() == row
+    assert strides.line is not None
+    assert strides.line.is_by_hand
+    assert page.strides.turn.text() == "Take this stride in again"
+    QTest.keyClick(strides, Qt.Key.Key_Space)
+    assert turned[-1] == ("walk 1", strides.line, False)
+
+
+@pytest.mark.endurance
+def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned: Turned) -> None:
+    """What was found to be wrong with a stride is not put right by a mark."""
+    lines = page.strides.list.strides.lines
+    out = next(row for row, line in enumerate(lines) if not line.is_used)
+    page.strides.list.choose(out)
+    QTest.keyClick(page.strides.list, Qt.Key.Key_Space)
+    assert turned == []
+    assert not page.strides.turn.isEnabled()
+
+
+@pytest.mark.endurance
+def test_where_nothing_is_kept_nothing_can_be_left_out(page: ResultPage, turned: Turned, analysis: Analysis) -> None:
+    """A session folder is looked at; what is chosen belongs into the library."""
+    page.show_analysis(analysis)
+    page.strides.list.choose(first_used(page))
+    QTest.keyClick(page.strides.list, Qt.Key.Key_Space)
+    assert turned == []
+    assert "import this session first" in page.strides.note.text()
+
+
+@pytest.mark.endurance
+def test_the_stride_in_force_is_drawn_and_found_by_a_click_into_the_chart(page: ResultPage, analysis: Analysis) -> None:
+    """Bold over all others while strides are chosen, and gone with that."""
+    page.strides.list.choose(first_used(page) + 1)
+    line = page.strides.list.line
+    assert line is not None
+    knee = page.cycles.charts.knee.chart
+    (walk,) = (recording for recording in analysis.recordings if recording.gait)
+    curve = np.rad2deg(walk.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][line.number - 1])
+    assert knee.stride is not None
+    np.testing.assert_array_equal(knee.stride[1], curve)
+    page.strides.list.choose(len(page.strides.list.strides.lines) - 2)
+    at = knee.at(70, float(curve[70])).toPoint()
+    QTest.mouseClick(knee, Qt.MouseButton.LeftButton, pos=QPoint(at.x(), at.y()))
+    found = page.strides.list.line
+    assert found is not None
+    nearest = np.rad2deg(walk.gait[found.side].cycles[Joint(f"{found.side}_knee")][found.number - 1])
+    assert abs(nearest[70] - curve[70]) < 1.0
+    page.view.choose(MEAN)
+    assert knee.stride is None
+
+
+def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
+    page: ResultPage, session: Session, analysis: Analysis
+) -> None:
+    """Under the charts, under both tables, under the list and in the comparison."""
+    page.strides.list.choose(first_used(page))
+    line = page.strides.list.line
+    assert line is not None
+    found = without(session, analysis, line)
+    (walk,) = (recording for recording in found.recordings if recording.gait)
+    said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides left out by hand."
+    page.show_analysis(found, session.recordings, can_choose=True)
+    assert page.strides.note.text() == said
+    assert not page.cycles.by_hand.isVisible()
+    page.view.choose(MEAN)
+    assert page.cycles.by_hand.isVisible()
+    assert page.cycles.by_hand.text() == said
+    assert said in page.cycles.time_distance.note.text()
+    assert "left out by hand" in page.cycles.peaks.note.text()
+    assert said in page.compare.conclusion.text()
+    page.show_analysis(analysis, session.recordings, can_choose=True)
+    assert page.cycles.by_hand.text() == ""
+    assert not page.cycles.by_hand.isVisible()
+
+
+@pytest.mark.endurance
+def test_no_word_is_cut_in_any_room(page: ResultPage) -> None:
+    """Where charts have no room beside the list, the list stands alone."""
+    for width, height in ((736.0, 432.0), (1064.0, 592.0), (1680.0, 900.0)):
+        page.set_room(width, height)
+        QApplication.processEvents()
+        page.resize(round(width), max(round(height), page.minimumSizeHint().height()))
+        QApplication.processEvents()
+        assert page.minimumSizeHint().width() <= width
+        assert words_cut(page) == []
+        assert page.cycles.isVisible() == (width > 940)
