@@ -83,12 +83,13 @@ class HowFoundDesk(QObject):
         self._background.start(_finding(self._session, calibration, self._recording.name))
 
     def _noticed(self) -> "list[Finding]":
-        """What the analysis noticed about the joint: everywhere, or in this recording."""
+        """What the analysis noticed about the joint and its two sensors: everywhere, or in this recording."""
         assert self._analysis is not None
         assert self._recording is not None
         others = {recording.name for recording in self._analysis.recordings} - {self._recording.name}
         placed = [(finding, set(finding.where.split(", "))) for finding in self._analysis.findings]
-        return [finding for finding, where in placed if str(self._joint) in where and not where & others]
+        parts = {str(part) for part in (self._joint, self._joint.proximal, self._joint.distal)}
+        return [finding for finding, where in placed if parts & where and not where & others]
 
     def _on_joint_chosen(self, joint: str) -> None:
         self._joint = Joint(joint)

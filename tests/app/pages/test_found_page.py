@@ -210,12 +210,20 @@ def test_the_desk_answers_beside_the_screen_and_saves(
     background, listener = Background(page), Listener()
     desk = HowFoundDesk(page, background, page)
     desk.writing.connect(listener.on_writing)
-    desk.show(session, analysis, analysis.recordings[-1])
+    findings = [
+        Finding("strap_slipped", Severity.WARNING, f"{where}, {site}", {"from_s": 2.0, "turn_deg": turn})
+        for where, site, turn in (("walk 1", Site.RIGHT_SHANK, 9), ("free motion", Site.RIGHT_SHANK, 8))
+    ]
+    walk = analysis.recordings[-1]
+    desk.show(session, replace(analysis, findings=(*analysis.findings, *findings)), walk)
     assert not page.save.isEnabled()
     assert page.waiting.isVisible()
     qtbot.waitUntil(lambda: page.save.isEnabled(), timeout=20_000)
     assert [button.isHidden() for button in page.joints.segments] == [True, False, True, True]
     assert page.cards.isVisible()
+    noticed = " ".join(text.text() for text in page.noticed.findChildren(Text))
+    assert "by about 9°" in noticed
+    assert "by about 8°" not in noticed  # in another recording
     page.save.click()
     dialog = page.findChild(QFileDialog)
     assert dialog is not None
