@@ -108,6 +108,11 @@ class Takes(QObject):
         return self.ongoing is not None
 
     @property
+    def has_begun(self) -> bool:
+        """Whether what comes now is being written; just asked for, it is not yet."""
+        return self._recorder is not None
+
+    @property
     def is_stopping(self) -> bool:
         """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds."""
         return self._is_stopping

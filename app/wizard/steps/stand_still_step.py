@@ -111,7 +111,8 @@ class StandStillStep(Step):
             standing = self._work.state.standing
             self._moved = standing.moved or self._moved
             self._sound(standing.wanted_s - standing.still_s)
-            if self._phase is StandPhase.COUNTING and standing.is_done and self._is_recording:
+            is_counting = self._phase is StandPhase.COUNTING
+            if is_counting and standing.is_done and self._is_recording and self._visit.takes.has_begun:
                 self._finish()
             self._show()
 
