@@ -58,7 +58,7 @@ DRIVERS = (
         XIMU3,
         "x-io x-IMU3",
         "The maker's package (ximu3 1.9) and ours decode the same bytes to the same floats, and it speaks with our "
-        "emulator. No hardware was at hand.",
+        "emulator. Six emulated ones led to right results. No hardware was at hand.",
         lambda: Decoder(Ximu3()),
         Ximu3,
         (115200,),
@@ -67,8 +67,8 @@ DRIVERS = (
     Driver(
         WITMOTION,
         "WitMotion, standard protocol",
-        "By the published protocol, an emulator on a pseudo-terminal and damaged streams. No recorded stream and no "
-        "hardware was at hand.",
+        "By the published protocol and damaged streams; six emulated ones on pseudo-terminals led to right results. No "
+        "recorded stream and no hardware was at hand.",
         lambda: Decoder(WitMotion()),
         WitMotion,
         (115200, 9600, 230400),
@@ -76,7 +76,8 @@ DRIVERS = (
     Driver(
         CSV,
         "lines of numbers over a serial port",
-        "By an emulator on a pseudo-terminal and damaged streams. What the columns mean has to be told.",
+        "By damaged streams; six emulated ones on pseudo-terminals led to right results. What the columns mean has to "
+        "be told.",
         lambda: Decoder(CsvSerial()),
     ),
     Driver(
@@ -90,7 +91,7 @@ DRIVERS = (
         XSENS_MTI,
         "Xsens MTi",
         "Five recorded streams are read to the last digit as another program read them, and it speaks with our "
-        "emulator on a pseudo-terminal. No hardware was at hand.",
+        "emulator; six on pseudo-terminals led to right results. No hardware was at hand.",
         lambda: Decoder(XsensMti()),
         XsensMti,
         (115200, 921600),
@@ -100,8 +101,8 @@ DRIVERS = (
     Driver(
         SHIMMER3,
         "Shimmer3, LogAndStream",
-        "By the published protocol and the checksums that the firmware tests itself with, an emulator on a "
-        "pseudo-terminal and damaged streams. No recorded stream and no hardware was at hand.",
+        "By the published protocol, the checksums that the firmware tests itself with and damaged streams; six "
+        "emulated ones on pseudo-terminals led to right results. No recorded stream and no hardware was at hand.",
         lambda: Decoder(Shimmer3()),
         Shimmer3,
         (115200,),

@@ -71,7 +71,7 @@ class LiveSource(Protocol):
 
         A source with bytes calls `keep` with each piece it has read, before decoding it. Stamps are seconds of
         `host_time_ns`, made from the sensor's own clock and never from when something arrived. Whatever is raised
-        means that the source was lost: it is closed, and opened again every second until it is back.
+        means that the source was lost: it is closed, and opened twice a second until it is back.
         """
 
     def close(self) -> None:

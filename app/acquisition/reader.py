@@ -13,7 +13,7 @@ from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
 from devices.live import LiveSource, SensorTold, SourceLostError, SourceRefusedError
 
-REOPEN_S = 1.0
+REOPEN_S = 0.5
 RECALLED_S = 2.0  # a journal may be opened so long before it is handed over
 CLOSE_S = 5.0  # some ports answer no sooner
 LAST_READ_S = 0.5  # how long a stop waits for what already lies at the source

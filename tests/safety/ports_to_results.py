@@ -332,15 +332,17 @@ def compare_samples(outcome: Outcome, block: ImuBlock, sent: FloatArray, steps: 
     at = begin = int(first[0])
     rows = np.full(len(received), -1)
     for number, row in enumerate(received):
-        ahead = (np.abs(sent[at : at + LOOKED_AT] - row) <= within).all(axis=1)
-        if ahead.any():
-            rows[number] = at + int(np.argmax(ahead))
-            at = int(rows[number]) + 1
+        for ahead in (LOOKED_AT, len(sent)):
+            same = (np.abs(sent[at : at + ahead] - row) <= within).all(axis=1)
+            if same.any():
+                rows[number] = at + int(np.argmax(same))
+                at = int(rows[number]) + 1
+                break
         else:
             outcome.wrong += 1
     outcome.sent += at - begin
     outcome.received += len(received)
-    outcome.lost += at - begin - len(received)
+    outcome.lost += at - begin - int(np.count_nonzero(rows >= 0))
     return rows
 
 
