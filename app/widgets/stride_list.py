@@ -24,6 +24,7 @@ from app.wording import capitalised, later, side_name, tr
 from core.body import Side
 
 ROW, HEAD = 44, 36
+LEAST_ROWS = 2.5  # in sight: half a row says that there are more
 PADDING, MARK = 8, 20
 STRIDE, BEGINS, TAKES, KNEE, ANKLE, STATE = range(6)
 HEADS = (later("Stride"), later("at (s)"), later("takes (s)"), later("knee range (°)"), later("ankle range (°)"), "")
@@ -189,7 +190,7 @@ class StrideList(QTableView):
 
     def minimumSizeHint(self) -> QSize:
         px = self._look.theme.px
-        return QSize(sum(self._widths()) + self.verticalScrollBar().sizeHint().width(), px(HEAD + 3 * ROW))
+        return QSize(sum(self._widths()) + self.verticalScrollBar().sizeHint().width(), px(HEAD + LEAST_ROWS * ROW))
 
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
