@@ -259,7 +259,7 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
     rows: list[IntArray] = []
     times: list[FloatArray] = []
     residuals: list[float] = []
-    doubled = late = lost = 0
+    doubled = late = lost = timeless = 0
     for number in range(int(run.max(initial=-1)) + 1):
         arrived = np.flatnonzero(run == number)
         order = arrived[np.argsort(device_s[arrived], kind="stable")]
@@ -272,8 +272,13 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
         usual_s = step_s or _usual_step_s(device_s[kept])
         lost += _missing(device_s[kept], usual_s)
         stamps_s = fit.host_s(device_s[kept])
+        if len(times) == 1 and len(times[0]) < AGREEING and stamps_s[0] <= times[0][-1]:
+            # what was heard first was wild, and held up: it must not take the instants of what follows
+            timeless += len(rows.pop())
+            times.pop()
         if times and len(stamps_s):  # the sensor began anew
             is_later: BoolArray = stamps_s > times[-1][-1]
+            timeless += int(np.count_nonzero(~is_later))  # the run before had been held up: theirs are taken already
             kept, stamps_s = kept[is_later], stamps_s[is_later]
             lost += _missing(np.concatenate([times[-1][-1:], stamps_s[:1]]), usual_s)
         rows.append(kept)
@@ -281,7 +286,7 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
         residuals.append(fit.residual_s)
     chosen = np.concatenate([*rows, np.empty(0, np.int64)]).astype(np.int64)
     time_s = np.concatenate([*times, np.empty(0)])
-    damaged = int(np.count_nonzero(run < 0))
+    damaged = int(np.count_nonzero(run < 0)) + timeless
     counts = SensorCounts(received=len(chosen), lost=lost, damaged=damaged, doubled=doubled, late=late)
     return Ordered(chosen, time_s, device_s[chosen], counts, max(residuals, default=0.0))
 

@@ -101,6 +101,29 @@ def test_a_wild_stamp_is_damage_and_a_restart_a_new_run() -> None:
     assert ordered.counts.lost == 2 + 300 + AGREEING - 1
 
 
+def test_samples_whose_instants_an_earlier_run_took_are_counted() -> None:
+    """The run before was held up by more than a second: nothing is left out that no count tells of."""
+    device_s = 10.0 + np.arange(400) / RATE_HZ
+    host_s = device_s + 100.0
+    host_s[:150] = host_s[150]
+    device_s[:20] += 500.0
+    ordered = put_in_order(device_s, host_s, 1 / RATE_HZ)
+    counts = ordered.counts
+    assert (np.diff(ordered.time_s) > 0).all()
+    assert counts.received + counts.damaged == 400
+    assert counts.damaged > 100
+
+
+def test_a_wild_sample_at_the_beginning_takes_no_others_along() -> None:
+    device_s = 10.0 + np.arange(400) / RATE_HZ
+    host_s = device_s + 100.0
+    host_s[:150] = host_s[150]
+    device_s[0] = 9e9
+    ordered = put_in_order(device_s, host_s, 1 / RATE_HZ)
+    assert ordered.rows.tolist() == list(range(AGREEING, 400))
+    assert (ordered.counts.damaged, ordered.counts.lost) == (AGREEING, 0)
+
+
 def test_runs_do_not_depend_on_how_the_bytes_were_cut() -> None:
     device_s = np.concatenate([np.arange(100) / 50, np.arange(100) / 50])
     device_s[[7, 150]] = 1e6
