@@ -46,7 +46,7 @@ def differing(session: Session, analysis: Analysis, path: Path) -> list[str]:
     """Give the entities of the walk that do not read back as they were recorded and computed, to the last bit."""
     walk, angles = session.recordings[-1], analysis.recordings[-1]
     expected = {f"/raw/{site}/angular_rate": (block.time_s, block.gyr_rad_s) for site, block in walk.imu.items()}
-    expected |= {f"/raw/{site}/acceleration": (block.time_s, block.acc_m_s2) for site, block in walk.imu.items()}
+    expected |= {f"/raw/{site}/specific_force": (block.time_s, block.acc_m_s2) for site, block in walk.imu.items()}
     for joint, angle in angles.joints.items():
         for name, angle_rad in (("result", angle.angle_rad), ("published", angle.published_rad)):
             expected[f"/angles/{joint}/{name}"] = angles.time_s, np.rad2deg(angle_rad)[:, None]
@@ -88,11 +88,10 @@ def main() -> None:
             walls.append(time.perf_counter() - wall)
             cpus.append(time.process_time() - cpu)
         wrong = differing(session, analysis, path)
-        print(
-            f"{wanted.minutes:g} min: {median(walls):.2f} s (first {walls[0]:.2f} s; processor {median(cpus):.2f} s), "
-            f"{path.stat().st_size / 1e6:.1f} MB; verify {'passes' if verified(path) else 'FAILS'}; "
-            f"{len(wrong)} entities differ {wrong}"
-        )
+        said = f"{median(walls):.2f} s (first {walls[0]:.2f} s; processor {median(cpus):.2f} s)"
+        size = f"{path.stat().st_size / 1e6:.1f} MB"
+        print(f"{wanted.minutes:g} min: {said}, {size}; {len(wrong)} entities differ {wrong}", flush=True)
+        print(f"rerun rrd verify {'passes' if verified(path) else 'FAILS'}")
 
 
 if __name__ == "__main__":
