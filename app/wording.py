@@ -155,6 +155,7 @@ SENTENCES = {
         "strides whose landing is in doubt: {count}. The foot hardly rolled or went another way than its toes point, "
         "so averages leave them out."
     ),
+    "foot_against_shank": "the foot has no ankle joint. Its angle is that of the foot against the shank.",
     "prosthetic_toe_off": (
         "toe-off of a prosthetic foot is found about 30 ms late. Its stance reads 2 to 3 % of a stride too long."
     ),

@@ -5,9 +5,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
-from app.storage.stored import RecordingState, StoredPatient, StoredSession
+from app.storage.stored import Limits, RecordingState, StoredPatient, StoredSession
 from app.wizard.takes import Take, counted
 from app.workers.background import Report
+from core.body import Joint
+from core.findings import Finding, Severity
 from core.samples import RecordingKind, Session
 
 if TYPE_CHECKING:
@@ -52,7 +54,14 @@ def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "A
 
 def evaluated(session: StoredSession, takes: Sequence[Take]) -> Session:
     """What is evaluated of a session of the library, as `Visit.evaluate` asks it when nothing is recorded."""
-    return replace(session.told, recordings=counted(takes))
+    return with_limits(replace(session.told, recordings=counted(takes)), session.limits)
+
+
+def with_limits(told: Session, limits: Limits) -> Session:
+    """With what no sensor shows of the patient's body, to be said wherever the results are."""
+    rigid = [joint for joint in Joint if not joint.is_knee and joint.side in limits.without_ankle]
+    said = tuple(Finding("foot_against_shank", Severity.INFO, str(joint)) for joint in rigid)
+    return replace(told, findings=(*told.findings, *said))
 
 
 def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:

@@ -17,7 +17,7 @@ from app.logs import version_of
 from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
-from app.wizard.resuming import Resumed, analysis_of, evaluated, read_session, read_takes, rests_of
+from app.wizard.resuming import Resumed, analysis_of, evaluated, read_session, read_takes, rests_of, with_limits
 from app.wizard.reviewing import Reviewing
 from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
@@ -277,7 +277,7 @@ class Visit(QObject):
         recordings = self.takes.recordings() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.told.sensors if self.session is not None else {}
-            told = replace(self.told, sensors=sensors, is_simulated=self.is_simulated)
+            told = with_limits(replace(self.told, sensors=sensors, is_simulated=self.is_simulated), self.limits)
             self._is_partial = with_walk is not None
             self.evaluation.ask(replace(told, recordings=recordings))
 
@@ -344,7 +344,8 @@ class Visit(QObject):
         else:
             self._wanted = None
             evaluated = self.evaluation.session
-            if evaluated is not None and _by_hand(evaluated) != _by_hand(session.told):
+            told = with_limits(session.told, session.limits)
+            if evaluated is not None and (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
                 self.evaluate()
         self.changed.emit()
 

@@ -1,0 +1,43 @@
+"""What no sensor shows of the patient's body is said wherever results are, also when a session is opened again."""
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.storage.stored import Limits
+from app.wizard.visit import Visit
+from app.wording import sentence
+from app.workers.library_desk import LibraryDesk
+from core.body import Side, Site
+from core.samples import RecordingKind
+from tests.app.wizard.test_visit import begin, record
+
+SAID = "Right ankle: the foot has no ankle joint. Its angle is that of the foot against the shank."
+
+
+def said(visit: Visit) -> list[str]:
+    assert visit.evaluation.analysis is not None
+    return [sentence(finding) for finding in visit.evaluation.analysis.findings]
+
+
+@pytest.mark.parametrize("is_told_late", [False, pytest.param(True, marks=pytest.mark.endurance)])
+def test_a_foot_without_ankle_is_called_foot_against_shank(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site], is_told_late: bool
+) -> None:
+    begin(qtbot, visit, worn)
+    limits = Limits(without_ankle=frozenset({Side.RIGHT}))
+    if not is_told_late:
+        visit.set_limits(limits)
+    with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+        record(qtbot, visit, RecordingKind.WALKING, 4.0)
+    if is_told_late:
+        assert SAID not in said(visit)
+        with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
+            visit.set_limits(limits)
+    assert SAID in said(visit)
+    assert visit.session is not None
+    again = Visit(desk, [])
+    with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=20_000):
+        again.resume(visit.session.id)
+    assert SAID in said(again)
+    again.close()
+    again.finish()
