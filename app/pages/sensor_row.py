@@ -33,7 +33,7 @@ from core.body import Site
 if TYPE_CHECKING:
     from app.pages.sensor_list import SensorList
 
-ROW = 58
+ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20
 CHEVRON = 14
 LOST = 0.01  # of the samples; above it the radio wants a look
@@ -105,7 +105,7 @@ class SensorRowView(QAbstractButton):
         self.worn.clicked.connect(self.ask)
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setAccessibleDescription(tr("1 to 6 say where it is worn, Space opens a list of the places"))
 
@@ -156,7 +156,7 @@ class SensorRowView(QAbstractButton):
         menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
 
     def arrange(self) -> None:
-        places = self._list.columns(self.width())
+        places = self._places()
         inset = self._look.theme.px(8)
         self.trace.setGeometry(places["trace"].adjusted(0, inset, 0, -inset))
         height = self._look.theme.px(44)
@@ -168,7 +168,12 @@ class SensorRowView(QAbstractButton):
         return QSize(0, self._look.theme.px(ROW))
 
     def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
+        return QSize(0, self._look.theme.px(ROW_AT_LEAST))
+
+    def _places(self) -> dict[str, QRect]:
+        """Where the columns lie, as high as the row."""
+        columns = self._list.columns(self.width()).items()
+        return {key: QRect(box.x(), 0, box.width(), self.height()) for key, box in columns}
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -221,7 +226,7 @@ class SensorRowView(QAbstractButton):
         painter.setBrush(ground)
         radius = CONTROL_RADIUS * theme.scale
         painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
-        places = self._list.columns(self.width())
+        places = self._places()
         grip = px(20)
         middle = QRectF((places["name"].x() - grip) / 2, (self.height() - grip) / 2, grip, grip)
         paint_icon(painter, Icon.GRIP, middle, second)
@@ -234,18 +239,21 @@ class SensorRowView(QAbstractButton):
     def painted_texts(self) -> list[PaintedText]:
         theme, sensor = self._look.theme, self.sensor
         px = theme.px
-        places = self._list.columns(self.width())
+        places = self._places()
         name, is_caution = places["name"], sensor.wants_look
+        top = (self.height() - px(40)) / 2
         tone, second = ("caution_ink", "caution_ink") if is_caution else ("ink", "ink2")
         small = theme.font(12, MEDIUM if is_caution else REGULAR)
         texts = [
             PaintedText(
                 sensor.name,
-                QRectF(name.x(), px(9), name.width(), px(22)),
+                QRectF(name.x(), top, name.width(), px(22)),
                 theme.font(16, SEMIBOLD, is_code=True),
                 tone,
             ),
-            PaintedText(self._list.second_line(sensor), QRectF(name.x(), px(31), name.width(), px(18)), small, second),
+            PaintedText(
+                self._list.second_line(sensor), QRectF(name.x(), top + px(22), name.width(), px(18)), small, second
+            ),
         ]
         if places["rate"].width():
             font, battery = theme.font(14, MEDIUM), QRectF(places["battery"])
