@@ -95,7 +95,7 @@ class MainWindow(QWidget):
 
     @property
     def home(self) -> "Home | None":
-        """Home; None before a library was opened."""
+        """Home; None before it is made: a library need not be open."""
         return self._home
 
     @property

@@ -13,6 +13,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QLineEdit, QWidget
 from pytestqt.qtbot import QtBot
 
+from app import main_window
 from app.home import session_screen
 from app.home.entry import KEYS, SHORTEST
 from app.main_window import MainWindow
@@ -103,6 +104,24 @@ def words_in_sight(window: MainWindow) -> str:
     words = [one.text() for one in shown if isinstance(one, QLabel | QAbstractButton | QLineEdit)]
     names = [f"{one.accessibleName()} {one.accessibleDescription()}" for one in shown]
     return " ".join([*words, *names])
+
+
+def test_home_and_wizard_are_made_while_somebody_types_the_passphrase(
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(main_window, "MAKE_EVERY_MS", 1)
+    window = open_window(folder)
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.operator.count() == 1, timeout=WAIT_MS)
+    QTest.keyClicks(page.passphrase.line_edit, PASSPHRASE[:5])
+    typing, shown = QApplication.focusWidget(), window.screens.currentWidget()
+    assert typing is page.passphrase.line_edit
+    window.preparing.done.emit(None)
+    qtbot.waitUntil(lambda: window._wizard is not None, timeout=WAIT_MS)
+    assert window.home is not None
+    assert window.screens.currentWidget() is shown
+    assert QApplication.focusWidget() is typing
 
 
 def test_without_a_library_the_two_ways_on_are_offered(window: MainWindow) -> None:
