@@ -1,5 +1,6 @@
 """A session that a crash cut short is taken up where it was left, and nothing cut short passes for whole."""
 
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -88,3 +89,19 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
     left.takes.every = tuple(recovered if take.id == moved.id else take for take in left.takes.every)
     assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
+
+
+def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_order(
+    qtbot: QtBot, left: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    record(qtbot, left, RecordingKind.STANDING, 0.5)
+    true_ns = time.time_ns
+    monkeypatch.setattr(time, "time_ns", lambda: true_ns() - 86_400_000_000_000)  # the ids sort by it
+    record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
+    record(qtbot, left, RecordingKind.WALKING, 0.5)
+    assert left.session is not None
+    again = Visit(left.desk, [])
+    with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
+        again.resume(left.session.id)
+    assert [take.told.name for take in again.takes.every] == ["standing", "free motion", "walk 1"]
+    again.finish()
