@@ -85,7 +85,7 @@ class Played:
 
     def close(self) -> None:
         self._process.kill()
-        self._process.wait()
+        self._process.communicate()  # which closes the pipes
 
     def _tell(self, line: str) -> None:
         assert self._process.stdin is not None
@@ -230,6 +230,8 @@ class Session:
         self.wizard.close()
         self.wizard.finish()
         self.desk.finish()
+        self.wizard.deleteLater()
+        self._application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
 
 
 def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: Path | None = None) -> Outcome:
