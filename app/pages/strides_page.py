@@ -57,10 +57,11 @@ class StridesPage(Card):
         """Show the strides of a walk; `can_choose`: there is a library that keeps what is chosen."""
         self._recording, self._can_choose = recording, can_choose
         self.list.show_lines(stride_lines(recording))
-        told = by_hand_in_words(recording)
+        told = [by_hand_in_words(recording)]
         if not can_choose:
-            told = tr("Strides are left out in the library: import this session first.")
-        self.note.setText(told or tr("What is left out stays in the files, with the reason beside it."))
+            told.append(tr("Strides are left out in the library: import this session first."))
+        said = " ".join(filter(None, told))
+        self.note.setText(said or tr("What is left out stays in the files, with the reason beside it."))
         self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.strides.lines))
 
     def choose_nearest(self, is_knee: bool, percent: float, angle_deg: float) -> None:
