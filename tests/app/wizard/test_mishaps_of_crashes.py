@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 from app.settings import Settings
 from app.storage.stored import RecordingState
 from app.theme import Look, load_fonts
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.stand_still_step import StandStillStep
@@ -91,6 +91,7 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
 
 
+@pytest.mark.endurance
 def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_order(
     qtbot: QtBot, left: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
