@@ -24,6 +24,7 @@ MAX_MARKS = 2  # combining marks on one character: more climb into the lines abo
 MAX_RUN = 22  # characters without a space, beyond which a line may break within them
 BREAK_EVERY = 6
 UNSEEN = {"Cc", "Cf", "Cs", "Co", "Cn"}
+RIGHT_TO_LEFT = ("R", "AL", "AN")
 ISOLATE, POP = "\u2068", "\u2069"
 BREAK = "\u200b"
 MAX_TYPED = 120  # characters of one field, of which the page shows two lines
@@ -46,6 +47,9 @@ def plain(text: str) -> str:
         elif shown and marks < MAX_MARKS and _has_marks(shown[-1] + character):
             shown[-1] += character
             marks += 1
+    if any(unicodedata.bidirectional(letter[0]) in RIGHT_TO_LEFT for letter in shown):
+        # a bracket that is turned round is the other one's glyph, and a PDF tells what a glyph means once for all pages
+        shown = [" " if unicodedata.mirrored(letter[0]) else letter for letter in shown]
     return " ".join("".join(shown).split())
 
 
@@ -96,7 +100,6 @@ def _has_marks(letter: str) -> bool:
     """
     _, *others = _coverages()
     return any(set(map(ord, letter)) <= covered for covered in others)
-
 
 
 @cache

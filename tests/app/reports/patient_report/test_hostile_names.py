@@ -84,6 +84,8 @@ def test_what_no_font_shows_becomes_a_box_and_what_nobody_sees_is_dropped() -> N
     assert plain("Zoë\u200b \x00漢 \ue000x\u202e") == f"Zoë {BOX} x"
     assert plain("e\u0301") == "é"
     assert plain("c\u0349") == "c"  # else every c of the report would be read aloud with it
+    assert plain("\u05d3\u05d5\u05d3 (1)") == "\u05d3\u05d5\u05d3 1"  # else ( would be ) in every word of the report
+    assert plain("David (1)") == "David (1)"
     assert plain("\u05e9\u05b8") == "\u05e9\u05b8"
     assert len(plain("x" + "\u0301" * 9)) <= 1 + MAX_MARKS
     assert plain(" \t a \n b ") == "a b"
