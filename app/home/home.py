@@ -22,8 +22,9 @@ from app.theme import Look
 from app.widgets.action_bar import ActionBar, BarState, Verb
 from app.widgets.banner import Banner
 from app.widgets.icons import Icon
+from app.widgets.rail_row import BelowRow, RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
-from app.widgets.step_rail import BelowRow, RailForm, RailRow, StepRail, StepState, home_below
+from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
 from app.wording import place, tr
 from app.workers.background import Report

@@ -6,8 +6,8 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import CHIP_RADIUS, Look
 from app.widgets.grid import LEAST, side_margin
-from app.widgets.sensor_strip import StripButton
 from app.widgets.stopwatch import Stopwatch
+from app.widgets.strip_button import StripButton
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr
 from core.body import Side

@@ -14,8 +14,9 @@ from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_marg
 from app.widgets.header import Header
 from app.widgets.motion import duration_ms
 from app.widgets.page_stack import PageStack
+from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip
-from app.widgets.step_rail import RailForm, StepRail
+from app.widgets.step_rail import StepRail
 from app.widgets.toast import Toast
 
 FADE_MS = 120

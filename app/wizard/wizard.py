@@ -12,8 +12,8 @@ from app import sounds
 from app.settings import Settings
 from app.theme import Look
 from app.widgets.action_bar import BarState
-from app.widgets.sensor_strip import SensorTile
-from app.widgets.step_rail import RailRow, StepState
+from app.widgets.rail_row import RailRow, StepState
+from app.widgets.sensor_tile import SensorTile
 from app.wizard.keys import Action, Intent, Keys
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.sources import choices

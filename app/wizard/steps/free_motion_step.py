@@ -11,7 +11,7 @@ from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.hints import (
     Asked,
     HintHold,

@@ -6,14 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
-from PySide6.QtWidgets import QStackedWidget, QWidget
+from PySide6.QtWidgets import QWidget
 
 from app.pages.sentence_page import SentencePage
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
+from app.widgets.page_stack import PageStack
+from app.widgets.rail_row import StepState
 from app.widgets.start_pages import WorkingPage
-from app.widgets.step_rail import StepState
 from app.wizard.keys import Action as KeyAction
 from app.wizard.keys import Intent
 from app.wizard.steps.step import Step
@@ -367,7 +368,7 @@ def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]
     )
 
 
-class _ResultsFrame(QStackedWidget):
+class _ResultsFrame(PageStack):
     """The results, or what stands in their place."""
 
     def __init__(self, look: Look) -> None:

@@ -12,8 +12,8 @@ from PySide6.QtWidgets import QFileDialog
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
-from app.widgets.sensor_strip import SILENT_FROM_S
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
+from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Action, Intent
 from app.wizard.replays import Replays
 from app.wizard.sources import SEARCH

@@ -12,7 +12,7 @@ from app.sounds import Sound
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
 from app.wizard.takes import Take

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 
 from app.theme import Look
 from app.widgets.action_bar import BarState
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarState, RecordingNote, Verb
 from app.widgets.icons import Icon
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.steps.step import Step

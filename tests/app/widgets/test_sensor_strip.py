@@ -9,7 +9,10 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme import LIGHT, Look, load_fonts
-from app.widgets.sensor_strip import SensorStrip, SensorTile, StripButton, TileState, TileWidget, sentence
+from app.widgets.sensor_strip import SensorStrip
+from app.widgets.sensor_tile import SensorTile, TileState, sentence
+from app.widgets.strip_button import StripButton
+from app.widgets.tile_widget import TileWidget
 from core.body import Site
 from tests.app.room import settle, words_cut
 

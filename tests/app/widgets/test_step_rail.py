@@ -7,7 +7,8 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
-from app.widgets.step_rail import RailForm, RailRow, StepRail, StepState, home_below, home_rows
+from app.widgets.rail_row import RailForm, RailRow, StepState
+from app.widgets.step_rail import StepRail, home_below, home_rows
 from tests.app.room import settle, words_cut
 
 STEPS = (

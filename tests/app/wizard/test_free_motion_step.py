@@ -11,7 +11,7 @@ from app.pages.free_motion_page import FreeMotionPage
 from app.storage.stored import Limits
 from app.theme import Look
 from app.widgets.gauge import GaugeState
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.visit import Visit

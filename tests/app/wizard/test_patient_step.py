@@ -11,7 +11,7 @@ from app.pages.patient_page import PatientDraft
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import PlacedSensor
 from app.theme import Look
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.steps.patient_step import PatientStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk

@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.theme import Look
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.visit import Visit

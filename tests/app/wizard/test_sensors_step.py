@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.acquisition import Acquisition
 from app.pages.sensors_page import Way
 from app.theme import Look
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.visit import Visit

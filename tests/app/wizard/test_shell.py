@@ -13,8 +13,10 @@ from app.pages.sentence_page import SentencePage
 from app.theme import Look, load_fonts
 from app.widgets.action_bar import BarState, RecordingNote, Verb
 from app.widgets.icons import Icon
-from app.widgets.sensor_strip import SensorStrip, SensorTile
-from app.widgets.step_rail import RailForm, RailRow, StepState, wizard_below
+from app.widgets.rail_row import RailForm, RailRow, StepState
+from app.widgets.sensor_strip import SensorStrip
+from app.widgets.sensor_tile import SensorTile
+from app.widgets.step_rail import wizard_below
 from app.wizard import shell as shell_module
 from app.wizard.shell import StripMode, WizardShell
 from app.wording import tr, use_language

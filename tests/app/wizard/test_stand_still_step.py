@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.stand_still_page import StandPhase
 from app.theme import Look
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.visit import Visit

@@ -9,7 +9,7 @@ from app.storage.analysis_content import packed
 from app.storage.audit import about
 from app.storage.stored import Limits, RecordingState
 from app.theme import Look
-from app.widgets.step_rail import StepState
+from app.widgets.rail_row import StepState
 from app.wizard.steps.patient_step import PatientStep
 from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.takes import Take

@@ -1,0 +1,102 @@
+"""How is one worn sensor, in a word? And all of them, in a sentence."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from app.widgets.battery import LOW
+from app.widgets.body_figure import SensorMark
+from app.wording import name_of, tr
+from core.body import Site
+
+LOST_SHARE = 0.01
+SILENT_FROM_S = 1.0  # shorter is the radio's hiccup, and counts as loss
+
+
+class TileState(Enum):
+    FINE = auto()
+    LOW_BATTERY = auto()
+    LOSS = auto()
+    SILENT = auto()
+    NOT_WORN = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class SensorTile:
+    """What is known of the sensor at one site. `name` is the sensor's own; `battery` and `lost_share` 0 to 1.
+
+    `is_awaited`: none is known to be worn here, and the free motion is still to tell.
+    """
+
+    site: Site
+    name: str
+    battery: float | None
+    rate_hz: float
+    lost_share: float
+    silent_s: float
+    is_moving: bool
+    is_worn: bool
+    is_awaited: bool = False
+
+    @property
+    def state(self) -> TileState:
+        """The gravest thing that is true of it."""
+        if not self.is_worn:
+            return TileState.NOT_WORN
+        if self.silent_s >= SILENT_FROM_S:
+            return TileState.SILENT
+        if self.lost_share > LOST_SHARE:
+            return TileState.LOSS
+        if self.battery is not None and self.battery < LOW:
+            return TileState.LOW_BATTERY
+        return TileState.FINE
+
+    @property
+    def is_bad(self) -> bool:
+        return self.state not in (TileState.FINE, TileState.NOT_WORN)
+
+    @property
+    def words(self) -> str:
+        """What its tile says under the name."""
+        match self.state:
+            case TileState.NOT_WORN:
+                return tr("found later") if self.is_awaited else tr("not used")
+            case TileState.SILENT:
+                return tr("silent {seconds} s").format(seconds=int(self.silent_s))
+            case TileState.LOSS:
+                return _loss(self.lost_share)
+            case TileState.LOW_BATTERY:
+                return tr("charge soon · {percent} %").format(percent=round((self.battery or 0.0) * 100))
+            case _:
+                return rate_and_loss(self.rate_hz, self.lost_share)
+
+
+def sentence(tiles: Mapping[Site, SensorTile]) -> str:
+    """Say in one sentence how the sensors are: what is wrong with the first bad one, or that all are heard."""
+    worn = [tile for tile in tiles.values() if tile.is_worn]
+    bad = [tile for tile in worn if tile.is_bad]
+    if len(bad) == 1:
+        return tr("{site}: {words}").format(site=name_of(bad[0].site), words=bad[0].words)
+    if bad:
+        return tr("{bad} of {count} sensors want a look").format(bad=len(bad), count=len(worn))
+    if not worn:
+        return tr("No sensors yet")
+    return tr("{count} sensors, all heard").format(count=len(worn))
+
+
+def marks(tiles: Mapping[Site, SensorTile]) -> dict[Site, SensorMark]:
+    """Give how the sensors look on the legs."""
+    found = {}
+    for site, tile in tiles.items():
+        if tile.is_worn:
+            look = SensorMark.LOOK if tile.is_bad else SensorMark.WORN
+            found[site] = SensorMark.SILENT if tile.state is TileState.SILENT else look
+    return found
+
+
+def _loss(share: float) -> str:
+    return tr("{percent:.1f} % lost").format(percent=share * 100)
+
+
+def rate_and_loss(rate_hz: float, lost_share: float) -> str:
+    return f"{rate_hz:.0f} Hz · {_loss(lost_share)}"
