@@ -24,7 +24,7 @@ FUSED_PX, CASING_PX, RATES_PX, FORCES_PX = 2.5, 4.5, 1.75, 1.0
 SECONDS = (0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300)
 MOST_TICKS = 8
 
-Value = TypeVar("Value", float, FloatArray)
+T = TypeVar("T", float, FloatArray)
 
 
 class TwoWaysChart(QWidget):
@@ -171,11 +171,11 @@ class TwoWaysChart(QWidget):
             x, y = self._x(time_s[run]), self._y(values[run])
             painter.drawPolyline(pg.functions.arrayToQPolygonF(x, y))
 
-    def _x(self, time_s: Value) -> Value:
+    def _x(self, time_s: T) -> T:
         area, (first, last) = self.plot_area(), self.visible_s
         return area.left() + area.width() * (time_s - first) / (last - first)
 
-    def _y(self, angle_deg: Value) -> Value:
+    def _y(self, angle_deg: T) -> T:
         area, (lowest, highest) = self.plot_area(), self.range_deg
         return area.bottom() - area.height() * (angle_deg - lowest) / (highest - lowest)
 

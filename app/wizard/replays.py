@@ -41,7 +41,8 @@ def replay_of(session: "Session", name: str) -> SourceChoice:
         if recording.is_kept and any(len(block) for block in recording.imu.values())
     )
     if not recordings:
-        raise LibraryError("Nothing was recorded in this session that can be replayed", "Choose another one")
+        what = tr("Nothing was recorded in this session that can be replayed")
+        raise LibraryError(what, tr("Choose another one"))
     played = replace(session, recordings=recordings)
 
     def make() -> "Acquisition":
@@ -51,7 +52,7 @@ def replay_of(session: "Session", name: str) -> SourceChoice:
         return Acquisition([ReplaySource(played, name=name)])
 
     return SourceChoice(
-        f"replay of {name}",
+        f"replay:{name}",
         tr("Replay of {name}").format(name=name),
         make,
         is_simulated=True,

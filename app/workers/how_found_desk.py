@@ -136,7 +136,7 @@ def saved_from_library(opened: "OpenedLibrary", session_id: UUID, folder: Path, 
     from app.storage.audit import about
     from app.storage.stored import Action, LibraryError
 
-    opened.library.audit.note(Action.EXPORT, about("session", session_id), format="how found")
+    opened.library.audit.note(Action.EXPORT, about("session", session_id), format="how-found")
     try:
         write()
     except OSError as problem:

@@ -94,7 +94,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     report.earlier.activated.emit(1)
     assert report.chosen_visit == earlier_id
     assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # nothing is saved yet, so it is there
-    qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # as above
+    qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # it is still there
     chosen: Callable[[str], None] = step._on_folder_selected
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
