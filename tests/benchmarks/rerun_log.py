@@ -58,9 +58,9 @@ def differing(session: Session, analysis: Analysis, path: Path) -> list[str]:
             times.append(batch.column("walking_1").cast("int64").to_numpy() / 1e9)
             values.append(np.array(batch.column("Scalars:scalars").to_pylist(), dtype=float))
     wrong = []
-    for entity, (time_s, values) in expected.items():
+    for entity, recorded in expected.items():
         times, parts = found[entity]
-        if not parts or not _are_equal((time_s, values), (np.concatenate(times), np.concatenate(parts))):
+        if not parts or not _are_equal(recorded, (np.concatenate(times), np.concatenate(parts))):
             wrong.append(entity)
     return wrong
 
