@@ -26,6 +26,9 @@ def main(arguments: list[str]) -> None:
         sys.exit(str(missing))
     os.chdir(ROOT)
     os.environ["QT_QPA_PLATFORM"] = "offscreen"
+    # tests start Python hundreds of times: what is compiled once is kept, where it does not litter the project
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ["PYTHONPYCACHEPREFIX"] = str(ROOT / ".venv" / "bytecode")
     if arguments:
         hand_over([str(python.with_name("pytest")), *arguments])
     failed = []

@@ -14,12 +14,14 @@ from hypothesis import settings
 from PySide6.QtCore import QEvent, QThread, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
-COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
-
 # a deadline fails tests on a busy machine; a new seed in every run of CI fails changes that are innocent of it
 settings.register_profile("here", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)
 settings.load_profile("ci" if os.environ.get("CI") else "here")
+
+
+COLLECTIONS = 60  # of young objects, until the old ones are looked through: that takes a while
+_BEGUN: set[str] = set()
 
 
 @pytest.fixture(scope="session")
@@ -39,9 +41,16 @@ def test_data() -> Callable[[str], Path]:
 
 
 @pytest.fixture(autouse=True)
-def _garbage_on_one_thread() -> Iterator[None]:
-    """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash."""
+def _garbage_on_one_thread(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Collect between tests only, as the application does between frames: what a thread freed of Qt would crash.
+
+    What is there when a module begins is there to stay, and not looked through again: that would take a minute in all.
+    """
     gc.disable()
+    if request.module.__name__ not in _BEGUN:
+        _BEGUN.add(request.module.__name__)
+        gc.collect()
+        gc.freeze()
     yield
     gc.collect() if gc.get_count()[2] > COLLECTIONS else gc.collect(1)
 

@@ -218,6 +218,7 @@ def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, o
     assert wizard.visit is visit is not None
 
 
+@pytest.mark.endurance
 def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
     qtbot: QtBot, open_window: Open, folder: Path
 ) -> None:

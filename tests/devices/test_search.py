@@ -93,6 +93,7 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
     source.close()
 
 
+@pytest.mark.endurance
 def test_a_sensor_that_was_left_streaming_is_found_again(tmp_path: Path) -> None:
     """Its packets hold bytes that look like messages of an x-IMU3."""
     voice = Shimmer3Voice(lambda number: (10, 200 + number % 2, 10, 1000, 10, 1000), name=f"{SHIMMER3} E")

@@ -186,6 +186,7 @@ def heard_for(source: ByteSource, seconds: float) -> tuple[list[ImuBlock], list[
     return blocks, kept
 
 
+@pytest.mark.endurance
 def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(emulation: Emulation) -> None:
     voice = emulation.voice
     assert isinstance(voice, Shimmer3Voice)
@@ -213,6 +214,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
     assert (sensor.counts.lost, sensor.counts.damaged) == (0, 0)
 
 
+@pytest.mark.endurance
 def test_a_sensor_that_vanishes_and_returns_is_heard_again(port: Path) -> None:
     emulation = Emulation(Shimmer3Voice(), lambda: Terminal(port))
     source = ByteSource(Shimmer3(), SerialPort(PortInfo(emulation.place)))

@@ -144,6 +144,7 @@ def test_a_socket_keeps_the_thigh_soft() -> None:
     assert off_axis_rate(*pair(simulated, "walk 1", Joint.LEFT_KNEE)) > 0.05
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(("tissue", "low", "high"), [(Tissue.SOFT, 0.12, 0.42), (Tissue.REAL, 0.5, 1.1)])
 def test_soft_tissue_turns_sensors_off_the_axis_as_much_as_it_should(tissue: Tissue, low: float, high: float) -> None:
     found = [

@@ -105,6 +105,7 @@ def test_the_same_analysis_gives_the_same_workbook(
     assert zipfile.ZipFile(workbook).testzip() is None
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(shutil.which("soffice") is None, reason="LibreOffice is not installed")
 def test_libreoffice_opens_the_workbook(workbook: Path, tmp_path: Path) -> None:
     profile = f"-env:UserInstallation=file://{tmp_path / 'profile'}"

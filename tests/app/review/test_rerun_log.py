@@ -206,6 +206,7 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     assert "1.70 m, which nobody typed" in text
 
 
+@pytest.mark.endurance
 def test_rerun_itself_finds_the_file_whole(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
     session, _ = visit()
     write_log(replace(session, recordings=()), Analysis(Method.ROBUST, False, (), ()), tmp_path / "empty.rrd")

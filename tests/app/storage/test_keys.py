@@ -204,6 +204,7 @@ def check_kills(folder: Path, count: int) -> None:
         slots.set_passphrase(data_key, "hk", OLD)
 
 
+@pytest.mark.endurance
 def test_a_kill_during_a_change_leaves_the_old_or_the_new_passphrase(tmp_path: Path) -> None:
     check_kills(tmp_path, 2)
 

@@ -31,6 +31,7 @@ def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
     return call
 
 
+@pytest.mark.endurance
 def test_no_call_of_the_library_holds_up_a_recording(
     qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
 ) -> None:

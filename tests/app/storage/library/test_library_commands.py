@@ -105,6 +105,7 @@ def test_on_a_terminal_the_passphrase_is_asked_for_and_not_shown(
     assert PASSPHRASE not in said.out + said.err
 
 
+@pytest.mark.endurance
 def test_a_session_of_the_library_gives_the_same_results_as_its_folder(
     opened: OpenedLibrary, tmp_path: Path, key: list[str]
 ) -> None:

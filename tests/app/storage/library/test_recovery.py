@@ -155,6 +155,7 @@ def test_what_cannot_be_recovered_stays_open_and_says_what_to_do(
     assert find_interrupted(opened) == ()
 
 
+@pytest.mark.endurance
 def test_fifty_journals_are_listed_within_two_seconds(opened: OpenedLibrary, record: Record) -> None:
     for number in range(50):
         record(f"walk {number}", 4000, is_stopped=False, has_row=number % 5 > 0)
