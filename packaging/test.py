@@ -15,7 +15,7 @@ CHECKS = (
     ("ruff", "format", "--check"),
     ("mypy",),
     ("lint-imports",),
-    ("pytest", "--numprocesses=2"),
+    ("pytest", "--numprocesses=2", "--dist=loadfile"),  # what a file prepares is prepared once
 )
 
 

@@ -430,6 +430,7 @@ def test_an_interruption_between_the_renames_puts_everything_back(
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.endurance
 @pytest.mark.skipif(os.name == "nt", reason="signals of this kind are not for Windows")
 def test_a_signal_in_the_middle_ends_with_three(session: Path, tmp_path: Path) -> None:
     command = [sys.executable, "-m", "app", "analyse", str(session), "--out", str(tmp_path / "out")]

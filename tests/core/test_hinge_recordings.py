@@ -117,6 +117,7 @@ def test_two_standard_deviations_hold_nine_samples_of_ten(hinge: Hinge) -> None:
     assert np.rad2deg(np.nanmedian(sd)) < 2.5 * 0.7
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("seed", range(4))
 def test_turning_either_sensor_leaves_the_angle_as_it_was(hinge: Hinge, seed: int) -> None:
     turns = list(Rotation.random(2, rng=np.random.default_rng(seed)))

@@ -221,6 +221,7 @@ def test_a_missing_site_leaves_the_other_joint(person: "Person", knee_visit: Ses
     assert np.abs(error_deg(person, found, "walk")).max() < 1.0
 
 
+@pytest.mark.endurance
 @methods
 @pytest.mark.parametrize("kinds", [(F, W), (W,), (F,), (S, W)])
 def test_sessions_without_some_recordings(person: "Person", kinds: tuple[RecordingKind, ...], method: Method) -> None:
@@ -291,6 +292,7 @@ def test_walking_instead_of_standing_gives_no_zero(person: "Person", knee_visit:
     assert np.std(error_deg(person, found, "walk")) < 1.0
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("start_s", [-1e9, 1e9, 1.7e9])
 def test_stamps_far_from_zero_change_nothing(person: "Person", knee_visit: Session, start_s: float) -> None:
     near, far = analyse(knee_visit), analyse(person.visit(start_s=start_s))

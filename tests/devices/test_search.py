@@ -73,6 +73,7 @@ class Silence:
         return b""
 
 
+@pytest.mark.endurance
 def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: Path) -> None:
     found = search([*emulated, PortInfo(str(tmp_path / "nothing"), is_told=True)], free_port())
     assert {(one.driver, one.name) for one in found.sensors} == {

@@ -86,6 +86,7 @@ def test_both_make_the_same_floats_of_every_message(tmp_path: Path, count: int, 
     assert np.isfinite(one.block.q_earth_from_sensor[:, 0]).sum() == count // 10
 
 
+@pytest.mark.endurance
 def test_the_maker_speaks_with_our_emulator_and_logs_what_it_says(tmp_path: Path) -> None:
     voice = Ximu3Voice("655782F7", lambda number: (number % 1000, -2.5, 3.25, 0.5, -0.25, 1.0), rate_hz=400)
     server = TcpServer()

@@ -214,6 +214,7 @@ def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
         assert all(sentence.endswith(".") for sentence in told.args[:2])
 
 
+@pytest.mark.endurance
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
     qtbot: QtBot, desk: LibraryDesk, tmp_path: Path
 ) -> None:

@@ -71,6 +71,7 @@ def test_a_prosthesis_and_a_stiff_knee_gain_and_lose_no_event(settings: WalkerSe
     assert np.std(late) < 0.01
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(
     ("manner", "speed_m_s"), [(Manner.SHUFFLING, 0.3), (Manner.SHUFFLING, 1.0), (Manner.TOES, 0.8)]
 )

@@ -30,6 +30,7 @@ def events_of(settings: WalkerSettings) -> tuple[FootEvents, TrueEvents]:
     return found, made.truth.recordings[moving.name].feet[Side.RIGHT].events
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize("tissue", [Tissue.RIGID, Tissue.SOFT])
 @pytest.mark.parametrize(("speed_m_s", "rate_hz"), [(0.3, 100.0), (1.19, 60.0), (2.0, 200.0)])
 def test_contact_and_toe_off_are_found_from_the_shank(speed_m_s: float, rate_hz: float, tissue: Tissue) -> None:

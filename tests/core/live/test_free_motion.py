@@ -74,6 +74,7 @@ def test_no_lag_is_told_where_there_is_none(states: list[FreeMotionState]) -> No
     assert not any(lag.is_worth_telling for lag in states[-1].lags.values())
 
 
+@pytest.mark.endurance
 @pytest.mark.parametrize(("late_s", "verdict"), [(0.03, Verdict.LAG), (0.12, Verdict.NOT_ONE_JOINT)])
 def test_a_late_clock_is_told_while_the_leg_moves(late_s: float, verdict: Verdict) -> None:
     lags = watched(made(late_s=late_s))[-1].lags

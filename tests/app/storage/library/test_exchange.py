@@ -256,6 +256,7 @@ def small(session: Session) -> Session:
     return replace(session, recordings=tuple(recordings))
 
 
+@pytest.mark.endurance
 def test_an_export_says_no_name_unless_it_is_asked_to(opened: OpenedLibrary, walked: Session, tmp_path: Path) -> None:
     pseudonyms = set()
     for number, name in enumerate(NAMES[:8]):
