@@ -21,6 +21,7 @@ from app.settings import Scheme, Settings
 from app.theme import Look
 from app.widgets.action_bar import ActionBar, BarState, Verb
 from app.widgets.banner import Banner
+from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
 from app.widgets.rail_row import BelowRow, RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
@@ -372,13 +373,7 @@ class Home(QWidget):
     # what comes in
 
     def _choose_folder(self) -> None:
-        dialog = QFileDialog(self, tr("Import a session folder"))
-        dialog.setFileMode(QFileDialog.FileMode.Directory)
-        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog = dialog
-        dialog.open()
+        self._dialog = ask_for_folder(self, tr("Import a session folder"), self._on_folder_selected)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.read_folder(Path(folder))

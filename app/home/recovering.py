@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Qt, Signal
+from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.home.words import length
 from app.widgets.banner import Banner
+from app.widgets.folder_dialog import ask_for_folder
 from app.wording import capitalised, tr, tr_n
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, OpenedState
@@ -87,13 +88,9 @@ class Recovering(QObject):
             self._banner.tell(*self._waiting.pop(0))
 
     def _choose_folder(self) -> None:
-        dialog = QFileDialog(self._window, tr("Export recordings that belong to no session"))
-        dialog.setFileMode(QFileDialog.FileMode.Directory)
-        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog = dialog
-        dialog.open()
+        self._dialog = ask_for_folder(
+            self._window, tr("Export recordings that belong to no session"), self._on_folder_selected
+        )
 
     def _on_folder_selected(self, folder: str) -> None:
         self.export(Path(folder))

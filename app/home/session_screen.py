@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from app.theme import Look
 from app.widgets.banner import Banner
 from app.widgets.button import Button, Kind
+from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
 from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
@@ -138,12 +139,7 @@ class SessionScreen(QWidget):
         self.open_folder(paths[0])
 
     def choose_folder(self) -> None:
-        self._dialog = QFileDialog(self, tr("Open a session folder"))
-        self._dialog.setFileMode(QFileDialog.FileMode.Directory)
-        self._dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog.open()
+        self._dialog = ask_for_folder(self, tr("Open a session folder"), self._on_folder_selected)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)

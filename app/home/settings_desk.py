@@ -7,14 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
-from PySide6.QtCore import QObject, Qt, Signal
-from PySide6.QtWidgets import QFileDialog, QWidget
+from PySide6.QtCore import QObject, Signal
+from PySide6.QtWidgets import QWidget
 
 from app.home.entry import SHORTEST
 from app.home.words import person, when
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.settings import Scheme, Settings
 from app.theme import Look
+from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, OpenedState
@@ -164,12 +165,7 @@ class SettingsDesk(QObject):
         self.page.show_backup("", folder)
 
     def _on_backup_folder_wished(self) -> None:
-        dialog = QFileDialog(self.page, tr("Choose the folder for backups"))
-        dialog.setFileMode(QFileDialog.FileMode.Directory)
-        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(self.set_backup_folder)
-        dialog.open()
+        ask_for_folder(self.page, tr("Choose the folder for backups"), self.set_backup_folder)
 
     def set_backup_folder(self, folder: str) -> None:
         """Let backups go to this folder from now on."""

@@ -6,11 +6,12 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 import numpy as np
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QFileDialog
 
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
+from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
@@ -420,13 +421,7 @@ class SensorsStep(Step):
             self.changed.emit()
 
     def _choose_folder(self) -> None:
-        dialog = QFileDialog(self.page, tr("Replay a session folder"))
-        dialog.setFileMode(QFileDialog.FileMode.Directory)
-        dialog.setOption(QFileDialog.Option.ShowDirsOnly)
-        dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog = dialog
-        dialog.open()
+        self._dialog = ask_for_folder(self.page, tr("Replay a session folder"), self._on_folder_selected)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.replay_folder(Path(folder))
