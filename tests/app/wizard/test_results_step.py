@@ -196,7 +196,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert "how" in page.note.text()
     assert any(one.name.startswith("simulated_right_ankle") for one in (tmp_path / "how").iterdir())
     exports = asked(qtbot, desk, lambda opened: [entry.details for entry in opened.library.audit.entries()])
-    assert any("how found" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
+    assert any("how-found" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
     assert not step.on_intent(Intent(Action.PRIMARY))
     assert step.on_intent(Intent(Action.BACK))
     assert step.page.currentWidget() is step.page.results()
