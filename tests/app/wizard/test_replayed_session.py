@@ -1,20 +1,15 @@
 """A stored session is replayed through the whole wizard, in real time, up to its results."""
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QSettings
-from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.settings import Settings
-from app.theme import Look, load_fonts
 from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.wizard import FREE_MOTION, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
-from app.workers.library_desk import LibraryDesk
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.results import Analysis
@@ -26,19 +21,6 @@ from devices.walker import DEMONSTRATION, simulate
 pytestmark = pytest.mark.endurance  # as long as the patients take, a minute or two each
 WAIT_MS = 60_000
 BONES = {"femur": "thigh", "tibia": "shank", "calcn": "foot"}
-
-
-@pytest.fixture
-def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
-    load_fonts()
-    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    wizard = Wizard(Look(), desk, settings)
-    qtbot.addWidget(wizard)
-    wizard.resize(1280, 800)
-    wizard.show()
-    yield wizard
-    wizard.finish()
-    qapp.setStyleSheet("")
 
 
 def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
