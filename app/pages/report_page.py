@@ -140,8 +140,7 @@ class ReportPage(QWidget):
         found = self.earlier.currentData()
         return found if isinstance(found, UUID) else None
 
-    def show_pages(self, pages: Sequence[bytes]) -> None:
-        """Show pages, each a PNG."""
+    def show_pages(self, pages: Sequence[QImage]) -> None:
         self.sheets.show_pages(pages)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -190,8 +189,8 @@ class _Sheets(QWidget):
     def count(self) -> int:
         return len(self._pages)
 
-    def show_pages(self, pages: Sequence[bytes]) -> None:
-        self._pages = [QImage.fromData(page) for page in pages]
+    def show_pages(self, pages: Sequence[QImage]) -> None:
+        self._pages = list(pages)
         self.setAccessibleName(tr("The report, {count} pages").format(count=len(pages)))
         self._fit()
         self.update()

@@ -19,6 +19,7 @@ LEAST_SIZE = (320, 88)  # what can just be read; the page gives more where it ha
 AXIS_HEIGHT, BARE_AXIS_HEIGHT = 24, 6
 CURVE_PX = 2.0
 HAIR_PX = 1.0
+LINE_PIECE = 64  # points that are stroked at a time: the time for one line grows faster than its points
 DENSE_FROM = 3.0  # samples per column from which on wide, smooth lines take seconds and show no more than hairlines
 DASHED_UP_TO = 15.0  # samples per column; beyond, a swing is too narrow for its dashes, which would take seconds
 BAND_PIECE = 32  # points of a dense band that are filled at a time
@@ -195,8 +196,8 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self._look, self._side = look, side
         self.time_s: FloatArray = np.zeros(0)
         self.angle_deg: FloatArray = np.zeros(0)
-        self._line = QPainterPath()
-        self._second = QPainterPath()
+        self._line: list[tuple[FloatArray, FloatArray]] = []
+        self._second: list[tuple[FloatArray, FloatArray]] = []
         self._bands: list[QPainterPath] = []
         self._bounds = QRectF()
         self._is_dense = False
@@ -206,22 +207,24 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
 
     def setData(self, time_s: FloatArray, curve: Curve | None, part: slice, columns: int) -> None:
         self.prepareGeometryChange()
-        self._line, self._second, self._bands = QPainterPath(), QPainterPath(), []
+        self._line, self._second, self._bands = [], [], []
         self.time_s, self.angle_deg = np.zeros(0), np.zeros(0)
         self._is_dense = len(time_s) > DENSE_FROM * columns
         self._is_dashed = len(time_s) <= DASHED_UP_TO * columns
         if curve is not None:
             self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], columns)
-            self._line = _line_path(self.time_s, self.angle_deg)
+            self._line = _runs(self.time_s, self.angle_deg)
             if curve.second_deg is not None:
-                self._second = _line_path(*thin(time_s, curve.second_deg[part], columns))
+                self._second = _runs(*thin(time_s, curve.second_deg[part], columns))
             if curve.sd_deg is not None:
                 angle_deg, reach_deg = curve.angle_deg[part], 2 * curve.sd_deg[part]
                 band = envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, columns)
                 self._bands = _band_paths(*band, BAND_PIECE if self._is_dense else len(time_s))
         self._bounds = QRectF()
-        for path in (self._line, self._second, *self._bands):
-            self._bounds = self._bounds.united(path.boundingRect())
+        for run in (*self._line, *self._second):
+            self._bounds = self._bounds.united(_polygon(*run).boundingRect())
+        for band_path in self._bands:
+            self._bounds = self._bounds.united(band_path.boundingRect())
         self.update()
 
     def boundingRect(self) -> QRectF:
@@ -238,8 +241,22 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, not self._is_dense)
         for band in self._bands:
             painter.fillPath(band, theme.band(self._side))
-        painter.strokePath(self._second, self._pen(SECOND_PX))
-        painter.strokePath(self._line, self._pen(CURVE_PX if not self._is_dense else HAIR_PX))
+        self._stroke(painter, self._second, SECOND_PX)
+        self._stroke(painter, self._line, CURVE_PX if not self._is_dense else HAIR_PX)
+
+    def _stroke(self, painter: QPainter, runs: list[tuple[FloatArray, FloatArray]], width: float) -> None:
+        """Draw a line in pieces that meet on a point; each one's dashes go on where the last one's ended."""
+        pen = self._pen(width)
+        is_dashed = pen.style() is Qt.PenStyle.CustomDashLine
+        transform = painter.worldTransform()
+        for x, y in runs:
+            length_px = _lengths(x * transform.m11(), y * transform.m22()) if is_dashed else x
+            for first in range(0, max(len(x) - 1, 1), LINE_PIECE):
+                part = slice(first, first + LINE_PIECE + 1)
+                if is_dashed:
+                    pen.setDashOffset(float(length_px[first]) / pen.widthF())
+                painter.setPen(pen)
+                painter.drawPolyline(_polygon(x[part], y[part]))
 
     def _pen(self, width: float) -> QPen:
         pen = self._look.theme.side_pen(self._side, width)
@@ -260,11 +277,13 @@ def _polygon(x: FloatArray, y: FloatArray) -> QPolygonF:
     return pg.functions.arrayToQPolygonF(x, y)
 
 
-def _line_path(time_s: FloatArray, values: FloatArray) -> QPainterPath:
-    path = QPainterPath()
-    for run in runs(values):
-        path.addPolygon(_polygon(time_s[run], values[run]))
-    return path
+def _runs(time_s: FloatArray, values: FloatArray) -> list[tuple[FloatArray, FloatArray]]:
+    return [(time_s[run], values[run]) for run in runs(values)]
+
+
+def _lengths(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Give how long the line is up to each point."""
+    return np.concatenate([[0.0], np.hypot(np.diff(x), np.diff(y)).cumsum()])
 
 
 def _band_paths(time_s: FloatArray, low: FloatArray, high: FloatArray, most: int) -> list[QPainterPath]:

@@ -5,30 +5,32 @@ smooth line of pyqtgraph's is drawn whole in every frame, for more than ten time
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
-from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
+from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
 
 from app.plots.angle_chart import AngleAxis
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.scrolling_picture import ScrollingPicture
-from app.theme import Look, Theme
+from app.theme import Look
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
 from app.wording import tr
 from core.body import Side
-from core.samples import BoolArray, FloatArray
+from core.samples import FloatArray
 
 LEAST_SIZE = (320, 40)  # what can just be read; the page gives more where it has more
 FOOT = 6  # under the axis' lowest tick, whose figure is half below it
 CURVE_PX, THIN_PX = 2.5, 1.25
 SHOWN_S = 8.0
 KEPT_S = 15.0  # more than any width shows
+ROOM = 8192  # rows: twenty seconds at 400 Hz; a faster sensor's take more
+DEG_PER_RAD = 180 / np.pi
 BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts lie closer
 MISSING_S = 0.5  # without a sample for longer, it is said in words
 FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they tell a first angle
@@ -65,6 +67,8 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def __init__(self, look: Look, fixed_deg: tuple[float, float], tick_deg: float) -> None:
         super().__init__(useOpenGL=False)
         self._look, self._tick_deg = look, tick_deg
+        only_what_moves = QGraphicsView.OptimizationFlag.DontAdjustForAntialiasing  # else the axes beside it too
+        self.setOptimizationFlag(only_what_moves)
         for part in (self, self.viewport()):
             part.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._view = pg.ViewBox(enableMenu=False, enableMouse=False)
@@ -148,67 +152,83 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self.updateGeometry()
 
 
-@dataclass(slots=True)
 class _Trace:
     """What one leg has shown: rows (n,) with a NaN row where the line breaks, and the gaps that count as missing.
 
     `length_px` is how long the line is up to each row: it tells where in its pattern a dash begins, so that dashes
-    stand still in time.
+    stand still in time. New rows are written behind the last; when there is no room left, those kept move to the front.
     """
 
-    time_s: FloatArray = field(default_factory=lambda: np.zeros(0))
-    angle_deg: FloatArray = field(default_factory=lambda: np.zeros(0))
-    is_thin: BoolArray = field(default_factory=lambda: np.zeros(0, dtype=bool))
-    length_px: FloatArray = field(default_factory=lambda: np.zeros(0))
-    last_s: float = -np.inf  # of all rows
-    heard_s: float = -np.inf  # of the rows with an angle
-    gaps: tuple[tuple[float, float], ...] = ()
+    def __init__(self) -> None:
+        self._rows = np.zeros((4, ROOM))
+        self._count = 0
+        self.last_s = -np.inf  # of all rows
+        self.heard_s = -np.inf  # of the rows with an angle
+        self.gaps: tuple[tuple[float, float], ...] = ()
+        self._name_columns()
 
     def append(self, trace: LiveTrace) -> int:
         """Take what is newer than the last row, and give how many rows that makes."""
-        first = int(np.searchsorted(trace.time_s, self.last_s, side="right"))
+        first = int(trace.time_s.searchsorted(self.last_s, side="right"))
         if first == len(trace.time_s):
             return 0
-        time_s, angle_deg = trace.time_s[first:], np.rad2deg(trace.angle_rad[first:])
+        time_s, angle_deg = trace.time_s[first:], trace.angle_rad[first:] * DEG_PER_RAD
         self._note_gaps(time_s[np.isfinite(angle_deg)])
-        since_s = np.diff(time_s, prepend=self.last_s if len(self.time_s) else time_s[0])
+        since_s = time_s.copy()
+        since_s[1:] -= time_s[:-1]
+        since_s[0] -= self.last_s if self._count else time_s[0]
         breaks = np.flatnonzero(since_s > BREAK_S)
         if len(breaks):
             time_s = np.insert(time_s, breaks, time_s[breaks] - BREAK_S / 2)
             angle_deg = np.insert(angle_deg, breaks, np.nan)
         self.last_s = float(time_s[-1])
-        kept = slice(int(np.searchsorted(self.time_s, self.last_s - KEPT_S)), None)
         count = len(time_s)
-        self.time_s = np.concatenate([self.time_s[kept], time_s])
-        self.angle_deg = np.concatenate([self.angle_deg[kept], angle_deg])
-        self.is_thin = np.concatenate([self.is_thin[kept], np.full(count, trace.is_provisional)])
-        self.length_px = np.concatenate([self.length_px[kept], np.zeros(count)])
+        self._make_room(count)
+        new = self._rows[:, self._count : self._count + count]
+        new[0], new[1], new[2], new[3] = time_s, angle_deg, trace.is_provisional, 0.0
+        self._count += count
+        self._name_columns()
         return count
+
+    def _make_room(self, count: int) -> None:
+        if self._count + count <= self._rows.shape[1]:
+            return
+        kept = self._rows[:, int(self.time_s.searchsorted(self.last_s - KEPT_S)) : self._count].copy()
+        self._count = kept.shape[1]
+        if self._count + count > self._rows.shape[1] // 2:
+            self._rows = np.zeros((4, 2 * (self._count + count)))
+        self._rows[:, : self._count] = kept
+
+    def _name_columns(self) -> None:
+        self.time_s, self.angle_deg, self.is_thin, self.length_px = self._rows[:, : self._count]
 
     def measure(self, first: int, px_per_s: float, px_per_deg: float) -> None:
         """Measure the line from row `first` on; the rows before keep what they have. A leg may have no row yet."""
-        if not len(self.time_s):
+        if not self._count:
             return
         begin = max(first - 1, 0)
-        steps = np.hypot(np.diff(self.time_s[begin:]) * px_per_s, np.diff(self.angle_deg[begin:]) * px_per_deg)
-        self.length_px[begin + 1 :] = self.length_px[begin] + np.cumsum(np.nan_to_num(steps))
+        time_s, angle_deg = self.time_s[begin:], self.angle_deg[begin:]
+        steps = np.hypot((time_s[1:] - time_s[:-1]) * px_per_s, (angle_deg[1:] - angle_deg[:-1]) * px_per_deg)
+        steps[np.isnan(steps)] = 0.0
+        self.length_px[begin + 1 :] = self.length_px[begin] + steps.cumsum()
 
     def _note_gaps(self, known_s: FloatArray) -> None:
         """Note where, before or among these new instants with an angle, there was none for long."""
         if not len(known_s):
             return
-        heard_s = np.concatenate([[self.heard_s], known_s])
-        for row in np.flatnonzero(np.diff(heard_s) > MISSING_S).tolist():
-            if np.isfinite(heard_s[row]):
-                self.gaps += ((float(heard_s[row]), float(heard_s[row + 1])),)
-        self.heard_s = float(heard_s[-1])
-        self.gaps = tuple(gap for gap in self.gaps if gap[1] > self.heard_s - KEPT_S)
+        if self.heard_s > -np.inf and known_s[0] - self.heard_s > MISSING_S:
+            self.gaps += ((self.heard_s, float(known_s[0])),)
+        for row in np.flatnonzero(known_s[1:] - known_s[:-1] > MISSING_S).tolist():
+            self.gaps += ((float(known_s[row]), float(known_s[row + 1])),)
+        self.heard_s = float(known_s[-1])
+        if self.gaps:
+            self.gaps = tuple(gap for gap in self.gaps if gap[1] > self.heard_s - KEPT_S)
 
     def lines_from(self, time_s: float) -> list[tuple[slice, bool]]:
         """Give the pieces of the line from the row before `time_s` on, and whether each is thin."""
-        begin = max(int(np.searchsorted(self.time_s, time_s)) - 1, 0)
+        begin = max(int(self.time_s.searchsorted(time_s)) - 1, 0)
         known, thin = np.isfinite(self.angle_deg[begin:]), self.is_thin[begin:]
-        borders = 1 + np.flatnonzero((np.diff(known.astype(np.int8)) != 0) | (np.diff(thin.astype(np.int8)) != 0))
+        borders = 1 + np.flatnonzero((known[1:] != known[:-1]) | (thin[1:] != thin[:-1]))
         pieces = []
         for start, end in pairwise([0, *borders.tolist(), len(known)]):
             if end > start and known[start]:
@@ -225,6 +245,8 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         self._look, self._view = look, view
         self._fixed = self.range_deg = fixed_deg
         self._seconds = SHOWN_S
+        self._place = QRectF()  # what boundingRect answers, which Qt asks several times a frame
+        self._pens: dict[tuple[Side, bool, float], QPen] = {}
         self._picture: ScrollingPicture | None = None
         self._now_s, self._began_s = 0.0, np.nan
         self._traces: dict[Side, _Trace] = {}
@@ -234,10 +256,11 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         self.setParentItem(view)
 
     def boundingRect(self) -> QRectF:
-        return QRectF(0, 0, self._view.width(), self._view.height())
+        return self._place
 
     def on_resized(self) -> None:
         self.prepareGeometryChange()
+        self._place = QRectF(0, 0, self._view.width(), self._view.height())
         self.redraw()
 
     def set_seconds(self, seconds: float) -> None:
@@ -248,6 +271,7 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
     def redraw(self) -> None:
         """Draw everything anew from the history, the next time it is in sight."""
         self._picture = None
+        self._pens = {}
         self.update()
 
     def clear(self) -> None:
@@ -262,7 +286,9 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         if np.isnan(self._began_s):
             self._began_s = now_s
         for side, live in traces.items():
-            trace = self._traces.setdefault(side, _Trace())
+            if side not in self._traces:
+                self._traces[side] = _Trace()
+            trace = self._traces[side]
             count = trace.append(live)
             if count:
                 first = len(trace.time_s) - count
@@ -276,20 +302,23 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
     def paint(self, painter: QPainter, _option: QStyleOptionGraphicsItem, widget: QWidget | None = None) -> None:
         ratio = widget.devicePixelRatioF() if widget is not None else 1.0
         picture = self._up_to_date(ratio)
-        picture.paint(painter, self.boundingRect(), ratio)
-        self._paint_words(painter, picture, ratio)
+        picture.paint(painter, self._place, ratio)
+        if self.missing:
+            self._paint_words(painter, picture, ratio)
 
     def _up_to_date(self, ratio: float) -> ScrollingPicture:
         """Bring the picture to the present: what is new, what changed since, or all of it."""
-        columns, rows = (max(1, round(length * ratio)) for length in (self._view.width(), self._view.height()))
+        columns, rows = (max(1, round(length * ratio)) for length in (self._place.width(), self._place.height()))
         picture = self._picture
         if picture is None or (picture.columns, picture.rows) != (columns, rows):
             picture = self._picture = ScrollingPicture(columns, rows, self._seconds)
             for trace in self._traces.values():
                 trace.measure(0, *self._scales(picture))
         from_x = picture.advance(self._now_s)
-        changed = set(self.missing).symmetric_difference(self._drawn)
-        dirty_s = min([self._dirty_s, *(span.start_s for span in changed)])
+        dirty_s = self._dirty_s
+        if self.missing != self._drawn:
+            changed = set(self.missing).symmetric_difference(self._drawn)
+            dirty_s = min(dirty_s, *(span.start_s for span in changed))
         reach = CURVE_PX * self._look.theme.scale * ratio  # a line is half as wide to either side
         if from_x > 0 and dirty_s < np.inf:
             from_x = int(min(max(np.floor(picture.x_of(dirty_s) - reach), 0), from_x))
@@ -316,7 +345,7 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
         for side, trace in self._traces.items():
             for rows, is_thin in trace.lines_from(picture.time_at(from_x)):
                 x, y = picture.xs_of(trace.time_s[rows]), (highest - trace.angle_deg[rows]) * per_deg
-                painter.setPen(_pen(theme, side, is_thin, ratio, float(trace.length_px[rows.start])))
+                painter.setPen(self._pen(side, is_thin, ratio, float(trace.length_px[rows.start])))
                 painter.drawPolyline(pg.functions.arrayToQPolygonF(x, y))
 
     def _paint_words(self, painter: QPainter, picture: ScrollingPicture, ratio: float) -> None:
@@ -357,19 +386,21 @@ class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no
                 yield MissingSpan(side, self._began_s, None)
 
     def _widen(self, angle_deg: FloatArray) -> None:
-        wanted = range_for(self.range_deg, [angle_deg])
-        if wanted != self.range_deg:
-            self.range_deg = wanted
+        lowest, highest = self.range_deg
+        if ((angle_deg < lowest) | (angle_deg > highest)).any():
+            self.range_deg = range_for(self.range_deg, [angle_deg])
             self.redraw()
+
+    def _pen(self, side: Side, is_thin: bool, ratio: float, length_px: float) -> QPen:
+        """Give the pen of a line of which `length_px` are drawn already."""
+        key = (side, is_thin, ratio)
+        if key not in self._pens:
+            self._pens[key] = self._look.theme.side_pen(side, (THIN_PX if is_thin else CURVE_PX) * ratio)
+        pen = QPen(self._pens[key])
+        if pen.style() is Qt.PenStyle.CustomDashLine:
+            pen.setDashOffset(length_px / pen.widthF())
+        return pen
 
     def _scales(self, picture: ScrollingPicture) -> tuple[float, float]:
         lowest, highest = self.range_deg
         return picture.px_per_s, picture.rows / (highest - lowest)
-
-
-def _pen(theme: Theme, side: Side, is_thin: bool, ratio: float, length_px: float) -> QPen:
-    """Give the pen of a line of which `length_px` are drawn already."""
-    pen = theme.side_pen(side, (THIN_PX if is_thin else CURVE_PX) * ratio)
-    if pen.style() is Qt.PenStyle.CustomDashLine:
-        pen.setDashOffset(length_px / pen.widthF())
-    return pen

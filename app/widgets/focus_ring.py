@@ -1,7 +1,7 @@
 """The ring round whatever has the focus, 3 px outside it, where a control cannot paint for itself."""
 
 from PySide6.QtCore import QEvent, QObject, QPoint, QRect, QRectF, Qt
-from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtGui import QPainter, QPaintEvent, QRegion
 from PySide6.QtWidgets import QApplication, QWidget
 from shiboken6 import isValid
 
@@ -61,5 +61,7 @@ class FocusRing(QWidget):
         reach = self._look.theme.px(DISTANCE + WIDTH)
         corner = self._chain[0].mapTo(self._window, QPoint(0, 0))
         self.setGeometry(seen.translated(corner).adjusted(-reach, -reach, reach, reach))
+        inside = self.rect().adjusted(2 * reach, 2 * reach, -2 * reach, -2 * reach)  # beyond the round corners
+        self.setMask(QRegion(self.rect()) - QRegion(inside))  # so that it is not painted with what moves inside it
         self.raise_()
         self.show()

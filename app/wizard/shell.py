@@ -3,7 +3,7 @@
 from enum import Enum, auto
 from itertools import pairwise
 
-from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QVariantAnimation, Signal
+from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantAnimation, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
@@ -63,6 +63,9 @@ class WizardShell(QWidget):
         self._build()
         self.toast = Toast(look, self)
         self._fade = _Fade(self._scroll)
+        self._settled = QTimer(self)
+        self._settled.setSingleShot(True)
+        self._settled.timeout.connect(lambda: self._scroll.setUpdatesEnabled(True))
         self._connect()
         self._on_look_changed()
         self.set_strip_mode(StripMode.HIDDEN)
@@ -93,6 +96,8 @@ class WizardShell(QWidget):
         page = self._by_index[index]
         if page is not self.page:
             self._fade.begin()
+            self._scroll.setUpdatesEnabled(False)  # until the page has its size, else its charts are painted at each
+            self._settled.start(0)
             self._pages.setCurrentWidget(page)
             self._scroll.verticalScrollBar().setValue(0)
             self._scroll.horizontalScrollBar().setValue(0)

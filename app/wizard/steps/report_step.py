@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Qt, QUrl
-from PySide6.QtGui import QDesktopServices
+from PySide6.QtGui import QDesktopServices, QImage
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
 from app.logs import version_of
@@ -169,7 +169,7 @@ class ReportStep(Step):
         if request is not None:
             self._visit.preview.start(_previewing(request))
 
-    def _on_previewed(self, pages: list[bytes]) -> None:
+    def _on_previewed(self, pages: list[QImage]) -> None:
         self.page.report.show_pages(pages)
 
     def _on_preview_failed(self, error: Exception) -> None:
@@ -336,6 +336,6 @@ def _previewing(request: "ReportRequest") -> Work:
     def work(_report: Report) -> object:
         from app.reports.patient_report.document import report_pages
 
-        return report_pages(request, PREVIEW_PPI)
+        return [QImage.fromData(page) for page in report_pages(request, PREVIEW_PPI)]
 
     return work

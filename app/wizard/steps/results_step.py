@@ -40,6 +40,7 @@ class ResultsStep(Step):
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
+        self._held: Analysis | None = None  # by the page of results, which may be out of sight
         self._is_correcting = self._is_asking = False
         self._how_found: HowFoundDesk | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
@@ -164,15 +165,17 @@ class ResultsStep(Step):
                 results.compare.visits_wished.connect(self._visit.read_earlier)
                 results.strides.turned.connect(self._strides.turn)
                 results.strides.all_wanted.connect(self._strides.take_all_in)
-            if self._shown is not evaluation.analysis:
-                self._shown = evaluation.analysis
-                self._show_analysis(results, evaluation.analysis)
+            self._shown = evaluation.analysis
+            self._hold(results, evaluation.analysis)
             if page.currentWidget() is not results:
                 page.setCurrentWidget(results)
                 results.focus()
         self.changed.emit()
 
-    def _show_analysis(self, results: "ResultPage", analysis: "Analysis") -> None:
+    def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
+        if self._held is analysis:
+            return
+        self._held = analysis
         session = self._visit.evaluation.session
         results.show_analysis(
             analysis,
@@ -350,6 +353,10 @@ class ResultsStep(Step):
         if self._is_in_sight():
             self._evaluate_if_stale()  # something may have been put right meanwhile
             self._show()
+        elif self._frame is not None and self._frame.has_results and not self._visit.takes.is_recording:
+            analysis = self._visit.evaluation.analysis
+            if analysis is not None and analysis.recordings:
+                self._hold(self._frame.results(), analysis)  # before somebody comes, who would wait for it then
 
     def _on_progressed(self, share: float, what: str) -> None:
         if self._is_in_sight():
@@ -396,6 +403,10 @@ class _ResultsFrame(PageStack):
         if not self._parts.make_next():
             self.results()
         return True
+
+    @property
+    def has_results(self) -> bool:
+        return self._results is not None
 
     def results(self) -> "ResultPage":
         if self._results is None:
