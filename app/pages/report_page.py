@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import QEvent, QObject, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QImage, QKeyEvent, QPainter, QPaintEvent
+from PySide6.QtCore import QBuffer, QEvent, QObject, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QImage, QImageReader, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QPlainTextEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.theme import Look
@@ -18,6 +18,9 @@ from app.wording import tr
 WORDS_WIDTH = 320
 WORDS_HEIGHT = 176
 PAGE_WIDTH = 560  # a page of A4 that can be read
+PAPER_INCH = 8.27  # how wide A4 is
+LEAST_PPI, MOST_PPI = 60.0, 220.0
+SHARP_ENOUGH = 0.9
 REBUILT_AFTER_MS = 300  # without a key pressed
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
@@ -33,10 +36,13 @@ class ReportPage(QWidget):
         The words, once the typing pauses.
     options_changed
         Another paper, another visit to compare with, or other files beside the report.
+    sharper_wanted
+        There is room for finer pictures of the pages than those shown.
     """
 
     comment_edited = Signal(str)
     options_changed = Signal()
+    sharper_wanted = Signal()
 
     def __init__(self, look: Look) -> None:
         super().__init__()
@@ -91,6 +97,7 @@ class ReportPage(QWidget):
         self.formats.turned.connect(self.options_changed)
         self.paper.chosen.connect(self.options_changed)
         self.earlier.activated.connect(self.options_changed)
+        self.sheets.sharper_wanted.connect(self.sharper_wanted)
         self.show_visits([])
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
@@ -140,7 +147,13 @@ class ReportPage(QWidget):
         found = self.earlier.currentData()
         return found if isinstance(found, UUID) else None
 
-    def show_pages(self, pages: Sequence[QImage]) -> None:
+    @property
+    def pages_ppi(self) -> float:
+        """How many points of the screen an inch of paper takes: pictures of pages need no more."""
+        return self.sheets.ppi
+
+    def show_pages(self, pages: Sequence[bytes]) -> None:
+        """Show pages, each a PNG."""
         self.sheets.show_pages(pages)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
@@ -172,13 +185,37 @@ class ReportPage(QWidget):
         self.comment.setFont(self._look.theme.font(14))
 
 
+class _Sheet:
+    """A page as PNG: a picture once it is looked at."""
+
+    def __init__(self, png: bytes) -> None:
+        self._png: bytes | None = png
+        self._picture = QImage()
+        file = QBuffer()
+        file.setData(png)
+        size = QImageReader(file).size()
+        self.width = size.width()
+        self.height_per_width = size.height() / max(size.width(), 1)
+
+    def picture(self) -> QImage:
+        if self._png is not None:
+            self._picture, self._png = QImage.fromData(self._png), None
+        return self._picture
+
+
 class _Sheets(QWidget):
     """The pages under each other, as wide as there is room for."""
+
+    sharper_wanted = Signal()
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._pages: list[QImage] = []
+        self._pages: list[_Sheet] = []
+        self._settled = QTimer(self)
+        self._settled.setSingleShot(True)
+        self._settled.setInterval(REBUILT_AFTER_MS)
+        self._settled.timeout.connect(self.sharper_wanted)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.MinimumExpanding)
         self.setAccessibleName(tr("No pages yet"))
         column = QVBoxLayout(self)
@@ -189,8 +226,12 @@ class _Sheets(QWidget):
     def count(self) -> int:
         return len(self._pages)
 
-    def show_pages(self, pages: Sequence[QImage]) -> None:
-        self._pages = list(pages)
+    @property
+    def ppi(self) -> float:
+        return min(max(self._width() * self.devicePixelRatioF() / PAPER_INCH, LEAST_PPI), MOST_PPI)
+
+    def show_pages(self, pages: Sequence[bytes]) -> None:
+        self._pages = [_Sheet(page) for page in pages]
         self.setAccessibleName(tr("The report, {count} pages").format(count=len(pages)))
         self._fit()
         self.update()
@@ -200,6 +241,8 @@ class _Sheets(QWidget):
 
     def resizeEvent(self, _event: object) -> None:
         self._fit()
+        if self._pages and self._pages[0].width < SHARP_ENOUGH * self.ppi * PAPER_INCH:
+            self._settled.start()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -208,9 +251,9 @@ class _Sheets(QWidget):
         top, width = 0.0, self._width()
         left = (self.width() - width) / 2
         for page in self._pages:
-            place = QRectF(left, top, width, width * page.height() / max(page.width(), 1))
+            place = QRectF(left, top, width, width * page.height_per_width)
             if place.intersects(QRectF(self.visibleRegion().boundingRect())):
-                painter.drawImage(place, page)
+                painter.drawImage(place, page.picture())
                 painter.setPen(theme.pen(theme.colours.control, 1))
                 painter.setBrush(Qt.BrushStyle.NoBrush)
                 painter.drawRect(place.adjusted(0.5, 0.5, -0.5, -0.5))
@@ -220,7 +263,7 @@ class _Sheets(QWidget):
         return min(float(self.width()), 1.5 * self._look.theme.px(PAGE_WIDTH))
 
     def _height(self) -> int:
-        heights = (self._width() * page.height() / max(page.width(), 1) for page in self._pages)
+        heights = (self._width() * page.height_per_width for page in self._pages)
         return round(sum(height + self._look.theme.px(16) for height in heights))
 
     def _fit(self) -> None:

@@ -1,4 +1,4 @@
-"""How long does a report take? Seconds to make one of the demonstration, and of three conditions.
+"""How long do a report, and a look at its pages, take? Of the demonstration, and of three conditions; seconds.
 
 python -m tests.benchmarks.report [--repeats 5]
 """
@@ -9,11 +9,15 @@ from dataclasses import replace
 from datetime import UTC, datetime
 from statistics import median
 
-from app.reports.patient_report.document import make_report
+from PySide6.QtGui import QImage
+
+from app.reports.patient_report.document import Preview, make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
 from core.analysis import analyse
 from core.samples import RecordingKind
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+
+PREVIEW_PPI = 80.0  # of a page beside the words in a window of 1280 x 800
 
 
 def visit_of(walks: int) -> Visit:
@@ -38,8 +42,17 @@ def main() -> None:
             make_report(request)
             walls.append(time.perf_counter() - wall)
             cpus.append(time.process_time() - cpu)
+        preview, looks, looks_cpus = Preview(), [], []
+        for k in range(2 * repeats):
+            wall, cpu = time.perf_counter(), time.process_time()
+            pages = preview.pages(replace(request, comment=f"Words {k} of the clinician."), PREVIEW_PPI)
+            QImage.fromData(pages[0])  # the page that is looked at
+            looks.append(time.perf_counter() - wall)
+            looks_cpus.append(time.process_time() - cpu)
         said = f"{walks} walk(s): first {walls[0]:.2f} s, then {median(walls[1:]):.2f} s"
         print(f"{said} (processor {cpus[0]:.2f} s, {median(cpus[1:]):.2f} s)")
+        said = f"   a look: first {looks[0]:.2f} s, with other words {median(looks[1:]):.2f}, at most {max(looks[1:]):.2f} s"
+        print(f"{said} (processor {median(looks_cpus[1:]):.2f} s)")
 
 
 if __name__ == "__main__":

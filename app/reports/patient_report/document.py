@@ -3,6 +3,7 @@
 import json
 from datetime import datetime, timedelta, timezone
 from importlib.resources import files
+from threading import Lock
 from typing import Any
 
 import typst
@@ -22,6 +23,7 @@ from app.reports.patient_report.what_stands_out import what_stands_out
 from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
+WORDS_PAGE = -1  # of the pages after the first
 CODE_LENGTH = 16  # of the running head
 TITLE_CODE_LENGTH = 24
 
@@ -46,18 +48,40 @@ def make_report(request: ReportRequest) -> bytes:
     return pdf
 
 
-def report_pages(request: ReportRequest, ppi: float) -> list[bytes]:
-    """Give the report's pages as PNG, as they will print, for a look before; errors as in `make_report`."""
-    pages: Any = typst.compile(  # said to be bytes; of PNG, it is a list with one for each page
-        TEMPLATE.read_bytes(),
-        format="png",
-        ppi=ppi,
-        font_paths=_fonts(),
-        ignore_system_fonts=True,
-        sys_inputs={"data": json.dumps(report_data(request), ensure_ascii=False)},
-        timestamp=_whole_seconds(request.made_at),
-    )
-    return list(pages)
+class Preview:
+    """The pages for a look before, again and again while somebody types: what the words do not change is kept."""
+
+    def __init__(self) -> None:
+        self._lock = Lock()  # a look that nobody waits for any more may not have ended when the next begins
+        self._template = TEMPLATE.read_bytes()
+        self._compiler = typst.Compiler(self._template, font_paths=_fonts(), ignore_system_fonts=True)
+        self._known: tuple[ReportRequest, Facts, dict[str, Any]] | None = None
+
+    def pages(self, request: ReportRequest, ppi: float) -> list[bytes]:
+        """Give the report's pages as PNG, as they will print; errors as in `make_report`."""
+        with self._lock:
+            pages: Any = self._compiler.compile(  # said to be bytes; of PNG, it is a list with one for each page
+                self._template,
+                format="png",
+                ppi=ppi,
+                sys_inputs={"data": json.dumps(self._data(request), ensure_ascii=False)},
+                timestamp=_whole_seconds(request.made_at),
+            )
+        return list(pages)
+
+    def _data(self, request: ReportRequest) -> dict[str, Any]:
+        if self._known is None or not _differ_in_words_only(self._known[0], request):
+            self._known = request, facts_of(request), report_data(request)
+        _, facts, data = self._known
+        return data | {"pages": [*data["pages"][:WORDS_PAGE], words_page(request, facts)]}
+
+
+def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
+    are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
+    if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
+        return False
+    named = ("walks", "software_version", "operator", "clinic", "paper")
+    return all(getattr(one, name) == getattr(other, name) for name in named)
 
 
 def _whole_seconds(moment: datetime) -> datetime:
@@ -67,7 +91,7 @@ def _whole_seconds(moment: datetime) -> datetime:
 
 def report_data(request: ReportRequest) -> dict[str, Any]:
     """Give all that the template sets: words and figures, in the order they are read."""
-    facts = Facts(request.visit, request.visit.walk(request.shown))
+    facts = facts_of(request)
     comparison = comparison_of(request)
     session = request.visit.session
     code = plain(session.patient.code)
@@ -114,6 +138,10 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         "first_page": [*time_distance_table(facts), *what_stands_out(facts, comparison)],
         "pages": pages,
     }
+
+
+def facts_of(request: ReportRequest) -> Facts:
+    return Facts(request.visit, request.visit.walk(request.shown))
 
 
 def _subject(facts: Facts) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from uuid import UUID
 
 from PySide6.QtCore import QObject, Qt, QUrl
-from PySide6.QtGui import QDesktopServices, QImage
+from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
 from app.logs import version_of
@@ -26,6 +26,7 @@ from app.workers.library_desk import LibraryDesk
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
+    from app.reports.patient_report.document import Preview
     from app.reports.patient_report.request import ReportRequest
     from app.reports.patient_report.request import Visit as ReportVisit
     from app.storage.opened import OpenedLibrary
@@ -34,7 +35,6 @@ if TYPE_CHECKING:
 
 _log = logging.getLogger(__name__)
 
-PREVIEW_PPI = 110.0
 OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
@@ -50,6 +50,7 @@ class ReportStep(Step):
         self._clinic = ""
         self._earlier: tuple[UUID, ReportVisit] | None = None  # as was read last
         self._reading: UUID | None = None
+        self._preview: Preview | None = None  # of its threads
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
@@ -60,6 +61,7 @@ class ReportStep(Step):
             self._frame = _ReportFrame(self._look)
             self._frame.report.comment_edited.connect(self._on_comment_edited)
             self._frame.report.options_changed.connect(self._on_options_changed)
+            self._frame.report.sharper_wanted.connect(self._draw)
         return self._frame
 
     @property
@@ -167,9 +169,18 @@ class ReportStep(Step):
         """Set the pages anew, beside the screen."""
         request = self._request()
         if request is not None:
-            self._visit.preview.start(_previewing(request))
+            self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi))
 
-    def _on_previewed(self, pages: list[QImage]) -> None:
+    def _previewing(self, request: "ReportRequest", ppi: float) -> Work:
+        def work(_report: Report) -> object:
+            from app.reports.patient_report.document import Preview
+
+            self._preview = self._preview or Preview()
+            return self._preview.pages(request, ppi)
+
+        return work
+
+    def _on_previewed(self, pages: list[bytes]) -> None:
         self.page.report.show_pages(pages)
 
     def _on_preview_failed(self, error: Exception) -> None:
@@ -330,12 +341,3 @@ class _ReportFrame(QStackedWidget):
     def focus(self) -> None:
         if self.currentWidget() is self.report:
             self.report.focus()
-
-
-def _previewing(request: "ReportRequest") -> Work:
-    def work(_report: Report) -> object:
-        from app.reports.patient_report.document import report_pages
-
-        return [QImage.fromData(page) for page in report_pages(request, PREVIEW_PPI)]
-
-    return work

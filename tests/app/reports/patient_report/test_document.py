@@ -10,7 +10,7 @@ import pikepdf
 import pypdf
 import pytest
 
-from app.reports.patient_report.document import make_report
+from app.reports.patient_report.document import Preview, make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -153,3 +153,16 @@ def test_a_request_without_time_zone_or_walk_is_refused(demonstration: Visit) ->
         ReportRequest(demonstration, ("walk 1",), datetime(2026, 11, 21), "1.2.3")
     with pytest.raises(ValueError, match="0 walks"):
         ReportRequest(demonstration, (), datetime.fromisoformat("2026-11-21T12:00+00:00"), "1.2.3")
+
+
+def test_a_look_again_is_as_if_it_were_the_first(alignments: Visit) -> None:
+    """What is kept of the last look must not stand where something else was asked for."""
+    asked = ReportRequest(alignments, ("walk 1",), datetime.fromisoformat("2026-11-21T22:15:30+01:00"), "1.2.3")
+    changes = ({"comment": "Knee was tender."}, {"comment": ""}, {"walks": ("walk 1", "walk 2")}, {"paper": "letter"})
+    preview, before = Preview(), list[bytes]()
+    for change in changes:
+        asked = replace(asked, **change)
+        pages = preview.pages(asked, 40.0)
+        assert pages == Preview().pages(asked, 40.0)
+        assert pages != before
+        before = pages
