@@ -51,7 +51,8 @@ def main() -> None:
             looks_cpus.append(time.process_time() - cpu)
         said = f"{walks} walk(s): first {walls[0]:.2f} s, then {median(walls[1:]):.2f} s"
         print(f"{said} (processor {cpus[0]:.2f} s, {median(cpus[1:]):.2f} s)")
-        said = f"   a look: first {looks[0]:.2f} s, with other words {median(looks[1:]):.2f}, at most {max(looks[1:]):.2f} s"
+        again = f"with other words {median(looks[1:]):.2f} s, at most {max(looks[1:]):.2f} s"
+        said = f"   a look: first {looks[0]:.2f} s, {again}"
         print(f"{said} (processor {median(looks_cpus[1:]):.2f} s)")
 
 
