@@ -1,9 +1,11 @@
 """When was a sample taken, by the host's clock, if the sensor says when by its own?
 
 What arrives was sent before it arrived: latency only ever delays. So the line from the device's clock to the host's
-touches the arrivals from below (Zhang, Liu & Xia 2002, Clock synchronization algorithms for network measurements, IEEE
-INFOCOM, doi:10.1109/INFCOM.2002.1019257). The least latency cannot be seen from here and remains: a millisecond by
-cable.
+lies below the arrivals (Zhang, Liu & Xia 2002, Clock synchronization algorithms for network measurements, IEEE INFOCOM,
+doi:10.1109/INFCOM.2002.1019257): a little, and the less the more of them are near, as the mean of all lines that may be
+(Pitman 1939, The estimation of the location and scale parameters of a continuous population of any given form,
+Biometrika 30:391-421, doi:10.1093/biomet/30.3-4.391). The least latency cannot be seen from here and remains: a
+millisecond by cable.
 """
 
 from collections import deque
@@ -18,6 +20,10 @@ from devices.source import SensorCounts
 
 MOST_SKEW = 500e-6  # the worst quartz; what looks like more is latency that changed
 BIN_S = 0.5  # of which the earliest arrival counts; within it the clocks part by less than a quarter millisecond
+NEAR = 6  # arrivals next to the line, which tell how dense they are there; no more than each third of all
+ALIKE_S = 1e-6  # latencies so near to one another differ by rounding only
+SLOPES = 201  # tried at a time, in ever narrower ranges
+UNLIKELY = -20.0  # logarithm of what is no part of a mean any more
 SPREAD_S = 10.0  # pieces whose earliest arrivals tell how straight the clocks run
 BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
@@ -26,6 +32,7 @@ REMEMBERED = 3  # samples, of which the next has to follow one
 
 Arrival = tuple[float, float]
 """A sample's time by the sensor's clock, and when it arrived."""
+Point = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,13 +55,13 @@ class ClockFit:
 
 
 def fit_clock(device_s: FloatArray, host_s: FloatArray) -> ClockFit:
-    """Find the line below all arrivals (n,) that comes nearest to them, n > 0, in any order."""
+    """Find the line below all arrivals (n,), n > 0, in any order."""
     order = np.argsort(device_s, kind="stable")
     x_s, late_s = device_s[order], (host_s - device_s)[order]
     origin_s, least_s = float(x_s[0]), float(late_s.min())
     at_s, earliest_s = _earliest(x_s, late_s, BIN_S)
-    skew = _slope_below(at_s - origin_s, earliest_s - least_s)
-    offset_s = float((late_s - skew * (x_s - origin_s)).min())
+    skew, below_s = _line_below(at_s - at_s.mean(), earliest_s - least_s)
+    offset_s = float((late_s - skew * (x_s - origin_s)).min()) - below_s
     at_s, earliest_s = _earliest(x_s, late_s - skew * (x_s - origin_s) - offset_s, SPREAD_S)
     return ClockFit(origin_s, offset_s, skew, float(np.sqrt(np.mean(earliest_s**2))))
 
@@ -69,22 +76,46 @@ def _earliest(x_s: FloatArray, late_s: FloatArray, bin_s: float) -> tuple[FloatA
     return x_s[first], least_s
 
 
-def _slope_below(x: FloatArray, y: FloatArray) -> float:
-    """Slope of the lower hull's edge at the mean of x: of all lines below, its distances have the least sum."""
-    hull: list[tuple[float, float]] = []
+def _line_below(x: FloatArray, y: FloatArray) -> tuple[float, float]:
+    """Slope of the line below all points (n,), and how far below the lowest it lies; the mean of x is 0.
+
+    Were points as dense everywhere above the true line as they are next to it, any line below them all would be as
+    likely as `exp(density height)`, its height taken at x = 0. This is the mean of these lines.
+    """
+    hull_x, hull_y = np.array(_hull_below(x, y)).T
+    if len(hull_x) < 2:
+        return 0.0, 0.0
+    k = min(max(int(np.searchsorted(hull_x, 0.0)), 1), len(hull_x) - 1)
+    nearest = (hull_y[k] - hull_y[k - 1]) / (hull_x[k] - hull_x[k - 1])  # of all lines below, that which lies highest
+    slope = float(np.clip(nearest, -MOST_SKEW, MOST_SKEW))
+    above = np.sort(y - slope * x)
+    count = min(NEAR, len(above) // 3)
+    if count < 3 or above[count] - above[0] < ALIKE_S:
+        return slope, 0.0
+    density = (count - 1) / (above[count] - above[0])  # two of them lie on the line
+    low, high = -MOST_SKEW, MOST_SKEW
+    for _ in range(4):
+        slopes = np.linspace(low, high, SLOPES)
+        heights = (hull_y[:, None] - slopes * hull_x[:, None]).min(axis=0)
+        likely = density * (heights - heights.max())
+        first, last = np.flatnonzero(likely > UNLIKELY)[[0, -1]].tolist()
+        low, high = slopes[max(first - 1, 0)], slopes[min(last + 1, SLOPES - 1)]
+    weights = np.exp(likely) / np.exp(likely).sum()
+    slope, height = float(weights @ slopes), float(weights @ heights) - 1.0 / density
+    return slope, float((hull_y - slope * hull_x).min()) - height
+
+
+def _hull_below(x: FloatArray, y: FloatArray) -> list[Point]:
+    """The corners that a thread touches that is drawn tight below all points, x ascending."""
+    hull: list[Point] = []
     for point in zip(x.tolist(), y.tolist(), strict=True):
         while len(hull) > 1 and _turn(hull[-2], hull[-1], point) <= 0:
             hull.pop()
         hull.append(point)
-    if len(hull) < 2:
-        return 0.0
-    middle = float(x.mean())
-    k = next((k for k, (at, _) in enumerate(hull) if at >= middle), len(hull) - 1)
-    (left_x, left_y), (right_x, right_y) = hull[max(k - 1, 0)], hull[max(k, 1)]
-    return float(np.clip((right_y - left_y) / (right_x - left_x), -MOST_SKEW, MOST_SKEW))
+    return hull
 
 
-def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
+def _turn(a: Point, b: Point, c: Point) -> float:
     """Positive where a, b, c turn left."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
