@@ -21,7 +21,7 @@ from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
-from core.samples import Recording
+from core.samples import Recording, RecordingKind
 
 ROW_WAIT_S = 1.0
 
@@ -157,7 +157,13 @@ class _Entry:
     def _enter(self, turn: "Future[None] | None") -> None:
         if turn is not None:
             turn.result()
-        self._recordings.start(self._session_id, self._told, self._is_simulated, self.id)
+        self._recordings.start(
+            self._session_id,
+            self._told,
+            self._is_simulated,
+            self.id,
+            is_decided=self._told.kind is not RecordingKind.WALKING,
+        )
 
     def add(self, writer: JournalWriter) -> None:
         """Enter the journal, once the row is there."""

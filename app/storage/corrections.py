@@ -6,7 +6,7 @@ from enum import StrEnum
 from typing import Any
 from uuid import UUID
 
-from sqlalchemy import ColumnElement, or_, select
+from sqlalchemy import ColumnElement, func, or_, select
 from sqlalchemy.orm import DeclarativeBase, aliased
 from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.attributes import flag_modified
@@ -89,8 +89,10 @@ def apply(
         setattr(row, change.field, _typed(type(row), change.field, change.new))
         if isinstance(row, JointRow):  # it is part of its session, whose version has to tell
             flag_modified(session.get_one(SessionRow, row.session_id), "started")
+    last = session.scalar(select(func.max(CorrectionRow.number))) or 0  # the write lock is held: nobody takes the next
     correction = CorrectionRow(
         id=uuid7(),
+        number=last + 1,
         patient_id=patient_id,
         session_id=session_id,
         at=desk.now(),
@@ -141,7 +143,7 @@ def _listed(session: OrmSession, is_wanted: ColumnElement[bool]) -> tuple[Correc
         select(CorrectionRow, undoing.id)
         .outerjoin(undoing, undoing.undoes_id == CorrectionRow.id)
         .where(is_wanted)
-        .order_by(CorrectionRow.id.desc())
+        .order_by(CorrectionRow.number.desc())
     )
     return tuple(
         Correction(row.id, row.at, row.operator, tuple(_changes(row)), row.undoes_id, is_undone=undone_by is not None)

@@ -1,9 +1,10 @@
 """The recordings of a library's sessions: which journals they are in, and what was told of them."""
 
+import datetime
 from collections.abc import Mapping
 from uuid import UUID
 
-from sqlalchemy import select
+from sqlalchemy import select, update
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, note
@@ -37,11 +38,25 @@ class Recordings:
         return uuid7()
 
     def start(
-        self, session_id: UUID, told: Recording, is_simulated: bool, recording_id: UUID | None = None
+        self,
+        session_id: UUID,
+        told: Recording,
+        is_simulated: bool,
+        recording_id: UUID | None = None,
+        *,
+        is_decided: bool = True,
+        began_at: datetime.datetime | None = None,
     ) -> StoredRecording:
-        """Add a recording that is open, worn as the session's latest placement says, after all earlier ones.
+        """Add a recording that is open, worn as the session's latest placement says.
 
-        `recording_id` is that of a journal which nobody here knows of.
+        Parameters
+        ----------
+        recording_id
+            That of a journal which nobody here knows of.
+        is_decided
+            False: somebody is to be asked whether it is kept.
+        began_at
+            Of one that was made earlier: it comes after those that were begun before it. None: it is the last.
 
         Raises
         ------
@@ -57,8 +72,9 @@ class Recordings:
                 id=recording_id or uuid7(),
                 session_id=session_id,
                 placement=visit.placements[-1] if visit.placements else None,
-                number=max((other.number for other in visit.recordings), default=0) + 1,
+                number=_free_number(session, visit, began_at),
                 is_simulated=is_simulated,
+                is_decided=is_decided,
                 state=RecordingState.OPEN,
                 left_out=left_out_in_row(told.left_out_s),
                 **{name: getattr(told, name) for name in RECORDING_FIELDS},
@@ -160,8 +176,8 @@ class Recordings:
             session.flush()
             return stored_recording(row)
 
-    def judge(self, recording: StoredRecording, is_kept: bool) -> StoredRecording:
-        """Note that the operator has looked at what was recovered after a crash, and whether it is kept.
+    def decide(self, recording: StoredRecording, is_kept: bool) -> StoredRecording:
+        """Take the answer whether a recording is kept; of what was recovered after a crash, note who gave it.
 
         Raises
         ------
@@ -171,17 +187,15 @@ class Recordings:
         with self._desk.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
-            changes = differences(row, {"is_kept": is_kept, "judged_by": self._desk.code})
-            apply(self._desk, session, changes, visit.patient_id, visit.id)
+            is_recovered = row.state is RecordingState.RECOVERED
+            wanted: dict[str, object] = {"is_kept": is_kept}
+            if is_recovered:
+                wanted["judged_by"] = self._desk.code
+            apply(self._desk, session, differences(row, wanted), visit.patient_id, visit.id)
+            row.is_decided = True
             session.flush()
-            note(
-                self._desk,
-                session,
-                Action.EDIT,
-                about("recording", row.id),
-                is_recovered=True,
-                is_kept=is_kept,
-            )
+            details = {"is_recovered": is_recovered, "is_kept": is_kept}
+            note(self._desk, session, Action.EDIT, about("recording", row.id), **details)
             return stored_recording(row)
 
     def find(self, recording_id: UUID) -> StoredRecording | None:
@@ -216,6 +230,28 @@ def current_recording(session: OrmSession, recording: StoredRecording) -> Record
     if row.version != recording.version:
         raise changed_meanwhile()
     return row
+
+
+def _free_number(session: OrmSession, visit: SessionRow, began_at: datetime.datetime | None) -> int:
+    """The place of a recording to come; those that come after it are moved on."""
+    last = max((other.number for other in visit.recordings), default=0)
+    begun = {other.number: _instant(other.started) for other in visit.recordings}
+    if began_at is None or all(at is None for at in begun.values()):
+        return last + 1
+    number = max((place for place, at in begun.items() if at is not None and at <= began_at), default=0) + 1
+    later = update(RecordingRow).where(RecordingRow.session_id == visit.id)
+    # twice, because no two may have one number at any time
+    session.execute(later.where(RecordingRow.number >= number).values(number=-RecordingRow.number - 1))
+    session.execute(later.where(RecordingRow.number < 0).values(number=-RecordingRow.number))
+    return number
+
+
+def _instant(started: str) -> datetime.datetime | None:
+    """When a recording was begun; without a zone, as clocks show it here. None: nobody has said."""
+    try:
+        return datetime.datetime.fromisoformat(started).astimezone()
+    except ValueError:
+        return None
 
 
 def _existing(session: OrmSession, recording_id: UUID) -> RecordingRow:

@@ -21,7 +21,7 @@ from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
 from app.wording import tr
-from core.samples import Recording
+from core.samples import Recording, RecordingKind
 from devices.files.imports import folder_for, free_name
 
 LAST_BYTES = (1 << 16, 1 << 22)  # where the last record is looked for: the longest has 1 MiB, most have far less
@@ -115,7 +115,7 @@ def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> 
 
 
 def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Recording, report: Report) -> Recovered:
-    """Make an orphan a recording of a session, worn as the session's latest placement says.
+    """Make an orphan a recording of a session, in order of time, worn as the session's latest placement says.
 
     Raises
     ------
@@ -129,7 +129,14 @@ def adopt(opened: OpenedLibrary, orphan: Interrupted, session_id: UUID, told: Re
     if orphan.problem:
         raise JournalRefusedError(str(orphan.recording_id), orphan.problem, orphan.remedy)
     contents = _Contents(opened, orphan, report)
-    stored = opened.library.recordings.start(session_id, told, contents.is_simulated, orphan.recording_id)
+    stored = opened.library.recordings.start(
+        session_id,
+        told,
+        contents.is_simulated,
+        orphan.recording_id,
+        is_decided=told.kind is not RecordingKind.WALKING,
+        began_at=orphan.began_at,
+    )
     return _close(opened, stored, contents)
 
 

@@ -62,8 +62,9 @@ class Results:
                 )
                 session.add(row)
                 session.flush()
-                elder = select(ResultRow.id).where(ResultRow.session_id == session_id, ResultRow.kind == kind)
-                too_many = session.scalars(elder.order_by(ResultRow.id.desc()).offset(MOST_KEPT)).all()
+                other = (ResultRow.session_id == session_id, ResultRow.kind == kind, ResultRow.id != row.id)
+                elder = select(ResultRow.id).where(*other).order_by(ResultRow.id.desc())
+                too_many = session.scalars(elder.offset(MOST_KEPT - 1)).all()  # never this one: clocks are set back
                 session.execute(delete(ResultRow).where(ResultRow.id.in_(too_many)))
             return stored_result(row)
 

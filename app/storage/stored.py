@@ -133,7 +133,10 @@ class StoredJournal:
 
 @dataclass(frozen=True, slots=True)
 class StoredRecording:
-    """`judged_by`: who said after a crash whether what was recovered is kept; empty until somebody has."""
+    """`judged_by`: who said after a crash whether what was recovered is kept; empty until somebody has.
+
+    Not `is_decided`: it is kept until somebody says so, and that is still to be asked.
+    """
 
     id: UUID
     version: int
@@ -144,6 +147,7 @@ class StoredRecording:
     placement: Placement | None
     journals: tuple[StoredJournal, ...]
     judged_by: str = ""
+    is_decided: bool = True
 
     @property
     def is_unjudged(self) -> bool:

@@ -74,7 +74,7 @@ def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, .
         Take(
             stored,
             recording_with_samples(opened, stored, DECODERS)[0],
-            is_decided=not (stored.is_unjudged and stored.told.is_kept),
+            is_decided=stored.is_decided and not (stored.is_unjudged and stored.told.is_kept),
         )
         for stored in session.recordings
         if stored.state in usable

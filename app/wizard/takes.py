@@ -242,8 +242,8 @@ class Takes(QObject):
         if take.told.is_restrapped_before and not is_kept and take.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
         self._put(replace(take, is_decided=True))
-        if take.stored.state is RecordingState.RECOVERED:
-            self._judge(take, is_kept)
+        if take.stored.state is RecordingState.RECOVERED or not take.stored.is_decided:
+            self._decide(take, is_kept)
         elif take.told.is_kept != is_kept:
             self.change(take, replace(take.told, is_kept=is_kept))
 
@@ -256,14 +256,14 @@ class Takes(QObject):
 
         self._desk.run(save, self._on_changed, self._on_not_changed, self)
 
-    def _judge(self, take: Take, is_kept: bool) -> None:
-        """Say so of what was recovered after a crash: it is noted who did."""
+    def _decide(self, take: Take, is_kept: bool) -> None:
+        """Give the answer that was asked for: nobody is asked again, at the next start either."""
 
-        def judge(opened: "OpenedLibrary") -> StoredRecording:
+        def decide(opened: "OpenedLibrary") -> StoredRecording:
             current = opened.library.recordings.find(take.id)
-            return opened.library.recordings.judge(current or take.stored, is_kept)
+            return opened.library.recordings.decide(current or take.stored, is_kept)
 
-        self._desk.run(judge, self._on_changed, self._on_not_changed, self)
+        self._desk.run(decide, self._on_changed, self._on_not_changed, self)
 
     def recordings(self) -> tuple[Recording, ...]:
         """Those that count and have been read, in order of time, as an analysis takes them.
@@ -325,8 +325,7 @@ class Takes(QObject):
         stored, recording = result
         unread = self._unread.pop(0)
         self._is_reading, self._readings = False, 0
-        is_walk = stored.told.kind is RecordingKind.WALKING
-        take = Take(stored, recording, unread.strides, is_decided=not is_walk)
+        take = Take(stored, recording, unread.strides, stored.is_decided)
         if not self._unread:
             self._go_on()
         self._put(take)

@@ -26,6 +26,7 @@ from sqlalchemy import (
     TypeDecorator,
     UniqueConstraint,
     false,
+    true,
 )
 from sqlalchemy.orm import DeclarativeBase, Mapped, declared_attr, mapped_column, relationship, validates
 
@@ -213,7 +214,9 @@ class PlacedSensorRow(Base):
 
 
 class RecordingRow(Versioned, Base):
-    """`judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then.
+    """`is_decided`: nobody is to be asked any more whether it is kept.
+
+    `judged_by`: the operator who said after a crash whether what was recovered is kept; empty until then.
 
     `left_out`: the strides that were left out by hand, as `values` writes them.
     """
@@ -237,6 +240,7 @@ class RecordingRow(Versioned, Base):
     is_simulated: Mapped[bool]
     state: Mapped[RecordingState] = mapped_column(_words(RecordingState, "state"), index=True)
     judged_by: Mapped[str] = mapped_column(default="", server_default="")
+    is_decided: Mapped[bool] = mapped_column(default=True, server_default=true())
     unknown: Mapped[Mapping[str, object]]
 
     placement: Mapped[PlacementRow | None] = relationship()
@@ -273,7 +277,10 @@ class ResultRow(Base):
 
 
 class CorrectionRow(Base):
-    """Who changed what from what to what. Goes when the patient or session that it is about is destroyed."""
+    """Who changed what from what to what. Goes when the patient or session that it is about is destroyed.
+
+    `number` counts up in the order in which they were made; a clock may be set back.
+    """
 
     __tablename__ = "corrections"
 
@@ -284,6 +291,7 @@ class CorrectionRow(Base):
     operator: Mapped[str]
     changes: Mapped[list[dict[str, Any]]] = mapped_column(JSON)
     undoes_id: Mapped[UUID | None] = mapped_column(ForeignKey("corrections.id", ondelete="CASCADE"), unique=True)
+    number: Mapped[int] = mapped_column(index=True, unique=True, server_default="0")
 
 
 class OperatorRow(Versioned, Base):

@@ -77,6 +77,7 @@ def stored_recording(row: RecordingRow) -> StoredRecording:
         placement_of(row.placement) if row.placement is not None else None,
         tuple(StoredJournal(j.segment, j.file, j.wrapped_key, j.sha256) for j in row.journals),
         row.judged_by,
+        row.is_decided,
     )
 
 

@@ -279,6 +279,17 @@ def test_of_the_results_of_a_session_the_latest_two_are_kept_and_one_computed_ag
     assert mended.content == b"mended"
 
 
+def test_a_result_is_kept_though_the_clock_was_set_back(library: Library, monkeypatch: pytest.MonkeyPatch) -> None:
+    visit = library.sessions.create(library.patients.create(Patient(code="P-1")).id, Session(()))
+    for name in ("1", "2"):
+        library.results.keep(visit.id, ResultKind.ANALYSIS, replace(INPUTS, algorithm=name), "json", b"{}")
+    true_ns = time.time_ns
+    monkeypatch.setattr(time, "time_ns", lambda: true_ns() - 86_400_000_000_000)
+    latest = replace(INPUTS, algorithm="3")
+    kept = library.results.keep(visit.id, ResultKind.ANALYSIS, latest, "json", b"{}")
+    assert library.results.find(visit.id, ResultKind.ANALYSIS, latest) == kept
+
+
 def test_the_database_is_loaded_when_a_library_is_opened_and_not_before() -> None:
     look = "import sys, app.cli, app.storage.library, app.storage.stored; print('sqlalchemy' in sys.modules)"
     run = subprocess.run([sys.executable, "-c", look], capture_output=True, text=True, check=True)

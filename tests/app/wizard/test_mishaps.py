@@ -59,7 +59,7 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
     takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
     assert acquisition is not None
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    monkeypatch.setattr(Recordings, "change", failing(1, LibraryError("Changed meanwhile", "Look"), Recordings.change))
+    monkeypatch.setattr(Recordings, "decide", failing(1, LibraryError("Changed meanwhile", "Look"), Recordings.decide))
     with qtbot.waitSignals([takes.refused, takes.begun], timeout=WAIT_MS):
         takes.keep(walk, is_kept=False)
         takes.begin(acquisition, RecordingKind.WALKING)
@@ -187,7 +187,8 @@ def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Vi
 
 
 def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looked_at: Visit) -> None:
-    record(qtbot, looked_at, RecordingKind.WALKING, 1.0)
+    looked_at.takes.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
+    qtbot.waitUntil(lambda: looked_at.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert looked_at.session is not None
     again = Visit(desk, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):

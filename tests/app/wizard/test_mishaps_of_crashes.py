@@ -62,6 +62,9 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     record(qtbot, left, RecordingKind.STANDING, 0.5)
     assert landed(qtbot, wizard, left) == SENSORS
     walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
+    assert landed(qtbot, wizard, left) == WALKING  # nobody has said yet whether it is kept
+    left.takes.keep(walk, is_kept=True)
+    qtbot.waitUntil(lambda: left.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert landed(qtbot, wizard, left) == RESULTS
     assert left.desk.state is not None
     library = left.desk.state.library.library

@@ -79,10 +79,10 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     for name in ("start", "add_journal", "close"):
         whole = getattr(Recordings, name)
 
-        def call(*arguments: object, whole: Callable[..., object] = whole) -> object:
+        def call(*arguments: object, whole: Callable[..., object] = whole, **named: object) -> object:
             if is_broken[0]:
                 raise FAULT
-            return whole(*arguments)
+            return whole(*arguments, **named)
 
         monkeypatch.setattr(Recordings, name, call)
     takes, acquisition = visit.takes, visit.sensors.acquisition

@@ -79,6 +79,23 @@ def test_a_library_of_the_version_before_keeps_what_it_holds(library: Library, d
     assert library.sessions.get(visit.id) == visit
 
 
+def test_corrections_of_the_version_before_are_numbered_as_they_were_made(tmp_path: Path) -> None:
+    """Also where a clock was set back between them: the second one's id sorts before the first one's."""
+    database = Database(sqlite_engine(tmp_path / "library.db", None))
+    with database.rebuilding() as connection:
+        move(connection, "0004")
+        connection.execute(text("PRAGMA defer_foreign_keys = 1"))
+        for one in ("f", "a"):
+            connection.execute(
+                text(f"INSERT INTO corrections VALUES ('{one * 32}', 'b', NULL, '2026-01-01', 'hk', '[]', NULL)")
+            )
+        move(connection, "head")
+        numbers = connection.execute(text("SELECT id, number FROM corrections ORDER BY number")).all()
+        connection.execute(text("DELETE FROM corrections"))
+    assert numbers == [("f" * 32, 1), ("a" * 32, 2)]
+    database.close()
+
+
 def test_a_later_version_is_left_alone(database: Database) -> None:
     bring_up_to_date(database)
     with database.writing() as session:
@@ -136,7 +153,7 @@ def test_altering_a_table_loses_nothing_that_refers_to_it(library: Library, data
 def test_an_update_that_leaves_references_to_nothing_is_not_kept(tmp_path: Path) -> None:
     database = Database(sqlite_engine(tmp_path / "library.db", None))
     bring_up_to_date(database)
-    nobody = "INSERT INTO corrections VALUES ('a', 'b', NULL, '2026-01-01', 'hk', '[]', NULL)"
+    nobody = "INSERT INTO corrections VALUES ('a', 'b', NULL, '2026-01-01', 'hk', '[]', NULL, 1)"
     with pytest.raises(LibraryError, match="corrections refers to nothing"), database.rebuilding() as connection:
         connection.execute(text(nobody))
     assert database.faults() == ()
