@@ -122,6 +122,7 @@ class Recovering(QObject):
 
 
 def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", report: Report) -> _Outcome:
+    from app.storage.exchange import was_exported
     from app.storage.journal.header import JournalRefusedError
     from app.storage.recovery import adopt_home, recover
     from app.storage.stored import LibraryError, LibraryFaultError
@@ -141,7 +142,8 @@ def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", repo
             except LibraryFaultError:
                 raise
             except LibraryError:  # its session is gone, or it does not say which that is
-                outcome.lost.append(one)
+                if not was_exported(opened, one):
+                    outcome.lost.append(one)
     sessions = {one.stored.session_id for one in [*outcome.recovered, *outcome.adopted]}
     patients = frozenset(opened.library.sessions.get(session_id).patient_id for session_id in sessions)
     return outcome._replace(patients=patients)

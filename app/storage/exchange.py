@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from uuid import UUID
 
-from app.storage.audit import about
+from app.storage.audit import about, canonical
 from app.storage.database.ids import uuid7
 from app.storage.journal.decoding import DecodedJournal, Decoders, decode
 from app.storage.journal.disk import ROOM, TOLD, Room, Trouble
@@ -42,6 +42,7 @@ from devices.source import SourceInfo
 
 DRIVER, VERSION = "session-folder", "1"
 OWN_NAME = "sensor"  # the setting that holds what the folder calls the sensor
+WHOLE = {"is_whole": True}  # of an export, in the audit: it was not broken off
 PIECE_ROWS = 10_000  # so that a long recording is not held a second time
 
 
@@ -172,7 +173,7 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
     """Write one CSV file per sensor of a recording that no session knows, to be imported into the right one.
 
     Nobody knows where its sensors were worn, so it is no session folder. It stays in the library. The audit is told
-    before anything is written.
+    before anything is written, and once more when all of it is.
 
     Raises
     ------
@@ -185,12 +186,20 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
     """
     decoded = decode(list(orphan.segments.values()), opened.data_key, decoders)
     _refuse_undecoded(orphan.belonging.told.name if orphan.belonging else orphan.recording_id.hex, decoded)
-    opened.library.audit.note(Action.EXPORT, about("recording", orphan.recording_id), format="one CSV per sensor")
+    subject = about("recording", orphan.recording_id)
+    opened.library.audit.note(Action.EXPORT, subject, format="one CSV per sensor")
     folder.mkdir(parents=True, exist_ok=True)
     names = _own_names(decoded)
     for number, (sensor, heard) in enumerate(decoded.sensors.items()):
         report(number / len(decoded.sensors), sensor)
         write_site(heard.block, folder / f"{folder_for(names.get(sensor, sensor))}.csv")
+    opened.library.audit.note(Action.EXPORT, subject, **WHOLE)
+
+
+def was_exported(opened: OpenedLibrary, orphan: Interrupted) -> bool:
+    """Whether all of an orphan is in files already, so that nobody has to be told of it again."""
+    told = opened.library.audit.entries(about("recording", orphan.recording_id))
+    return any(entry.action == Action.EXPORT and entry.details == canonical(WHOLE) for entry in told)
 
 
 def _refuse_undecoded(name: str, decoded: DecodedJournal) -> None:

@@ -298,6 +298,17 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
     assert len(list((tmp_path / "out").glob("*/LT-1.csv"))) == 2
     assert home.banner._act.isHidden()
+    assert desk.state is not None
+    left = list(desk.state.library.recordings.iterdir())
+    home.banner._dismiss.click()
+    looked_through: list[object] = []
+    home.recovering.recovered.connect(looked_through.append)
+    open_library(qtbot, desk, home, folder)
+    qtbot.waitUntil(lambda: bool(looked_through), timeout=WAIT_MS)
+    assert desk.state is not None
+    assert len(desk.state.interrupted) == 2  # they are kept, but told of no more
+    assert home.banner.isHidden()
+    assert set(left) <= set(desk.state.library.recordings.iterdir())
 
 
 def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, desk: LibraryDesk, home: Home) -> None:

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from datetime import timedelta, timezone
 from pathlib import Path
 from uuid import UUID
 
@@ -10,7 +11,7 @@ import pytest
 
 from app.storage.audit import about
 from app.storage.database.ids import uuid7
-from app.storage.exchange import export_orphan
+from app.storage.exchange import export_orphan, was_exported
 from app.storage.journal.decoding import decode
 from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError
 from app.storage.journal.reader import JournalReader
@@ -128,8 +129,43 @@ def test_an_orphan_of_no_session_is_exported_and_stays(opened: OpenedLibrary, re
     block, findings = read_site(tmp_path / str(silent_one.id) / "LT-1.csv", "", "", SENSOR, is_rate_derived=False)
     assert (len(block), findings) == (500, ())
     np.testing.assert_array_equal(block.gyr_rad_s, samples(500).gyr_rad_s)
-    (noted,) = opened.library.audit.entries(about("recording", silent_one.id))
-    assert noted.action == Action.EXPORT
+    noted = opened.library.audit.entries(about("recording", silent_one.id))
+    assert [entry.action for entry in noted] == [Action.EXPORT] * 2  # before, and when it was done
+    assert all(was_exported(opened, one) for one in found)
+
+
+def test_an_export_that_was_broken_off_is_none(opened: OpenedLibrary, record: Record, tmp_path: Path) -> None:
+    record("left over", is_stopped=False, has_row=False)
+    (found,) = find_interrupted(opened)
+    (tmp_path / "a file").touch()
+    with pytest.raises(OSError, match="a file"):
+        export_orphan(opened, found, tmp_path / "a file", {}, silent)
+    assert opened.library.audit.entries(about("recording", found.recording_id))
+    assert not was_exported(opened, found)
+
+
+def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UUID, record: Record) -> None:
+    """Between the recordings begun before and after it, also where these say their time as another zone's clocks."""
+    began = {"walk 1": 0, "walk 4": 3}
+    left = record("walk 2", is_stopped=False, has_row=False, says_session=session_id)
+    record("walk 3", is_stopped=False, has_row=False, says_session=session_id)
+    first, second = find_interrupted(opened)
+    assert first.recording_id == left.id
+    assert first.began_at is not None
+    for name, hour in began.items():
+        at = (first.began_at + timedelta(hours=hour - 1)).astimezone(timezone(timedelta(hours=-hour)))
+        opened.library.recordings.start(
+            session_id,
+            Recording(name, RecordingKind.WALKING, name, {}, started=at.isoformat(timespec="seconds")),
+            False,
+        )
+    before = {one.id: one.version for one in opened.library.sessions.get(session_id).recordings}
+    for one in (second, first):
+        adopt_home(opened, one, silent)
+    session = opened.library.sessions.get(session_id)
+    assert [one.told.name for one in session.recordings] == ["walk 1", "walk 2", "walk 3", "walk 4"]
+    assert [one.version for one in session.recordings if one.id in before] == list(before.values())
+    assert [one.is_decided for one in session.recordings] == [True, False, False, True]  # asked: keep or discard
 
 
 @pytest.mark.parametrize("damage", ["missing", "another key", "no journal"])
