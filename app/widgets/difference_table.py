@@ -4,23 +4,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import (
-    QApplication,
     QHeaderView,
     QStyledItemDelegate,
     QStyleOptionViewItem,
-    QTableView,
     QWidget,
 )
 
 from app.theme import Look
+from app.widgets.bare_table import ROW, BareTable
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD
 from core.body import Side
 
-ROW, HEAD = 28, 32
+HEAD = 32
 PADDING = 6
 MARK = 16
 Index = QModelIndex | QPersistentModelIndex
@@ -50,8 +49,8 @@ class DifferenceTableRow:
 
 
 class DifferenceTableModel(QAbstractTableModel):
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.head: Sequence[str] = ()
         self.rows: Sequence[DifferenceTableRow] = ()
 
@@ -85,48 +84,17 @@ class DifferenceTableModel(QAbstractTableModel):
         return self.head[section] if is_head and section < len(self.head) else None
 
 
-class DifferenceTable(QTableView):
-    """As high as its rows; copies as tab-separated text."""
-
+class DifferenceTable(BareTable):
     def __init__(self, look: Look, name: str) -> None:
-        super().__init__()
-        self._look = look
-        self.figures = DifferenceTableModel(self)
-        self.needed_widths: list[int] = []
-        self.setModel(self.figures)
-        self.setHorizontalHeader(_Header(look, self))
-        self.verticalHeader().hide()
-        self.verticalHeader().setMinimumSectionSize(1)
-        self.setItemDelegate(_Delegate(look, self))
-        self.setAccessibleName(name)
-        self.setShowGrid(False)
-        self.setFrameShape(QTableView.Shape.NoFrame)
-        self.setTabKeyNavigation(False)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        look.changed.connect(self._on_look_changed)
+        model = DifferenceTableModel()
+        super().__init__(look, model, name, HEAD)
+        self.figures = model
+        self.dress(_Header(look, self), _Delegate(look, self))
 
     def show_rows(self, head: Sequence[str], rows: Sequence[DifferenceTableRow]) -> None:
         """Show `rows`, whose cells stand under all of `head` but the first, which is the name's."""
         self.figures.show_rows(head, rows)
-        self._on_look_changed()
-
-    def minimumSizeHint(self) -> QSize:
-        height = self.horizontalHeader().height() + len(self.figures.rows) * self._look.theme.px(ROW)
-        return QSize(sum(self.needed_widths), height)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.matches(QKeySequence.StandardKey.Copy):
-            QApplication.clipboard().setText(self.as_text())
-            return
-        super().keyPressEvent(event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._share_width()
+        self.fit()
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
@@ -135,32 +103,6 @@ class DifferenceTable(QTableView):
             side = row.side[0].upper() if row.side is not None else ""
             lines.append([side, row.name, *(cell.words for cell in row.cells)])
         return "\n".join("\t".join(cells) for cells in lines)
-
-    def _on_look_changed(self) -> None:
-        px, model = self._look.theme.px, self.figures
-        self.setFont(self._look.theme.font(14))
-        self.horizontalHeader().setFixedHeight(px(HEAD))
-        delegate, option, header = self.itemDelegate(), QStyleOptionViewItem(), self.horizontalHeader()
-        self.needed_widths = [
-            max(
-                [header.sectionSizeFromContents(column).width()]
-                + [delegate.sizeHint(option, model.index(row, column)).width() for row in range(len(model.rows))]
-            )
-            for column in range(len(model.head))
-        ]
-        for row in range(len(model.rows)):
-            self.setRowHeight(row, px(ROW))
-        self.setFixedHeight(self.minimumSizeHint().height())
-        self.setMinimumWidth(self.minimumSizeHint().width())
-        self._share_width()
-        self.viewport().update()
-
-    def _share_width(self) -> None:
-        """Give every column what it needs, and the rest to the names."""
-        if self.needed_widths:
-            spare = max(0, self.width() - sum(self.needed_widths))
-            for column, width in enumerate(self.needed_widths):
-                self.setColumnWidth(column, width + (spare if column == 0 else 0))
 
 
 class _Delegate(QStyledItemDelegate):

@@ -5,17 +5,16 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import (
-    QApplication,
     QHeaderView,
     QStyledItemDelegate,
     QStyleOptionViewItem,
-    QTableView,
     QWidget,
 )
 
 from app.theme import Look
+from app.widgets.bare_table import ROW, BareTable
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -23,7 +22,6 @@ from app.wording import later, name_of, tr
 from core.body import Joint, Side
 from core.results import AxisSource, JointCalibration, ZeroKind
 
-ROW = 28
 HEAD = 36
 PADDING = 6
 MARK = 16
@@ -104,8 +102,8 @@ ROWS: tuple[tuple[str, str, Callable[[JointCalibration], Cell]], ...] = (
 
 
 class FactsModel(QAbstractTableModel):
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self._cells: list[list[Cell]] = []
         self.joints: list[Joint] = []
 
@@ -142,47 +140,16 @@ class FactsModel(QAbstractTableModel):
         return name_of(self.joints[section]) if orientation == Qt.Orientation.Horizontal else tr(ROWS[section][0])
 
 
-class FactsTable(QTableView):
-    """As high as its rows; copies as tab-separated text."""
-
+class FactsTable(BareTable):
     def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._look = look
-        self.facts = FactsModel(self)
-        self.setModel(self.facts)
-        self.setHorizontalHeader(_JointHeader(look, self))
-        self.setVerticalHeader(_QuestionHeader(look, self))
-        self.setItemDelegate(_CellDelegate(look, self))
-        self.setAccessibleName(tr("How each joint was found"))
-        self.setShowGrid(False)
-        self.setFrameShape(QTableView.Shape.NoFrame)
-        self.setCornerButtonEnabled(False)
-        self.setTabKeyNavigation(False)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
+        model = FactsModel()
+        super().__init__(look, model, tr("How each joint was found"), HEAD)
+        self.facts = model
+        self.dress(_JointHeader(look, self), _CellDelegate(look, self), _QuestionHeader(look, self))
 
     def show_joints(self, found: Mapping[Joint, JointCalibration]) -> None:
         self.facts.show_joints(found)
-        self._on_look_changed()
-
-    def minimumSizeHint(self) -> QSize:
-        height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.facts.rowCount()))
-        return QSize(self.verticalHeader().width() + sum(self._needed_widths()), height)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.matches(QKeySequence.StandardKey.Copy):
-            QApplication.clipboard().setText(self.as_text())
-            return
-        super().keyPressEvent(event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._share_width()
+        self.fit()
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
@@ -194,42 +161,20 @@ class FactsTable(QTableView):
         ]
         return "\n".join("\t".join(cells) for cells in [head, *rows])
 
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self.setFont(self._look.theme.font(14))
-        self.horizontalHeader().setFixedHeight(px(HEAD))
+    def fit(self) -> None:
+        """Measure all of it anew, the questions too."""
         metrics = QFontMetrics(self._look.theme.font(14))
         questions = max(metrics.horizontalAdvance(tr(title)) for title, _, _ in ROWS)
-        self.verticalHeader().setFixedWidth(questions + px(PADDING))
-        delegate, option = self.itemDelegate(), QStyleOptionViewItem()
-        for row in range(self.facts.rowCount()):
-            cells = [self.facts.index(row, column) for column in range(self.facts.columnCount())]
-            self.setRowHeight(row, max(delegate.sizeHint(option, cell).height() for cell in cells))
-        self.setFixedHeight(self.minimumSizeHint().height())
-        self.setMinimumWidth(self.minimumSizeHint().width())
-        self._share_width()
-        self.viewport().update()
+        self.verticalHeader().setFixedWidth(questions + self._look.theme.px(PADDING))
+        super().fit()
 
-    def _needed_widths(self) -> list[int]:
-        """Give what each column needs for its widest cell."""
-        delegate, option = self.itemDelegate(), QStyleOptionViewItem()
-        return [
-            max(
-                [self.horizontalHeader().sectionSizeFromContents(column).width()]
-                + [
-                    delegate.sizeHint(option, self.facts.index(row, column)).width()
-                    for row in range(self.facts.rowCount())
-                ]
-            )
-            for column in range(self.facts.columnCount())
-        ]
+    def _row_height(self, row: int) -> int:
+        option = QStyleOptionViewItem()
+        cells = (self.facts.index(row, column) for column in range(self.facts.columnCount()))
+        return max(self.itemDelegate().sizeHint(option, cell).height() for cell in cells)
 
-    def _share_width(self) -> None:
-        """Give every column what it needs and an equal share of the rest."""
-        needed = self._needed_widths()
-        spare = max(0, self.width() - self.verticalHeader().width() - sum(needed))
-        for column, width in enumerate(needed):
-            self.setColumnWidth(column, width + spare // len(needed))
+    def _shared(self, spare: int) -> list[int]:
+        return [width + spare // len(self.needed_widths) for width in self.needed_widths]
 
 
 class _CellDelegate(QStyledItemDelegate):

@@ -1,28 +1,27 @@
 """What did the walk give in figures? One row per figure: left, right, and the same of a cited group."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QResizeEvent
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 from PySide6.QtWidgets import (
-    QApplication,
     QHeaderView,
     QStyledItemDelegate,
     QStyleOptionViewItem,
-    QTableView,
     QWidget,
 )
 
 from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
 from app.theme import Look
+from app.widgets.bare_table import ROW, BareTable
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import SEMIBOLD
 from app.wording import capitalised, later, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
-ROW, HEAD = 28, 32
+HEAD = 32
 PADDING = 6
 NAME, LEFT, RIGHT, BAND = range(4)
 COLUMNS = 4
@@ -35,8 +34,8 @@ Index = QModelIndex | QPersistentModelIndex
 class FiguresModel(QAbstractTableModel):
     """Rows are headings (a word) or figures. A cell is the value and what stands smaller behind it."""
 
-    def __init__(self, parent: QWidget) -> None:
-        super().__init__(parent)
+    def __init__(self) -> None:
+        super().__init__()
         self.rows: list[str | Figure] = []
         self.strides: Mapping[Side, int] = {}
 
@@ -105,27 +104,12 @@ class FiguresModel(QAbstractTableModel):
         return f"{capitalised(name)}, {who}: {said}"
 
 
-class FiguresTable(QTableView):
-    """As high as its rows; copies as tab-separated text."""
-
+class FiguresTable(BareTable):
     def __init__(self, look: Look, name: str) -> None:
-        super().__init__()
-        self._look = look
-        self.figures = FiguresModel(self)
-        self.needed_widths = [0] * COLUMNS  # by the widest cell of each column; nothing for a hidden one
-        self.setModel(self.figures)
-        self.setHorizontalHeader(_SideHeader(look, self))
-        self.verticalHeader().hide()
-        self.verticalHeader().setMinimumSectionSize(1)
-        self.setItemDelegate(_FigureDelegate(look, self))
-        self.setAccessibleName(name)
-        self.setShowGrid(False)
-        self.setFrameShape(QTableView.Shape.NoFrame)
-        self.setTabKeyNavigation(False)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
+        model = FiguresModel()
+        super().__init__(look, model, name, HEAD)
+        self.figures = model
+        self.dress(_SideHeader(look, self), _FigureDelegate(look, self))
 
     def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int]) -> None:
         """Show headings and figures; `strides` used stand above each side's column."""
@@ -138,24 +122,7 @@ class FiguresTable(QTableView):
                 self.setSpan(k, LEFT, 1, 2)
         for column, side in SIDE_OF.items():
             self.setColumnHidden(column, side not in strides and len(strides) > 0)
-        self._on_look_changed()
-
-    def minimumSizeHint(self) -> QSize:
-        height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.figures.rowCount()))
-        return QSize(sum(self.needed_widths), height)
-
-    def sizeHint(self) -> QSize:
-        return self.minimumSizeHint()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.matches(QKeySequence.StandardKey.Copy):
-            QApplication.clipboard().setText(self.as_text())
-            return
-        super().keyPressEvent(event)
-
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._share_width()
+        self.fit()
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
@@ -165,39 +132,11 @@ class FiguresTable(QTableView):
         rows = [[str(model.data(model.index(row, k))) for k in range(COLUMNS)] for row in range(model.rowCount())]
         return "\n".join("\t".join(cells) for cells in [head, *rows])
 
-    def _measure(self) -> list[int]:
-        delegate, option, header = self.itemDelegate(), QStyleOptionViewItem(), self.horizontalHeader()
-        widths = []
-        for column in range(COLUMNS):
-            cells = [
-                self.figures.index(k, column)
-                for k, row in enumerate(self.figures.rows)
-                if not isinstance(row, str) and (row.both is None or column in (NAME, BAND))
-            ]
-            needs = [header.sectionSizeFromContents(column).width()]
-            needs += [delegate.sizeHint(option, cell).width() for cell in cells]
-            widths.append(0 if self.isColumnHidden(column) else max(needs))
-        return widths
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self.setFont(self._look.theme.font(14))
-        self.horizontalHeader().setFixedHeight(px(HEAD))
-        self.needed_widths = self._measure()
-        for row in range(self.figures.rowCount()):
-            self.setRowHeight(row, px(ROW))
-        self.setFixedHeight(self.minimumSizeHint().height())
-        self.setMinimumWidth(self.minimumSizeHint().width())
-        self._share_width()
-        self.viewport().update()
-
-    def _share_width(self) -> None:
-        """Give every column what it needs, and the rest to the names."""
-        needed = list(self.needed_widths)
-        needed[NAME] += max(0, self.width() - sum(needed))
-        for column, width in enumerate(needed):
-            if width:
-                self.setColumnWidth(column, width)
+    def _measured_cells(self, column: int) -> Iterable[QModelIndex]:
+        """Leave out what goes over several columns."""
+        for k, row in enumerate(self.figures.rows):
+            if not isinstance(row, str) and (row.both is None or column in (NAME, BAND)):
+                yield self.figures.index(k, column)
 
 
 class _FigureDelegate(QStyledItemDelegate):

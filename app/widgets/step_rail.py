@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWi
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.header import Mark
 from app.widgets.icons import Icon
-from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow, StepState
+from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.wording import tr
 
@@ -31,14 +31,6 @@ def home_below() -> tuple[BelowRow, ...]:
         BelowRow("look", tr("Light or dark"), Icon.LIGHT_OR_DARK),
         BelowRow("settings", tr("Settings"), Icon.SETTINGS),
         BelowRow("help", tr("Help"), Icon.HELP, tr("F1")),
-    )
-
-
-def home_rows() -> tuple[RailRow, ...]:
-    return (
-        RailRow(tr("Patients"), state=StepState.CURRENT, icon=Icon.HOME),
-        RailRow(tr("Open demonstration"), icon=Icon.PLAY),
-        RailRow(tr("Import recordings"), icon=Icon.IMPORT),
     )
 
 

@@ -7,8 +7,9 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
+from app.widgets.icons import Icon
 from app.widgets.rail_row import RailForm, RailRow, StepState
-from app.widgets.step_rail import StepRail, home_below, home_rows
+from app.widgets.step_rail import StepRail, home_below
 from tests.app.room import settle, words_cut
 
 STEPS = (
@@ -111,7 +112,12 @@ def test_the_compact_rail_names_the_row_that_has_the_focus(rail: StepRail) -> No
 
 
 def test_home_has_icons_instead_of_numbers_and_no_line(rail: StepRail) -> None:
-    rail.show_rows(home_rows())
+    rows = (
+        RailRow("Patients", state=StepState.CURRENT, icon=Icon.HOME),
+        RailRow("Open demonstration", icon=Icon.PLAY),
+        RailRow("Import recordings", icon=Icon.IMPORT),
+    )
+    rail.show_rows(rows)
     rail.show_below(home_below(), "Everything stays on this computer, encrypted.")
     assert [row.accessibleName() for row in rail.rows] == [
         "Patients, current",

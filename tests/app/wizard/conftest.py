@@ -17,6 +17,7 @@ from app.storage.library import Library
 from app.storage.opened import KEYS
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts
+from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
@@ -86,3 +87,20 @@ def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) 
 @pytest.fixture
 def worn() -> dict[str, Site]:
     return {f"DEMO-{site}": site for site in Site}
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
+    """Sensors, entered; files about another step have their own."""
+    visit.patient.edit(Patient(code="DEMO-7"))
+    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
+        visit.patient.commit()
+    step = SensorsStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.page.resize(1064, 672)
+    step.page.show()
+    with qtbot.waitSignal(visit.changed, timeout=5000):
+        step.enter()
+    yield step
+    step.leave()
+    step.deleteLater()

@@ -1,7 +1,6 @@
 """A stored session, of the library or of a folder, is offered as a source, and plays as if it were measured now."""
 
 import shutil
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,22 +38,6 @@ def folder(short_session: Session, tmp_path_factory: pytest.TempPathFactory) -> 
     folder = tmp_path_factory.mktemp("stored") / "last_week"
     write_session(short_session, folder)
     return folder
-
-
-@pytest.fixture
-def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
-    visit.patient.edit(Patient(code="DEMO-7"))
-    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
-        visit.patient.commit()
-    step = SensorsStep(Look(), visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 672)
-    step.page.show()
-    with qtbot.waitSignal(visit.changed, timeout=5000):
-        step.enter()
-    yield step
-    step.leave()
-    step.deleteLater()
 
 
 def stored(desk: LibraryDesk, session: Session) -> None:

@@ -1,7 +1,6 @@
 """The step of the sensors, on the simulated patient: heard, shaken, placed, silent and back."""
 
 import threading
-from collections.abc import Iterator
 
 import numpy as np
 import pytest
@@ -16,7 +15,7 @@ from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
-from core.samples import Patient, Session
+from core.samples import Session
 from devices.live import SourceRefusedError
 from devices.replay import ReplaySource
 
@@ -27,22 +26,6 @@ TICKS_FOR_ROWS = 24  # of which three times rows and eight times traces are show
 def source(simulated_session: Session) -> ReplaySource:
     """Slow enough for a shake of a second to be seen by the screen."""
     return ReplaySource(simulated_session, speed=4.0)
-
-
-@pytest.fixture
-def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
-    visit.patient.edit(Patient(code="DEMO-7"))
-    with qtbot.waitSignal(visit.patient.changed, timeout=5000):
-        visit.patient.commit()
-    step = SensorsStep(Look(), visit)
-    qtbot.addWidget(step.page)
-    step.page.resize(1064, 672)
-    step.page.show()
-    with qtbot.waitSignal(visit.changed, timeout=5000):
-        step.enter()
-    yield step
-    step.leave()
-    step.deleteLater()
 
 
 def open_source(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
