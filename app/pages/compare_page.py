@@ -363,7 +363,7 @@ class ComparePage(QWidget):
         parts = [part for part in self._conditions if part.letter == self.bases.currentData()] or [self._conditions[-1]]
         part = parts[0]
         first, second = first_and_second(self._affected)
-        self.comparison, self.side_rows = None, compare_sides(part, self._affected)
+        self.comparison, self.side_rows = None, compare_sides(part, (first, second))
         nothing = np.empty((0, POINTS))
         cycles = {
             joint: SideCycle(part.cycle(joint), nothing, part.stance_percent(joint.side)) for joint in part.joints

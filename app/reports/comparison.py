@@ -277,9 +277,9 @@ def first_and_second(affected: Side | None) -> tuple[Side, Side]:
     return (Side.RIGHT, Side.LEFT) if affected is Side.RIGHT else (Side.LEFT, Side.RIGHT)
 
 
-def compare_sides(part: Part, affected: Side | None) -> tuple[SideRow, ...]:
-    """Every measure that both legs have; empty with one leg."""
-    first, second = first_and_second(affected)
+def compare_sides(part: Part, sides: tuple[Side, Side]) -> tuple[SideRow, ...]:
+    """Every measure that both legs have, as `first_and_second` orders them; empty with one leg."""
+    first, second = sides
     rows = []
     for measure in MEASURES:
         one, other = part.value(first, measure.column), part.value(second, measure.column)

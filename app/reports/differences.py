@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, SideRow, conditions_of
+from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_sides, conditions_of
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.gait_csv import PARAMETERS
 from core.body import Joint, Side
@@ -123,20 +123,24 @@ def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
     write_table(["percent", *heads], lines, path)
 
 
-def write_sides(rows: tuple[SideRow, ...], first: Side, second: Side, path: Path) -> None:
-    """Write the legs of one part side by side, the first less the second.
+def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> None:
+    """Write the legs of each part side by side, the first of `sides` less the second; nothing with one leg only.
 
     Raises
     ------
     OSError
         The file cannot be written.
     """
-    each = [f"{side}_{what}" for side in (first, second) for what in ("n", "mean", "sd")]
+    each = [f"{side}_{what}" for side in sides for what in ("n", "mean", "sd")]
+    by_hand = [f"{side}_left_out_by_hand" for side in sides]
     lines = []
-    for row in rows:
-        cells = [row.measure.column, *_mean(row.first), *_mean(row.second)]
-        lines.append([*cells, *_judged(row.difference), _cell(row.symmetry_percent)])
-    write_table(["parameter", *each, *JUDGED, "symmetry_index_percent"], lines, path)
+    for part in parts:
+        left_out = [str(part.left_out_by_hand(side)) for side in sides]
+        for row in compare_sides(part, sides):
+            cells = [*_named(part), row.measure.column, *_mean(row.first), *_mean(row.second)]
+            lines.append([*cells, *_judged(row.difference), _cell(row.symmetry_percent), *left_out])
+    if lines:
+        write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)
 
 
 def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
@@ -162,14 +166,15 @@ def _of_both(part: Part, against: Part) -> Iterator[Row]:
 
 
 def _cells(row: Row) -> list[str]:
-    parts = []
-    for part in (row.part, row.against):
-        walks = "; ".join(walk.name for walk in part.walks)
-        parts += [part.letter, typed_cell(part.name), typed_cell(walks)]
+    parts = [*_named(row.part), *_named(row.against)]
     side = "both" if row.side is None else str(row.side)
     judged = [_cell(row.difference), _cell(row.error), row.verdict]
     by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
     return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged, *by_hand]
+
+
+def _named(part: Part) -> list[str]:
+    return [part.letter, typed_cell(part.name), typed_cell("; ".join(walk.name for walk in part.walks))]
 
 
 def _mean(value: MeanAndSd) -> list[str]:

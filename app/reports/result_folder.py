@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
-from app.reports.comparison import Comparison, Kind, compare_sides, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Kind, conditions_of, first_and_second
 from app.reports.csv_report import write_angles, write_table
 from app.reports.differences import (
     COMPARED_CYCLES,
@@ -62,7 +62,7 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
         (folder / recording.folder).mkdir(parents=True, exist_ok=True)
         write_angles(recording, folder / recording.folder / ANGLES)
         write_gait(recording, folder / recording.folder)
-    if any(len(recording.gait) > 1 for recording in analysis.recordings):
+    if any(recording.gait for recording in analysis.recordings):
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
     _write_comparisons(session, analysis, folder)
     if has_log:
@@ -73,14 +73,12 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
 
 
 def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:
-    """The conditions of the session, each against the first; and of the last one its legs."""
+    """The conditions of the session, each against the first, and the legs of each."""
     parts = conditions_of(analysis, session.recordings)
     if len(parts) > 1:
         write_differences(rows_of(Comparison(Kind.CONDITIONS, parts)), folder / DIFFERENCES)
         write_compared_cycles(parts, folder / COMPARED_CYCLES)
-    if parts and (rows := compare_sides(parts[-1], analysis.affected_side)):
-        first, second = first_and_second(analysis.affected_side)
-        write_sides(rows, first, second, folder / SIDES)
+    write_sides(parts, first_and_second(analysis.affected_side), folder / SIDES)
 
 
 def check_place(out: Path, session: Path) -> None:

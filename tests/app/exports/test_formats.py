@@ -19,6 +19,7 @@ from app.exports.c3d_angles import MOST_FRAMES, POINTS, write_c3d
 from app.exports.fhir_bundle import bundle, write_bundle
 from app.exports.opensim_motion import COORDINATES, write_motion
 from app.exports.spreadsheet import write_spreadsheet
+from app.reports.gait_csv import events_of
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind, Session
 from devices.files.refusal import FileRefusedError
@@ -156,6 +157,8 @@ def test_the_c3d_holds_the_angles_and_the_events(visit: tuple[Session, Analysis]
     np.testing.assert_allclose(60 * minutes + seconds, told_s, atol=1e-4)
     strikes = sum(row["event"] == "initial_contact" for row in events)
     assert event["LABELS"]["value"].count("Foot Strike") == strikes > 20
+    assert event["CONTEXTS"]["value"] == [row["side"].capitalize() for row in events]
+    assert point["UNITS"]["value"] == ["deg"] * len(walk.joints)
     assert read["parameters"]["SUBJECTS"]["NOTE"]["value"][0].startswith("SIMULATED")
 
 
@@ -185,6 +188,12 @@ def test_many_events_are_all_there(visit: tuple[Session, Analysis], tmp_path: Pa
     lists = [event[name]["value"] for name in event if name.startswith("LABELS")]
     assert len(lists) > 1
     assert sum(len(labels) for labels in lists) == event["USED"]["value"][0]
+    told = events_of(many)
+    ends = ["", *(str(number) for number in range(2, len(lists) + 1))]
+    sides = [side for end in ends for side in event[f"CONTEXTS{end}"]["value"]]
+    times_s = np.concatenate([[60.0, 1.0] @ event[f"TIMES{end}"]["value"] for end in ends])
+    assert sides == [side.capitalize() for _, side, _ in told]
+    np.testing.assert_allclose(times_s, [time_s - many.time_s[0] for time_s, _, _ in told], atol=1e-4)
 
 
 def test_a_walk_that_a_c3d_cannot_hold_is_refused(visit: tuple[Session, Analysis], tmp_path: Path) -> None:

@@ -129,8 +129,8 @@ def test_without_a_common_zero_range_is_compared_and_height_is_not(parts: tuple[
 
 def test_the_affected_leg_is_told_against_the_sound_one(parts: tuple[Part, ...]) -> None:
     assert first_and_second(Side.RIGHT) == (Side.RIGHT, Side.LEFT)
-    left = {row.measure.column: row for row in compare_sides(parts[0], None)}
-    right = {row.measure.column: row for row in compare_sides(parts[0], Side.RIGHT)}
+    left = {row.measure.column: row for row in compare_sides(parts[0], (Side.LEFT, Side.RIGHT))}
+    right = {row.measure.column: row for row in compare_sides(parts[0], (Side.RIGHT, Side.LEFT))}
     swing = "knee_swing_peak_deg"
     assert right[swing].difference.difference_deg == pytest.approx(-left[swing].difference.difference_deg)
     assert math.isnan(right[swing].symmetry_percent)
@@ -164,15 +164,21 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
             np.testing.assert_allclose(column, line.mean.mean, atol=DIGITS)
 
 
-def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, tmp_path: Path) -> None:
+def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[Part, ...], tmp_path: Path) -> None:
+    """Of whichever condition the legs are looked at."""
     compare = page.compare
     compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.SIDES))
-    assert compare.side_rows
-    write_sides(compare.side_rows, Side.LEFT, Side.RIGHT, tmp_path / SIDES)
-    written = [float(row["difference"]) for row in lines_of(tmp_path / SIDES)]
-    drawn = [dot.value for group in compare.plot.groups for row in group.rows for dot in row.dots]
-    assert len(drawn) == len(compare.plot.groups)
-    assert all(any(abs(value - other) < DIGITS for other in written) for value in drawn)
+    write_sides(parts, (Side.LEFT, Side.RIGHT), tmp_path / SIDES)
+    written = lines_of(tmp_path / SIDES)
+    seen = set()
+    for part in parts:
+        compare.bases.setCurrentIndex(compare.bases.findData(part.letter))
+        told = [float(row["difference"]) for row in written if row["part"] == part.letter]
+        drawn = [dot.value for group in compare.plot.groups for row in group.rows for dot in row.dots]
+        assert len(drawn) == len(compare.plot.groups) > 0
+        assert all(any(abs(value - other) < DIGITS for other in told) for value in drawn)
+        seen.add(tuple(drawn))
+    assert len(seen) == len(parts) == 2
 
 
 def test_what_is_turned_off_leaves_axes_and_table(page: ResultPage) -> None:

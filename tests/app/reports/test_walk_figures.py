@@ -1,11 +1,14 @@
 """The figures of a walk: means over the strides used, a band from the same windows, and what cannot be told."""
 
+import csv
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.reports.comparison import Part, left_out_of_parts
+from app.reports.differences import SIDES, write_sides
 from app.reports.gait_csv import gait_tables
 from app.reports.reference_bands import reference_curves, time_distance_classes
 from app.reports.summary import summarise
@@ -172,7 +175,9 @@ def test_a_stride_with_a_gap_is_in_no_mean_cycle(walked: Walked) -> None:
     assert found.toe_off_percent == pytest.approx(float(gait.strides.stance_percent[:5].mean()))
 
 
-def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_table(analysis: Analysis) -> None:
+def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_table(
+    analysis: Analysis, tmp_path: Path
+) -> None:
     """Who reads one file only has to know as well."""
     (walk,) = (recording for recording in analysis.recordings if recording.gait)
     strides = walk.gait[Side.RIGHT].strides
@@ -198,3 +203,8 @@ def test_strides_left_out_by_hand_are_said_in_words_in_the_summary_and_in_every_
     part = Part("A", "walk 1", (left,), {})
     assert (part.left_out_by_hand(Side.LEFT), part.left_out_by_hand(Side.RIGHT)) == (0, 2)
     assert left_out_of_parts([part]) == f"A: {by_hand_in_words(left)}"
+    write_sides([part], (Side.LEFT, Side.RIGHT), tmp_path / SIDES)
+    with (tmp_path / SIDES).open(newline="", encoding="utf-8") as file:
+        of_legs = list(csv.DictReader(file))
+    counts = {(row["left_left_out_by_hand"], row["right_left_out_by_hand"]) for row in of_legs}
+    assert (len(of_legs) > 5, counts) == (True, {("0", "2")})

@@ -21,6 +21,18 @@ def demonstration() -> Visit:
 
 
 @pytest.fixture(scope="session")
+def one_leg() -> Visit:
+    """The demonstration's left leg; the right one wears no sensor."""
+    told = simulate(DEMONSTRATION).session
+    recordings = tuple(
+        replace(r, imu={site: block for site, block in r.imu.items() if site.side is Side.LEFT})
+        for r in told.recordings
+    )
+    session = replace(told, recordings=recordings)
+    return Visit(session, analyse(session))
+
+
+@pytest.fixture(scope="session")
 def alignments() -> Visit:
     walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
     settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
@@ -37,6 +49,11 @@ def alignments() -> Visit:
 @pytest.fixture
 def request_of_demonstration(demonstration: Visit) -> ReportRequest:
     return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
+
+
+@pytest.fixture
+def request_of_one_leg(one_leg: Visit) -> ReportRequest:
+    return ReportRequest(one_leg, ("walk 1",), MADE_AT, "1.2.3")
 
 
 @pytest.fixture

@@ -57,7 +57,7 @@ def known(results: Path, walk: str = "walk_1") -> set[str]:
         peaks = [row for row in of_used(results / "peaks.csv", side) if row["recording"] == walk]
         values.append(len(strides))
         for rows in (strides, peaks):
-            for name in rows[0]:
+            for name in rows[0] if rows else ():
                 numbers = column(rows, name)
                 if len(numbers) > 1:
                     values += [fmean(numbers), stdev(numbers), 100 * stdev(numbers) / fmean(numbers)]
@@ -105,6 +105,16 @@ def test_every_number_in_a_table_is_in_a_file(request_of_demonstration: ReportRe
     numbers, files = numbers_of(report_data(request_of_demonstration)), known(results)
     assert len(numbers) > 95
     assert [(where, number) for where, number in numbers if number not in files] == []
+
+
+def test_every_number_of_one_leg_alone_is_in_a_file(request_of_one_leg: ReportRequest, tmp_path: Path) -> None:
+    visit = request_of_one_leg.visit
+    write_results(visit.session, visit.analysis, tmp_path, has_log=False)
+    numbers, files = numbers_of(report_data(request_of_one_leg)), known(tmp_path)
+    assert len(numbers) > 50
+    assert [(where, number) for where, number in numbers if number not in files] == []
+    peaks = of_used(tmp_path / "peaks.csv", Side.LEFT)
+    assert fixed(fmean(column(peaks, "knee_swing_peak_percent")), 0) in {n for _, n in numbers}
 
 
 def test_every_curve_and_mark_is_in_a_file(
