@@ -27,7 +27,8 @@ DRIVER, VERSION = "shimmer3", "1"
 EMULATED = "emulated Shimmer3"  # how the names of our own emulators begin
 TICK_HZ, TIME_BITS = 32768, 24
 TURN = 1 << TIME_BITS
-RATE_HZ = 102.4  # of the round divisions of its clock, the one next to 100
+# 102.4 and 204.8 Hz: of the rates that Consensys offers, those next to 100 and 200; between them its owner's is kept
+SLOWEST_PERIOD, FASTEST_PERIOD = 320, 160
 ANSWERS_S = 1.0  # a Bluetooth link may wake up first
 QUIET_S, STOPS_S = 0.15, 2.0
 
@@ -37,6 +38,7 @@ class Command:
 
     PACKET = 0x00
     INQUIRY, INQUIRY_ANSWER = 0x01, 0x02
+    RATE, RATE_ANSWER = 0x03, 0x04
     SET_RATE = 0x05
     TOGGLE_LED = 0x06
     START = 0x07
@@ -280,12 +282,19 @@ def _charge(raw: int) -> float:
 
 
 class Shimmer3:
-    """A Shimmer3 with wide-range accelerometer and gyroscope, paired with this computer."""
+    """A Shimmer3 with wide-range accelerometer and gyroscope, paired with this computer.
+
+    Parameters
+    ----------
+    rate_hz
+        The nearest that its clock can be divided to is set; None: as its owner set it, but 102.4 Hz at least and 204.8
+        at most.
+    """
 
     driver, version = DRIVER, VERSION
 
-    def __init__(self, rate_hz: float = RATE_HZ) -> None:
-        self._period = round(TICK_HZ / rate_hz)
+    def __init__(self, rate_hz: float | None = None) -> None:
+        self._wanted_period = round(TICK_HZ / rate_hz) if rate_hz else 0
 
     def framer(self, info: SourceInfo) -> Shimmer3Framer:
         return Shimmer3Framer(info)
@@ -300,7 +309,8 @@ class Shimmer3:
             )
         name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda said: 1 + said[0])[1:].decode("ascii", "replace")
         kind, major, minor, internal = struct.unpack("<HHBB", firmware)
-        if not name or not all(talk.told(bytes(wish)) for wish in self._wishes()):
+        period = self._wanted_period or _owned_period(talk)
+        if not name or not all(talk.told(bytes(wish)) for wish in _wishes(period)):
             raise _unwilling(channel, RESTART)
         calibration = talk.asked(Command.CALIBRATION, Command.CALIBRATION_ANSWER, lambda _: 4 * CALIBRATION_SIZE)
         inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda said: 8 + said[6])
@@ -309,8 +319,8 @@ class Shimmer3:
         blocks = [calibration[k * CALIBRATION_SIZE :][:CALIBRATION_SIZE] for k in (GYR_CALIBRATION, ACC_CALIBRATION)]
         has_checksum = kind == 3 and (major, minor, internal) >= CHECKSUM_SINCE
         settings: dict[str, object] = {
-            "rate_hz": TICK_HZ / self._period,
-            "period_ticks": self._period,
+            "rate_hz": TICK_HZ / period,
+            "period_ticks": period,
             "channels": list(inquiry[8:]),
             "has_checksum": has_checksum,
             "gyr_calibration": blocks[0].hex(),
@@ -325,22 +335,29 @@ class Shimmer3:
         channel.write(bytes([Command.START]))
         version = f"LogAndStream {major}.{minor}.{internal}" if kind == 3 else f"{major}.{minor}.{internal}"
         info = SourceInfo(DRIVER, VERSION, name, (name,), settings, is_simulated=name.startswith(EMULATED))
-        return info, SensorTold("Shimmer3", name, version, TICK_HZ / self._period, RateKind.INSTANTANEOUS)
+        return info, SensorTold("Shimmer3", name, version, TICK_HZ / period, RateKind.INSTANTANEOUS)
 
     def identifying(self) -> bytes:
         return bytes([Command.TOGGLE_LED])
 
-    def _wishes(self) -> Sequence[tuple[int, ...]]:
-        return (
-            (Command.SET_RATE, *self._period.to_bytes(2, "little")),
-            (Command.SET_GYR_RANGE, GYR_RANGE),
-            (Command.SET_GYR_RATE, max(GYR_BASE_HZ * self._period // TICK_HZ - 1, 0)),
-            (Command.SET_ACC_RANGE, ACC_RANGE),
-            (Command.SET_ACC_RATE, ACC_RATE),
-            (Command.SET_ACC_LOW_POWER, 0),
-            (Command.SET_ACC_FINE, 1),
-            (Command.SET_SENSORS, *SENSORS),
-        )
+
+def _owned_period(talk: "_Talk") -> int:
+    """How far apart its owner let it sample, in ticks, where that is of use; else the nearest that is."""
+    told = int.from_bytes(talk.asked(Command.RATE, Command.RATE_ANSWER, lambda _: 2), "little")
+    return min(max(told or SLOWEST_PERIOD, FASTEST_PERIOD), SLOWEST_PERIOD)
+
+
+def _wishes(period: int) -> Sequence[tuple[int, ...]]:
+    return (
+        (Command.SET_RATE, *period.to_bytes(2, "little")),
+        (Command.SET_GYR_RANGE, GYR_RANGE),
+        (Command.SET_GYR_RATE, max(GYR_BASE_HZ * period // TICK_HZ - 1, 0)),
+        (Command.SET_ACC_RANGE, ACC_RANGE),
+        (Command.SET_ACC_RATE, ACC_RATE),
+        (Command.SET_ACC_LOW_POWER, 0),
+        (Command.SET_ACC_FINE, 1),
+        (Command.SET_SENSORS, *SENSORS),
+    )
 
 
 class _Talk:

@@ -30,7 +30,8 @@ from devices.xbus import (
 
 DRIVER, VERSION = "xsens-mti", "1"
 EMULATED = "emulated MTi"  # what our own emulator calls itself
-RATE_HZ = 100.0  # with orientation 7.4 kB/s, of the 11.5 that 115200 baud carry
+RATE_HZ, FASTEST_HZ = 100, 200  # within them its owner's rate is kept, and fits 115200 baud: 9.4 of 11.5 kB/s
+ORIENTED_HZ = 170  # so far the orientation fits beside it, 66 bytes in all
 FINE_HZ, FINE_BITS, COUNTER_BITS = 10_000.0, 32, 16
 FINE_TURN_S = 2**FINE_BITS / FINE_HZ
 ANSWERS_S = 0.5
@@ -39,6 +40,7 @@ TRIES = 4  # a sensor that is measuring hears the first request late
 KNOCK = message(Mid.DEVICE_ID, b""), bytes([0xFA, 0xFF, Mid.DEVICE_ID + 1])
 ALWAYS = 0xFFFF  # in place of a frequency: with every message
 SETTING = struct.Struct(">HH")  # an item's identifier and its frequency
+MOTION = frozenset({Item.RATE, Item.ACCELERATION, Item.ROTATION_CHANGE, Item.VELOCITY_CHANGE, Item.QUATERNION})
 MOST_LAYOUTS = 64  # of messages; a sensor has a handful, noise any
 HALF_TURN = 0.5**0.5
 
@@ -134,12 +136,18 @@ def _upward(q: Row) -> Row:
 
 
 class XsensMti:
-    """MTi 1, 10, 100 and 600 series, by USB or another serial cable."""
+    """MTi 1, 10, 100 and 600 series, by USB or another serial cable.
+
+    Parameters
+    ----------
+    rate_hz
+        Of all that is wanted; None: as its owner set it, but `RATE_HZ` at least and `FASTEST_HZ` at most.
+    """
 
     driver, version = DRIVER, VERSION
 
-    def __init__(self, rate_hz: float = RATE_HZ) -> None:
-        self._rate_hz = rate_hz
+    def __init__(self, rate_hz: float | None = None) -> None:
+        self._wanted_hz = rate_hz
 
     def framer(self, info: SourceInfo) -> MtiFramer:
         return MtiFramer(info)
@@ -168,16 +176,27 @@ class XsensMti:
 
     def _set_up(self, channel: Channel, framer: MtiFramer) -> float:
         """Ask for what is needed, with the orientation where there is one; the rate that the sensor chose, or 0."""
-        rate = round(self._rate_hz)
-        needed = [(Item.COUNTER, ALWAYS), (Item.FINE_TIME, ALWAYS), (Item.ACCELERATION, rate), (Item.RATE, rate)]
-        for wanted in ([*needed, (Item.QUATERNION, rate)], needed):
-            framer.heard.replies.clear()
-            data = b"".join(SETTING.pack(*setting) for setting in wanted)
-            answer = _asked(channel, framer, Mid.OUTPUT, data)[1:]
-            chosen = dict(SETTING.iter_unpack(answer[: len(answer) // SETTING.size * SETTING.size]))
-            if chosen.get(Item.RATE) and chosen.get(Item.ACCELERATION) == chosen[Item.RATE]:
-                return float(chosen[Item.RATE])
+        rate = round(self._wanted_hz or _owned_hz(channel, framer))
+        for hz in dict.fromkeys((rate, RATE_HZ)):  # some models have no other
+            needed = [(Item.COUNTER, ALWAYS), (Item.FINE_TIME, ALWAYS), (Item.ACCELERATION, hz), (Item.RATE, hz)]
+            for orientation in ([(Item.QUATERNION, hz)], []) if hz <= ORIENTED_HZ else ([],):
+                chosen = _settings(channel, framer, [*needed, *orientation])
+                if chosen.get(Item.RATE) and chosen.get(Item.ACCELERATION) == chosen[Item.RATE]:
+                    return float(chosen[Item.RATE])
         return 0.0
+
+
+def _owned_hz(channel: Channel, framer: MtiFramer) -> int:
+    """At what rate its owner let it tell how it moves, where that is of use; else the nearest that is."""
+    motion = [hz for identifier, hz in _settings(channel, framer, ()).items() if identifier & ITEM_MASK in MOTION]
+    return min(max([RATE_HZ, *motion]), FASTEST_HZ)
+
+
+def _settings(channel: Channel, framer: MtiFramer, wanted: Sequence[tuple[int, int]]) -> dict[int, int]:
+    """What it sends, and how often, once it was told what is wanted; as it is where that is nothing."""
+    framer.heard.replies.clear()
+    answer = _asked(channel, framer, Mid.OUTPUT, b"".join(SETTING.pack(*setting) for setting in wanted))[1:]
+    return dict(SETTING.iter_unpack(answer[: len(answer) // SETTING.size * SETTING.size]))
 
 
 def _asked(channel: Channel, framer: MtiFramer, mid: int, data: bytes = b"") -> bytes:

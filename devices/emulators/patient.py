@@ -28,13 +28,13 @@ from devices.xsens_mti import EMULATED as XSENS_MTI
 
 KINDS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
 AVERAGING, AVERAGED_OVER = frozenset({"xsens-mti"}), 6  # sensors that tell how far they turned since the last sample
+CONSENSYS_TICKS_HZ = 32_000  # it calls 102.4 Hz what others call 100, and 204.8 what they call 200
 FINE_HZ = 500.0  # of the table that sensors measure from: between its rows the motion is straight to a thousandth
 MOST_DEG_S, MOST_G, MOST_RAW = 1999.0, 15.9, 32767
 # each begins and ends with the patient's pose while standing, so that one goes on where the one before has ended
 SESSION = WalkerSettings(
     seed=8,
     rate_hz=FINE_HZ,
-    is_tissue_steady=True,
     recordings=(
         Standing(duration_s=10.0),
         *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in (1, 2, 3)),
@@ -121,6 +121,8 @@ class EmulatedSensor:
 
     Parameters
     ----------
+    rate_hz
+        As its owner set it, until a driver sets it to another.
     says_so
         Tells whoever asks that it is emulated, so that what is recorded of it counts as simulated.
 
@@ -157,17 +159,20 @@ class EmulatedSensor:
                 return MtiVoice(
                     f"028000{number + 1:02X}",
                     lambda at: self._measured(at).tolist(),
+                    rate_hz=rate_hz,
                     has_orientation=False,
                     product=product,
                 )
             case "shimmer3":
-                return Shimmer3Voice(self._raw, name=f"{SHIMMER3 if says_so else 'Shimmer3'} {number + 1:04X}")
+                period = CONSENSYS_TICKS_HZ // rate_hz
+                name = f"{SHIMMER3 if says_so else 'Shimmer3'} {number + 1:04X}"
+                return Shimmer3Voice(self._raw, period=period, name=name)
         raise ValueError(f"{self._kind} is none of {KINDS}")
 
     def _measured(self, number: int) -> FloatArray:
         at_ns = self.voice.sampled_ns(number)
         is_averaged = self._kind in AVERAGING
-        row = self._patient.measured(self.site, at_ns, self._rate_hz, self._chance, is_averaged)
+        row = self._patient.measured(self.site, at_ns, self.voice.rate_hz, self._chance, is_averaged)
         self.sent.append(row)
         self.sent_ns.append(at_ns)
         return row
@@ -187,6 +192,9 @@ class EmulatedSensor:
 
 class EmulatedVoice(Voice, Protocol):
     """Knows when its samples are taken."""
+
+    @property
+    def rate_hz(self) -> float: ...
 
     def sampled_ns(self, number: int) -> float: ...
 

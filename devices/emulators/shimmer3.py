@@ -45,12 +45,13 @@ def still(number: int) -> Sequence[int]:
 
 
 class Shimmer3Voice:
-    """The `Voice` of one sensor."""
+    """The `Voice` of one sensor. `period` is how many ticks its samples are apart, until it is set to another."""
 
     def __init__(
         self,
         motion: Motion = still,
         *,
+        period: int = 640,
         name: str = EMULATED,
         firmware: tuple[int, int, int] = CHECKSUM_SINCE,
         has_calibration: bool = True,
@@ -61,8 +62,12 @@ class Shimmer3Voice:
         self._begin_ns, self._sent = now_ns(), 0
         self.is_streaming = self.has_checksum = False
         self.toggled = 0
-        self.period = 640
+        self.period = period
         self._rest = b""
+
+    @property
+    def rate_hz(self) -> float:
+        return TICK_HZ / self.period
 
     def sampled_ns(self, number: int) -> float:
         """When the sample of this number is taken, by the host's clock."""
@@ -102,6 +107,8 @@ class Shimmer3Voice:
         match command:
             case Command.SET_RATE:
                 self.period = int.from_bytes(arguments, "little")
+            case Command.RATE:
+                answer = bytes([Command.RATE_ANSWER]) + self.period.to_bytes(2, "little")
             case Command.SET_CHECKSUM:
                 self.has_checksum = arguments[0] == 2
             case Command.TOGGLE_LED:

@@ -26,6 +26,8 @@ class MtiVoice:
 
     Parameters
     ----------
+    rate_hz
+        As its owner set it, until it is set to another.
     has_orientation
         Some models have none, and refuse to be asked for it.
     """
@@ -35,6 +37,7 @@ class MtiVoice:
         serial: str = "0280A1B2",
         motion: Motion = still,
         *,
+        rate_hz: int = 100,
         has_orientation: bool = True,
         product: str = EMULATED,
         now_ns: Callable[[], int] = host_time_ns,
@@ -47,11 +50,11 @@ class MtiVoice:
         self.settings: dict[int, int] = {
             Item.COUNTER: ALWAYS,
             Item.FINE_TIME: ALWAYS,
-            Item.ACCELERATION: 100,
-            Item.RATE: 100,
+            Item.ACCELERATION: rate_hz,
+            Item.RATE: rate_hz,
         }
         if has_orientation:
-            self.settings[Item.QUATERNION] = 100
+            self.settings[Item.QUATERNION] = rate_hz
 
     @property
     def rate_hz(self) -> int:
@@ -93,8 +96,9 @@ class MtiVoice:
                 wanted = dict(SETTING.iter_unpack(one.data))
                 if Item.QUATERNION in wanted and not self._has_orientation:
                     return message(Mid.ERROR, CANNOT)
-                self.settings = {k: hz if hz == ALWAYS else min(hz, FASTEST_HZ) for k, hz in wanted.items()}
-                self._begin_ns, self._sent = self._now_ns(), 0
+                if wanted:  # else it is asked only
+                    self.settings = {k: hz if hz == ALWAYS else min(hz, FASTEST_HZ) for k, hz in wanted.items()}
+                    self._begin_ns, self._sent = self._now_ns(), 0
                 answer = b"".join(SETTING.pack(*setting) for setting in self.settings.items())
             case _:
                 return message(Mid.ERROR, CANNOT)

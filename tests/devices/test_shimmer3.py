@@ -234,6 +234,16 @@ def test_a_sensor_that_vanishes_and_returns_is_heard_again(port: Path) -> None:
     assert sum(len(block) for block in blocks) > 10
 
 
+@pytest.mark.parametrize(("owned", "period"), [(640, 320), (200, 200), (160, 160), (64, 160)])
+def test_its_owners_rate_is_kept_where_it_is_of_use(owned: int, period: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """51.2 Hz is too slow for a walk, and 512 more than is used."""
+    monkeypatch.setattr("devices.shimmer3.QUIET_S", 0.01)
+    voice = Shimmer3Voice(period=owned)
+    info, told = Shimmer3().greet(ScriptedChannel(answers=voice.hear))
+    assert voice.period == info.settings["period_ticks"] == period
+    assert told.rate_hz == 32768 / period
+
+
 def test_a_sensor_without_calibration_is_refused_in_words() -> None:
     voice = Shimmer3Voice(has_calibration=False)
     with pytest.raises(SourceRefusedError, match="Calibrate it in Consensys"):

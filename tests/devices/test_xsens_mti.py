@@ -20,7 +20,7 @@ from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import ByteSource, Decoder
-from devices.xbus import Framer, Item, Mid, item, message, values
+from devices.xbus import REQUESTS, Framer, Item, Mid, item, message, values
 from devices.xsens_mti import DRIVER, EMULATED, VERSION, MtiFramer, XsensMti
 from tests.devices.scripted import ScriptedChannel
 
@@ -317,6 +317,29 @@ def test_a_sensor_without_orientation_is_taken_without(tmp_path: Path) -> None:
     finally:
         source.close()
         emulation.close()
+
+
+@pytest.mark.parametrize(
+    ("owned_hz", "hz", "has_orientation"), [(50, 100, True), (100, 100, True), (200, 200, False), (400, 200, False)]
+)
+def test_its_owners_rate_is_kept_where_it_is_of_use(owned_hz: int, hz: int, has_orientation: bool) -> None:
+    """115200 baud carry the orientation at 100 Hz, but not at 200."""
+    voice = MtiVoice(rate_hz=owned_hz)
+    for _ in range(2):  # what was set is its owner's next time
+        _, told = XsensMti().greet(ScriptedChannel(answers=voice.hear))
+        assert (voice.rate_hz, told.rate_hz) == (hz, hz)
+        assert (Item.QUATERNION in voice.settings) == has_orientation
+
+
+def test_a_sensor_that_refuses_its_owners_rate_is_set_to_the_usual_one() -> None:
+    voice = MtiVoice(rate_hz=200)
+
+    def answer(data: bytes) -> bytes:
+        is_refused = any(one.mid == Mid.OUTPUT and b"\x00\xc8" in one.data for one in Framer(REQUESTS).feed(data))
+        return message(Mid.ERROR, b"\x03") if is_refused else voice.hear(data)
+
+    _, told = XsensMti().greet(ScriptedChannel(answers=answer))
+    assert (voice.rate_hz, told.rate_hz) == (100, 100)
 
 
 def test_a_port_where_no_sensor_answers_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -386,7 +386,7 @@ def look(session: Session, shots: Path | None, name: str) -> None:
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n\n")[0])
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
-    parser.add_argument("--rate", type=int, default=100, metavar="HZ", help="of sensors that keep their owner's (100)")
+    parser.add_argument("--rate", type=int, default=100, metavar="HZ", help="as their owner set them: 100 or 200 (100)")
     parser.add_argument("--walks", type=int, default=3)
     parser.add_argument("--shots", type=Path, metavar="FOLDER", help="write pictures of the window there")
     parser.add_argument("--play", type=Path, help=argparse.SUPPRESS)  # be the sensors' process
