@@ -25,7 +25,6 @@ DEMONSTRATION_TIMES = range(1, 7)
 # none but the patient's pose while standing joins them: each begins and ends with it
 DEMONSTRATION_SESSION = replace(
     DEMONSTRATION,
-    is_tissue_steady=True,  # else straps seem to slip between walks
     recordings=(
         Standing(duration_s=10.0),
         *(FreeMotion(name=f"free motion {number}", duration_s=6.0) for number in DEMONSTRATION_TIMES),

@@ -30,9 +30,11 @@ from devices.walker_sensors import (
     SEGMENT_ROW,
     Clock,
     Mounting,
+    Ride,
     SensorFaults,
     draw_faults,
     draw_mounting,
+    draw_ride,
     make_clock,
     record,
     sensor_poses,
@@ -89,14 +91,14 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     legs = {side: make_leg(settings, side) for side in Side}
     faults = {site: draw_faults(settings.errors, _rng(settings, 2, _index(site))) for site in settings.sites}
     start_faults = faults
-    mountings, strapped = _mount(settings, 0), 0
+    mountings = _mount(settings, 0)
+    rides: dict[tuple[Site, type], Ride] = {}
     recordings: list[Recording] = []
     takes: list[Take] = []
     for number, wanted in enumerate(settings.recordings):
         if wanted.is_restrapped_before:
-            mountings, strapped = _mount(settings, number), number
-        drawn = strapped if settings.is_tissue_steady else number
-        recording, take, faults = _take(settings, number, legs, mountings, faults, drawn)
+            mountings, rides = _mount(settings, number), {}
+        recording, take, faults = _take(settings, number, legs, mountings, faults, rides)
         recordings.append(recording)
         takes.append(take)
     truth = tell_truth(settings, legs, takes, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
@@ -139,9 +141,12 @@ def _take(
     legs: Mapping[Side, Leg],
     mountings: Mapping[Site, Mounting],
     faults: Mapping[Site, SensorFaults],
-    tissue_drawn: int,
+    rides: dict[tuple[Site, type], Ride],
 ) -> tuple[Recording, Take, dict[Site, SensorFaults]]:
-    """Recording `number`, how it was moved, and the sensors' faults at its end."""
+    """Recording `number`, how it was moved, and the sensors' faults at its end.
+
+    `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
+    """
     wanted = settings.recordings[number]
     motions, duration_s = _move(settings, number, wanted, legs)
     imu: dict[Site, ImuBlock] = {}
@@ -152,7 +157,9 @@ def _take(
         leg = motions[site.side]
         is_bare = legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
         tissue = Tissue.RIGID if is_bare else settings.tissue
-        poses = sensor_poses(leg, site, mountings[site], tissue, _rng(settings, 4, _index(site), tissue_drawn))
+        chance = _rng(settings, 4, _index(site), number)
+        ride = rides.setdefault((site, type(wanted)), draw_ride(chance))
+        poses = sensor_poses(leg, site, mountings[site], tissue, ride, chance)
         clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
         noise = _rng(settings, 8, _index(site), number)
         imu[site], bias = record(settings, site, clocks[site], leg.time_s, poses, faults[site], noise)

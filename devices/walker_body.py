@@ -114,9 +114,6 @@ class WalkerSettings:
         Sites that do not sample at `rate_hz`.
     stiff_knee_side
         A leg whose knee bends by a quarter only.
-    is_tissue_steady
-        How a sensor rides on soft tissue is drawn once for each strapping, as it is in one visit; else for each
-        recording, which parts them as far as visits are apart.
     """
 
     seed: int = 0
@@ -133,7 +130,6 @@ class WalkerSettings:
     stamp_jitter_s: float = 0.0
     errors: SensorErrors = SensorErrors()
     mounting_sd_m: float = 0.025
-    is_tissue_steady: bool = False
 
 
 @dataclass(frozen=True, slots=True)

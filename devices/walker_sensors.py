@@ -40,6 +40,23 @@ class SensorFaults:
     acc_bias_m_s2: FloatArray
 
 
+@dataclass(frozen=True, slots=True)
+class Ride:
+    """How a sensor rides on soft tissue: in which directions of its segment each drive turns and shifts it.
+
+    The drives (3, 3) are the flexion, its rate and the ringing after contacts. In one task one strap rides alike from
+    stride to stride and from walk to walk; tissue depends on the task (Leardini et al. 2005,
+    doi:10.1016/j.gaitpost.2004.05.002).
+    """
+
+    turn: FloatArray
+    shift: FloatArray
+
+
+def draw_ride(rng: np.random.Generator) -> Ride:
+    return Ride(*(np.stack([_direction(rng) for _ in range(3)]) for _ in range(2)))
+
+
 def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Mounting:
     """Any rotation alike, near the nominal place of the segment."""
     q = rng.normal(size=4)
@@ -62,20 +79,20 @@ def draw_faults(errors: SensorErrors, rng: np.random.Generator) -> SensorFaults:
 
 
 def sensor_poses(
-    leg: LegMotion, site: Site, mounting: Mounting, tissue: Tissue, rng: np.random.Generator
+    leg: LegMotion, site: Site, mounting: Mounting, tissue: Tissue, ride: Ride, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
-    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock."""
+    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone."""
     row = SEGMENT_ROW[site.segment]
     segment, origin = leg.rotations[row], leg.origins_m[row]
     if tissue is Tissue.RIGID:
         return segment @ mounting.segment_from_sensor, origin + segment @ mounting.place_m
-    turn, shift = _tissue_motion(leg, site.segment, tissue, rng)
+    turn, shift = _tissue_motion(leg, site.segment, tissue, ride, rng)
     rotation = segment @ _small_rotation(turn) @ mounting.segment_from_sensor
     return rotation, origin + np.einsum("nij,nj->ni", segment, mounting.place_m + shift)
 
 
 def _tissue_motion(
-    leg: LegMotion, segment: Segment, tissue: Tissue, rng: np.random.Generator
+    leg: LegMotion, segment: Segment, tissue: Tissue, ride: Ride, rng: np.random.Generator
 ) -> tuple[FloatArray, FloatArray]:
     """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3).
 
@@ -91,8 +108,7 @@ def _tissue_motion(
         start = (1.0 - np.exp(-since / 0.015)) ** 3
         ring += start * np.exp(-since / RING_DECAY_S) * np.sin(2.0 * np.pi * RING_HZ * since)
     drives.append(2.0 * ring)
-    turn = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
-    shift = np.stack(drives, axis=-1) @ np.stack([_direction(rng) for _ in drives])
+    turn, shift = (np.stack(drives, axis=-1) @ directions for directions in (ride.turn, ride.shift))
     if tissue is Tissue.REAL:
         size = (REAL_WALK_WOBBLE if ring.any() else REAL_FREE_WOBBLE) * _is_moving(leg)[:, None]
         turn, shift = turn + size * _wobble(t, rng), shift + size * _wobble(t, rng)

@@ -163,6 +163,19 @@ def test_a_slip_in_one_walk_holds_for_the_next(soft: SimulatedSession) -> None:
     assert second.gait[Side.RIGHT].strides.is_used.any()
 
 
+@pytest.mark.parametrize("seed", [1, 5])
+def test_walking_again_slower_is_no_slip_and_a_slip_between_the_walks_is_told(seed: int) -> None:
+    recordings = (Standing(), FreeMotion(), Walk(WALK, strides=14), Walk("walk 2", strides=14, speed_m_s=0.8))
+    session = simulate(WalkerSettings(seed=seed, recordings=recordings, tissue=Tissue.SOFT)).session
+    assert "strap_slipped" not in {one.key for one in analyse(session).findings}
+    site, second = Site.LEFT_THIGH, session.recordings[-1]
+    up = session.recordings[0].imu[site].acc_m_s2.mean(axis=0)
+    turn = Rotation.from_rotvec(np.deg2rad(15.0) * up / np.linalg.norm(up)).as_matrix()
+    second = replace(second, imu={**second.imu, site: turned(second.imu[site], turn, 0.0)})
+    analysis = analyse(replace(session, recordings=(*session.recordings[:-1], second)))
+    assert [one.where for one in analysis.findings if one.key == "strap_slipped"] == ["walk 2, left_thigh"]
+
+
 def part_of(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
     keep = (block.time_s >= from_s) & (block.time_s < to_s)
     return replace(block, time_s=block.time_s[keep], gyr_rad_s=block.gyr_rad_s[keep], acc_m_s2=block.acc_m_s2[keep])

@@ -260,6 +260,21 @@ def test_restrapping_mounts_every_sensor_anew_and_only_from_then_on() -> None:
     assert [r.is_restrapped_before for r in simulated.session.recordings] == [False, False, True, False]
 
 
+def test_a_sensor_rides_on_tissue_alike_in_every_walk_and_otherwise_in_free_motion() -> None:
+    """If it rode otherwise in the next walk, its strap would seem to have slipped."""
+    recordings = (FreeMotion("free", duration_s=4.0), Walk("walk 1", strides=3), Walk("walk 2", strides=3))
+    settings = replace(CLEAN, sites=(Site.LEFT_THIGH, Site.LEFT_SHANK), recordings=recordings)
+    soft, rigid = (simulate(replace(settings, tissue=tissue)) for tissue in (Tissue.SOFT, Tissue.RIGID))
+    turned = {}  # of the thigh's sensor against its bone, with the knee's flexion
+    for name in ("free", "walk 1", "walk 2"):
+        (with_tissue, _, knee), (without, _, _) = (pair(made, name, Joint.LEFT_KNEE) for made in (soft, rigid))
+        bending = np.gradient(knee.angle_rad, knee.time_s)
+        along = bending @ (with_tissue.gyr_rad_s - without.gyr_rad_s)
+        turned[name] = along / np.linalg.norm(along)
+    assert turned["walk 1"] @ turned["walk 2"] > np.cos(np.deg2rad(5.0))
+    assert turned["walk 1"] @ turned["free"] < np.cos(np.deg2rad(20.0))
+
+
 def test_a_session_says_that_it_is_simulated_and_holds_what_was_asked() -> None:
     sites = (Site.LEFT_SHANK, Site.LEFT_FOOT, Site.RIGHT_FOOT)
     simulated = simulate(replace(CLEAN, sites=sites))

@@ -19,6 +19,7 @@ from devices.walker_sensors import (
     angular_rate,
     draw_faults,
     draw_mounting,
+    draw_ride,
     make_clock,
     record,
     sensor_poses,
@@ -45,7 +46,7 @@ def worn(site: Site, settings: WalkerSettings = DENSE) -> tuple[ImuBlock, tuple[
     """A sensor's samples at 1000 Hz, and its true poses and times at the same instants."""
     rng = np.random.default_rng(1)
     _, motion = walking_leg(settings)
-    poses = sensor_poses(motion, site, draw_mounting(site, 0.025, rng), settings.tissue, rng)
+    poses = sensor_poses(motion, site, draw_mounting(site, 0.025, rng), settings.tissue, draw_ride(rng), rng)
     clock = make_clock(settings, site, 5.0, rng)
     faults = draw_faults(settings.errors, rng)
     block, _ = record(settings, site, clock, motion.time_s, poses, faults, rng)
