@@ -21,7 +21,7 @@ from PySide6.QtCore import Qt, QTimer
 BEAT_MS = 5
 LOOK_EVERY_S = 0.01
 BUSY_LIMIT_S = 0.1  # what the house allows on the screen's thread
-WAIT_LIMIT_S = 0.1  # on top: waiting for a thread of ours that another process keeps from running is no fault
+WAIT_LIMIT_S = 0.2  # more: waiting for a thread of ours that another process keeps from running is no fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,6 @@ class Watchdog:
 
     def __init__(self) -> None:
         self.late: list[LateBeat] = []
-        self.busy_limit_s = BUSY_LIMIT_S
         self._thread_id = threading.get_ident()
         self._kept_file = Path(f"/proc/self/task/{threading.get_native_id()}/schedstat")
         self._has_kept = self._kept_file.exists()
@@ -111,7 +110,7 @@ class Watchdog:
     def _note(self) -> None:
         """Write the time since the last beat down, if it was too long."""
         busy_s, waited_s = self._spent().since(self._beat)
-        if self._is_watching and self._is_late(busy_s, waited_s):
+        if self._is_watching and _is_late(busy_s, waited_s):
             where = self._stack or "Nobody saw where: it never let another thread run.\n"
             self.late.append(LateBeat(busy_s, waited_s, where))
 
@@ -119,13 +118,10 @@ class Watchdog:
         """Keep the stack of the screen's thread as it is when its beat becomes late."""
         while not self._is_over.wait(LOOK_EVERY_S):
             with self._lock:
-                if self._is_watching and not self._stack and self._is_late(*self._spent().since(self._beat)):
+                if self._is_watching and not self._stack and _is_late(*self._spent().since(self._beat)):
                     frame = sys._current_frames().get(self._thread_id)
                     self._stack = "".join(traceback.format_stack(frame)) if frame is not None else ""
                     del frame  # it would keep a painter alive that the thread has long done with
-
-    def _is_late(self, busy_s: float, waited_s: float) -> bool:
-        return busy_s > self.busy_limit_s or busy_s + waited_s > self.busy_limit_s + WAIT_LIMIT_S
 
     def _spent(self) -> Spent:
         wall_s = time.monotonic()
@@ -135,3 +131,7 @@ class Watchdog:
             busy_s = time.thread_time() if threading.get_ident() == self._thread_id else self._beat.busy_s
         kept_s = int(self._kept_file.read_text().split()[1]) / 1e9 if self._has_kept else None
         return Spent(wall_s, busy_s, kept_s)
+
+
+def _is_late(busy_s: float, waited_s: float) -> bool:
+    return busy_s > BUSY_LIMIT_S or busy_s + waited_s > WAIT_LIMIT_S
