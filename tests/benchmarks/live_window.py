@@ -64,7 +64,7 @@ def lead(wanted: argparse.Namespace) -> dict[str, Any]:
             try:
                 if state["until"]():
                     state["until"], state["since_s"] = next(script), time.monotonic()
-                elif time.monotonic() - state["since_s"] > PATIENCE_S:
+                elif time.monotonic() - state["since_s"] > PATIENCE_S + wanted.seconds:
                     raise TimeoutError("the session does not go on")
             except StopIteration:
                 dog.stop()
