@@ -36,7 +36,7 @@ def list_devices() -> Iterator[str]:
         yield "Ports without one:"
     for passed in found.passed:
         about = f" ({passed.port.description})" if passed.port.description else ""
-        yield f"- {passed.port.device}{about}: {passed.what}. {passed.remedy}."
+        yield f"- {passed.port.device}{about}: {passed.refusal}"
     yield "How the drivers were proved:"
     for driver in DRIVERS:
         yield f"- {driver.name}: {driver.proof}"

@@ -118,7 +118,9 @@ class UdpChannel:
             self._port = _UdpPort.shared(self._receive_port, self._address)
         except OSError as problem:
             raise SourceRefusedError(
-                f"Port {self._receive_port} of this computer is used by another program", "Close that program"
+                "Port {number} of this computer is used by another program",
+                "Close that program",
+                number=self._receive_port,
             ) from problem
 
     def read(self) -> bytes:
@@ -229,5 +231,5 @@ def _close(one: socket.socket | None) -> None:
 
 def _unreachable(place: str) -> SourceRefusedError:
     return SourceRefusedError(
-        f"Nothing answers at {place}", "Check that the sensor is switched on and in the same network"
+        "Nothing answers at {place}", "Check that the sensor is switched on and in the same network", place=place
     )

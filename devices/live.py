@@ -12,11 +12,15 @@ Keep = Callable[[bytes], None]
 
 
 class SourceRefusedError(Exception):
-    """A source that does not open. Says what is wrong and what to do."""
+    """A source that does not open. Says what is wrong and what to do.
 
-    def __init__(self, what: str, remedy: str) -> None:
-        super().__init__(f"{what}. {remedy}.")
-        self.what, self.remedy = what, remedy
+    Both are sentences without their full stop, written out where they are raised: so they are gathered for the
+    translators, and whoever shows them puts them into the user's language. `values` fill their braces.
+    """
+
+    def __init__(self, what: str, remedy: str, **values: object) -> None:
+        super().__init__(f"{what}. {remedy}.".format(**values))
+        self.what, self.remedy, self.values = what, remedy, values
 
 
 class SourceLostError(Exception):

@@ -129,8 +129,9 @@ def sensors_of(stream: str, labels: Sequence[str], units: Sequence[str]) -> tupl
             )
     if not sensors:
         raise OtherStreamError(
-            f"The stream {stream} has no channels of angular rate and acceleration that are called so",
+            "The stream {name} has no channels of angular rate and acceleration that are called so",
             "Label them gyr_x to gyr_z and acc_x to acc_z where they are sent, or send both",
+            name=stream,
         )
     return tuple(sensors)
 
@@ -156,7 +157,7 @@ def _scale(stream: str, units: Sequence[str], columns: Sequence[int], known: Map
     if len(told) == 1 and (scale := known.get(told.pop())) is not None:
         return scale
     raise SourceRefusedError(
-        f"The stream {stream} does not tell its units", "Tell them where it is sent, such as deg/s and m/s^2"
+        "The stream {name} does not tell its units", "Tell them where it is sent, such as deg/s and m/s^2", name=stream
     )
 
 
@@ -204,7 +205,7 @@ class LslSource:
         found = [one for one in pylsl.resolve_byprop(*self._key(), timeout=OPEN_S) if self._is_same(one)]
         if not found:
             raise SourceRefusedError(
-                f"The stream {self._stream.name} is not there", "Start it in the program that sends it"
+                "The stream {name} is not there", "Start it in the program that sends it", name=self._stream.name
             )
         inlet = pylsl.StreamInlet(found[0], max_buflen=BUFFER_S, recover=False)
         try:
@@ -217,7 +218,9 @@ class LslSource:
                 inlet.time_correction(timeout=OPEN_S)
         except (pylsl.util.LostError, pylsl.util.TimeoutError) as problem:
             raise SourceRefusedError(
-                f"The stream {self._stream.name} does not answer", "Start it anew in the program that sends it"
+                "The stream {name} does not answer",
+                "Start it anew in the program that sends it",
+                name=self._stream.name,
             ) from problem
         self._sensors, self._inlet = tuple(sensors), inlet
 

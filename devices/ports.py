@@ -139,16 +139,19 @@ def _refusal(device: str, problem: Exception) -> SourceRefusedError:
     number = problem.errno if isinstance(problem, OSError) else None
     text = str(problem)
     if number == errno.ENOENT or "FileNotFoundError" in text or "No such file" in text:
-        return SourceRefusedError(f"{device} is not there", "Plug the sensor in, and switch it on")
+        return SourceRefusedError("{place} is not there", "Plug the sensor in, and switch it on", place=device)
     if number == errno.EACCES and sys.platform.startswith("linux"):
-        group = _group(device)
         return SourceRefusedError(
-            f"{device} may only be used by members of the group {group}",
-            f"Let the administrator run: sudo usermod -aG {group} $USER; then log in anew",
+            "{place} may only be used by members of the group {group}",
+            "Let the administrator run: sudo usermod -aG {group} $USER; then log in anew",
+            place=device,
+            group=_group(device),
         )
     if number in (errno.EBUSY, errno.EAGAIN, errno.EACCES) or "lock" in text or "PermissionError" in text:
-        return SourceRefusedError(f"{device} is used by another program", "Close that program, then search again")
-    return SourceRefusedError(f"{device} does not open", "Plug the sensor in again, then search again")
+        return SourceRefusedError(
+            "{place} is used by another program", "Close that program, then search again", place=device
+        )
+    return SourceRefusedError("{place} does not open", "Plug the sensor in again, then search again", place=device)
 
 
 def _group(device: str) -> str:

@@ -53,8 +53,7 @@ class Passed:
     """A port that no sensor was heard at, and what to do about it."""
 
     port: PortInfo
-    what: str
-    remedy: str
+    refusal: SourceRefusedError
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,13 +121,17 @@ def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Pa
                     driver.key, info.sensors[0], port.device, _making(driver, port, baud), info.is_simulated
                 )
         except SourceRefusedError as refusal:
-            return Passed(port, refusal.what, refusal.remedy)
+            return Passed(port, refusal)
         except SourceLostError:
             break
         finally:
             channel.close()
-    return Passed(
-        port, f"No sensor was heard at {port.device}", "Switch it on, and let it send rates and accelerations"
+    return Passed(port, _silence(port.device))
+
+
+def _silence(place: str) -> SourceRefusedError:
+    return SourceRefusedError(
+        "No sensor was heard at {place}", "Switch it on, and let it send rates and accelerations", place=place
     )
 
 
@@ -227,7 +230,7 @@ def _streamed() -> list[FoundSensor | Passed]:
         except OtherStreamError:  # of a heart or a brain
             continue
         except SourceRefusedError as refusal:
-            found.append(Passed(PortInfo(place), refusal.what, refusal.remedy))
+            found.append(Passed(PortInfo(place), refusal))
     return found
 
 

@@ -305,17 +305,19 @@ class Shimmer3:
         firmware = talk.asked(Command.FIRMWARE, Command.FIRMWARE_ANSWER, lambda _: 6)
         if not firmware:
             raise SourceRefusedError(
-                f"No Shimmer3 answers at {channel.place}", "Check that it is switched on, paired and not in its dock"
+                "No Shimmer3 answers at {place}",
+                "Check that it is switched on, paired and not in its dock",
+                place=channel.place,
             )
         name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda said: 1 + said[0])[1:].decode("ascii", "replace")
         kind, major, minor, internal = struct.unpack("<HHBB", firmware)
         period = self._wanted_period or _owned_period(talk)
         if not name or not all(talk.told(bytes(wish)) for wish in _wishes(period)):
-            raise _unwilling(channel, RESTART)
+            raise _unwilling(channel)
         calibration = talk.asked(Command.CALIBRATION, Command.CALIBRATION_ANSWER, lambda _: 4 * CALIBRATION_SIZE)
         inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda said: 8 + said[6])
         if not calibration or not inquiry:
-            raise _unwilling(channel, RESTART)
+            raise _unwilling(channel)
         blocks = [calibration[k * CALIBRATION_SIZE :][:CALIBRATION_SIZE] for k in (GYR_CALIBRATION, ACC_CALIBRATION)]
         has_checksum = kind == 3 and (major, minor, internal) >= CHECKSUM_SINCE
         settings: dict[str, object] = {
@@ -329,7 +331,11 @@ class Shimmer3:
         try:
             _Shape(settings)
         except (ValueError, KeyError, struct.error) as problem:
-            raise _unwilling(channel, "Calibrate it in Consensys, then search again") from problem
+            raise SourceRefusedError(
+                "The Shimmer3 at {place} holds no calibration",
+                "Calibrate it in Consensys, then search again",
+                place=channel.place,
+            ) from problem
         if has_checksum:
             talk.told(bytes([Command.SET_CHECKSUM, 2]))
         channel.write(bytes([Command.START]))
@@ -408,8 +414,9 @@ class _Talk:
         return b""
 
 
-RESTART = "Plug it into its dock and out again, then search again"
-
-
-def _unwilling(channel: Channel, remedy: str) -> SourceRefusedError:
-    return SourceRefusedError(f"The Shimmer3 at {channel.place} did not take its settings", remedy)
+def _unwilling(channel: Channel) -> SourceRefusedError:
+    return SourceRefusedError(
+        "The Shimmer3 at {place} did not take its settings",
+        "Plug it into its dock and out again, then search again",
+        place=channel.place,
+    )

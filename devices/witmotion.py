@@ -220,7 +220,10 @@ def _registers(channel: Channel, framer: WitFramer, first: int) -> bytes:
 def _refusal(place: str, is_heard: bool) -> SourceRefusedError:
     if is_heard:
         return SourceRefusedError(
-            f"The sensor at {place} sends no time, so that losses would not be seen",
+            "The sensor at {place} sends no time, so that losses would not be seen",
             "Switch its time output on with the maker's program",
+            place=place,
         )
-    return SourceRefusedError(f"No WitMotion sensor is heard at {place}", "Check that it is switched on, and its baud")
+    return SourceRefusedError(
+        "No WitMotion sensor is heard at {place}", "Check that it is switched on, and its baud", place=place
+    )

@@ -156,8 +156,9 @@ class XsensMti:
         framer = MtiFramer(SourceInfo(DRIVER, VERSION))
         if not any(_asked(channel, framer, Mid.GO_TO_CONFIG) for _ in range(TRIES)):
             raise SourceRefusedError(
-                f"No Xsens sensor answers at {channel.place}",
+                "No Xsens sensor answers at {place}",
                 "Check that it is plugged in there, and that MT Manager is closed",
+                place=channel.place,
             )
         serial = _asked(channel, framer, Mid.DEVICE_ID)[1:].hex().upper()
         model = _asked(channel, framer, Mid.PRODUCT)[1:].decode("ascii", "replace").strip("\0 ")
@@ -165,7 +166,9 @@ class XsensMti:
         rate_hz = self._set_up(channel, framer)
         if not serial or not rate_hz or not _asked(channel, framer, Mid.GO_TO_MEASUREMENT):
             raise SourceRefusedError(
-                f"The Xsens sensor at {channel.place} did not take its settings", "Plug it in again, then search again"
+                "The Xsens sensor at {place} did not take its settings",
+                "Plug it in again, then search again",
+                place=channel.place,
             )
         settings = {"rate_hz": rate_hz}
         info = SourceInfo(DRIVER, VERSION, serial, (f"MTi {serial}",), settings, is_simulated=model == EMULATED)

@@ -16,8 +16,10 @@ from babel.messages.pofile import write_po
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
 TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of sentences each takes
-# of app.storage, which are put into the user's language where they are shown: what, remedy; the first says where
+# which are put into the user's language where they are shown: what, remedy; of some the first says where
 REFUSALS = {
+    "SourceRefusedError": 0,
+    "OtherStreamError": 0,
     "LibraryError": 0,
     "LibraryBusyError": 0,
     "LibraryFaultError": 0,
@@ -53,9 +55,9 @@ def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
 
 
 def gathered() -> Catalog:
-    """Give every sentence of `app`, and those that findings are told by."""
+    """Give every sentence of `app`, those that findings are told by, and the refusals of `devices`."""
     catalogue = Catalog(charset="utf-8")
-    for file in sorted((ROOT / "app").rglob("*.py")):
+    for file in sorted([*(ROOT / "app").rglob("*.py"), *(ROOT / "devices").rglob("*.py")]):
         for message in sentences(file):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     sys.path.insert(0, str(ROOT))  # a script sees its own folder only

@@ -53,7 +53,7 @@ class Acquisition:
                 reader.open(self._begin_ns)
             names = self.sensors
             if twice := next((name for name in names if names.count(name) > 1), None):
-                raise SourceRefusedError(f"Two sensors are called {twice}", "Connect one of them only")
+                raise SourceRefusedError("Two sensors are called {name}", "Connect one of them only", name=twice)
         except SourceRefusedError:
             self.close()
             raise

@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, overload
 
 from app.wizard.worn_sensors import SourceChoice
-from app.wording import tr, tr_n
+from app.wording import later, tr, tr_n
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
@@ -114,12 +114,12 @@ class Sources(Sequence[SourceChoice]):
             return _opening(found.sensors)
         if found.lines:
             raise SourceRefusedError(
-                tr("Lines of numbers are heard, and nobody said what they mean"), tr("Choose them as the source")
+                later("Lines of numbers are heard, and nobody said what they mean"), later("Choose them as the source")
             )
         if len(found.passed) == 1:  # then it is this one that is meant
-            raise SourceRefusedError(found.passed[0].what, found.passed[0].remedy)
+            raise found.passed[0].refusal
         raise SourceRefusedError(
-            tr("No sensor was found"), tr("Plug in the receiver or switch the sensors on, then search again")
+            later("No sensor was found"), later("Plug in the receiver or switch the sensors on, then search again")
         )
 
 

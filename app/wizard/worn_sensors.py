@@ -168,7 +168,8 @@ class WornSensors(QObject):
     def _on_failed(self, error: Exception) -> None:
         choice, self.choice = self.choice, None
         if isinstance(error, SourceRefusedError):
-            self.refused.emit(error.what, error.remedy)
+            what, remedy = tr(error.what).format(**error.values), tr(error.remedy).format(**error.values)
+            self.refused.emit(f"{what}.", f"{remedy}.")
         else:
             _log.error("a source did not open", exc_info=error)
             name = choice.name if choice is not None else tr("This source")

@@ -84,7 +84,7 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
         ("xsens-mti", "MTi 0280A1B2"),
     }
     assert all(one.is_simulated for one in found.sensors)
-    assert [one.what for one in found.passed] == [
+    assert [str(one.refusal).partition(". ")[0] for one in found.passed] == [
         f"No sensor was heard at {tmp_path / 'd'}",
         f"{tmp_path / 'nothing'} is not there",
     ]
@@ -155,7 +155,9 @@ def test_streams_of_motion_are_found_and_others_say_why_not(
     monkeypatch.setattr("devices.search.told_sensors", sensors)
     found = search([], free_port())
     assert [(one.driver, one.name, one.count) for one in found.sensors] == [("lsl", "Consensys", 1)]
-    assert [one.what for one in found.passed] == ["The stream no units does not tell its units"]
+    assert [str(one.refusal).partition(". ")[0] for one in found.passed] == [
+        "The stream no units does not tell its units"
+    ]
 
 
 def test_where_there_is_no_network_no_port_is_opened(monkeypatch: pytest.MonkeyPatch) -> None:

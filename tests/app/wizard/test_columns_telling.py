@@ -78,7 +78,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     assert (primary.text, primary.is_enabled) == ("Use these columns", True)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.on_primary()
-    assert refused.args == ["Searched", "again"]
+    assert refused.args == ["Searched.", "again."]
     assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}
     assert not step._telling.is_on
 

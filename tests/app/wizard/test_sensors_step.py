@@ -180,3 +180,16 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
     step.page.searching.stop.click()
     assert step.page.nothing.isVisible()
     may_end.set()
+
+
+@pytest.mark.usefixtures("pseudo_language")
+def test_what_is_refused_is_said_in_the_users_language(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
+    def make() -> Acquisition:
+        raise SourceRefusedError("{place} is used by another program", "Close that program", place="COM{7}")
+
+    visit._choices = (SourceChoice("taken", "Taken", make),)
+    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+        step.page.source_chosen.emit("taken")
+    what, remedy = refused.args
+    assert what.startswith("[COM{7} ")
+    assert (what[-2:], remedy[:1], remedy[-2:]) == ("].", "[", "].")

@@ -14,7 +14,10 @@ from devices.replay import ReplaySource
 from devices.search import Found, FoundSensor, Passed
 from tests.safety.live_material import numbered_session
 
-REFUSED = Passed(PortInfo("COM7"), "COM7 is used by another program", "Close that program, then search again")
+REFUSED = Passed(
+    PortInfo("COM7"),
+    SourceRefusedError("{place} is used by another program", "Close that program, then search again", place="COM7"),
+)
 
 
 def sensor(name: str, driver: str = "ximu3", is_simulated: bool = False) -> FoundSensor:
