@@ -5,7 +5,7 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.live_lanes import LiveLane, LiveLanes
@@ -30,11 +30,12 @@ class WalkingCharts(Card):
         self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
         self.lanes = LiveLanes(look)
-        self._simulated: list[Text] = []  # over each joint's curves: one may be cut out alone
+        self._simulated: list[Text] = []  # over each joint's curves and the phases: one may be cut out alone
         self._provisional = Text(look, size=12, weight=MEDIUM, tone="ink2")
         self._keys = {side: SideKey(look, side) for side in Side}
         self._is_compact = False
         self._legend_pairs: list[QHBoxLayout] = []
+        self._legend_gaps: list[QSpacerItem] = []  # they give way where words are long
         self._lines = Hairline(look), Hairline(look)
         self._heads: list[QHBoxLayout] = []
         self._legend, self._key_row = QHBoxLayout(), QHBoxLayout()
@@ -108,6 +109,9 @@ class WalkingCharts(Card):
             pair = QHBoxLayout()
             pair.addWidget(Swatch(self._look, phase))
             pair.addWidget(Text(self._look, word, size=12, tone="ink2"))
+            if self._legend_pairs:
+                self._legend_gaps.append(QSpacerItem(0, 0, QSizePolicy.Policy.Maximum))
+                self._legend.addItem(self._legend_gaps[-1])
             self._legend.addLayout(pair)
             self._legend_pairs.append(pair)
         phases.addLayout(self._legend)
@@ -126,9 +130,9 @@ class WalkingCharts(Card):
         head.addWidget(title)
         if sign:
             head.addWidget(Text(self._look, sign, size=12, tone="ink2"))
-            mark = Text(self._look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
-            head.addWidget(mark)
-            self._simulated.append(mark)
+        mark = Text(self._look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
+        head.addWidget(mark)
+        self._simulated.append(mark)
         self._heads.append(head)
         return head
 
@@ -137,10 +141,12 @@ class WalkingCharts(Card):
         px = self._look.theme.px
         for head in self._heads:
             head.setSpacing(px(8))
-        for row in (self._legend, self._key_row):
-            row.setSpacing(px(20))
+        self._key_row.setSpacing(px(20))
+        self._legend.setSpacing(px(6))
+        for gap in self._legend_gaps:
+            gap.changeSize(px(14), 0, QSizePolicy.Policy.Maximum)
         for pair in self._legend_pairs:
-            pair.setSpacing(px(8))
+            pair.setSpacing(px(6))
 
 
 class Hairline(QWidget):

@@ -220,11 +220,11 @@ def test_rows_are_read_with_their_state(page: WalkingPage) -> None:
 
 
 @pytest.mark.parametrize("is_compact", [False, True])
-def test_simulated_is_said_over_knee_and_ankle(page: WalkingPage, is_compact: bool) -> None:
+def test_simulated_is_said_over_knee_ankle_and_phases(page: WalkingPage, is_compact: bool) -> None:
     page.show_walks((RECORDING,))
     page.set_compact(is_compact)
     page.set_simulated(True)
-    assert texts(page).count("SIMULATED") == 2
+    assert texts(page).count("SIMULATED") == 3
     page.set_simulated(False)
     assert "SIMULATED" not in texts(page)
 
