@@ -254,7 +254,7 @@ class MainWindow(QWidget):
             return
         if self._home is None:
             self._made_home()
-        else:
+        elif not self._home.prepare():
             self._made_wizard()
         QTimer.singleShot(MAKE_EVERY_MS, self, self._on_prepared)
 

@@ -1,6 +1,7 @@
 """How does the window look? Colours, type and space of one scheme at one size."""
 
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QObject, Qt, Signal
@@ -38,14 +39,7 @@ class Theme:
 
     def font(self, size: float, weight: QFont.Weight = QFont.Weight.Normal, is_code: bool = False) -> QFont:
         """Give the font of `size` px of the type table, with figures of one width; codes tell 0 from O."""
-        font = QFont("Inter Display" if size >= DISPLAY_FROM_PX else "Inter")
-        font.setPixelSize(self.px(size))
-        font.setWeight(weight)
-        font.setHintingPreference(QFont.HintingPreference.PreferNoHinting)
-        font.setFeature(QFont.Tag("tnum"), 1)
-        if is_code:
-            font.setFeature(QFont.Tag("zero"), 1)
-        return font
+        return QFont(_font("Inter Display" if size >= DISPLAY_FROM_PX else "Inter", self.px(size), weight, is_code))
 
     def curve(self, side: Side) -> QColor:
         return QColor(self.colours.left if side is Side.LEFT else self.colours.right)
@@ -85,6 +79,19 @@ class Theme:
         colour = QColor(self.colours.ink)
         colour.setAlphaF(0.10 if is_pressed else 0.04)
         return colour
+
+
+@cache
+def _font(family: str, pixels: int, weight: QFont.Weight, is_code: bool) -> QFont:
+    """Kept, since painters ask for the same few thousands of times a second."""
+    font = QFont(family)
+    font.setPixelSize(pixels)
+    font.setWeight(weight)
+    font.setHintingPreference(QFont.HintingPreference.PreferNoHinting)
+    font.setFeature(QFont.Tag("tnum"), 1)
+    if is_code:
+        font.setFeature(QFont.Tag("zero"), 1)
+    return font
 
 
 class Look(QObject):

@@ -23,7 +23,7 @@ from app.widgets.action_bar import ActionBar, BarState, Verb
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
-from app.widgets.rail_row import BelowRow, RailForm, RailRow, StepState
+from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
@@ -73,7 +73,7 @@ class Home(QWidget):
         self.recovering = Recovering(desk, self.banner, self)
         self.page = HomePage(look)
         self.import_page = ImportPage(look)
-        self.settings = SettingsDesk(look, desk, settings, self)
+        self._settings_desk: SettingsDesk | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
@@ -83,6 +83,22 @@ class Home(QWidget):
         self._go_to(self.page)
         self._on_look_changed()
 
+    @property
+    def settings(self) -> SettingsDesk:
+        """The settings, made when they are first asked for: beside the rest of home they would hold up the screen."""
+        if self._settings_desk is None:
+            self._settings_desk = made = SettingsDesk(self._look, self._desk, self._settings, self)
+            self._add_page(made.page)
+            made.told.connect(self.banner.tell)
+            made.restored.connect(self.refresh)
+            if self._state is not None:
+                made.show_library(self._state)
+        return self._settings_desk
+
+    def prepare(self) -> bool:
+        """Make the next part before somebody asks for it; whether there was one."""
+        return self._settings_desk is None and self.settings is not None
+
     def show_library(self, state: OpenedState) -> None:
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
         self._state = state
@@ -91,7 +107,8 @@ class Home(QWidget):
         self.banner.hide()
         self.page.search.clear()
         self.page.show_patients(())
-        self.settings.show_library(state)
+        if self._settings_desk is not None:
+            self._settings_desk.show_library(state)
         if state.is_end_lost:
             self.banner.tell(
                 tr("The library was not closed well, and what was saved last is damaged."),
@@ -145,13 +162,8 @@ class Home(QWidget):
 
     def _build(self) -> None:
         self._pages = QStackedWidget()
-        for page in (self.page, self.import_page, self.settings.page, self.working):
-            scroll = QScrollArea()
-            scroll.setWidgetResizable(True)
-            scroll.setFrameShape(QFrame.Shape.NoFrame)
-            scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-            scroll.setWidget(page)
-            self._pages.addWidget(scroll)
+        for page in (self.page, self.import_page, self.working):
+            self._add_page(page)
         self._banner_row = QVBoxLayout()
         self._banner_row.addWidget(self.banner)
         column = QVBoxLayout()
@@ -164,6 +176,14 @@ class Home(QWidget):
         row.setSpacing(0)
         row.addWidget(self.rail)
         row.addLayout(column, 1)
+
+    def _add_page(self, page: QWidget) -> None:
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        scroll.setWidget(page)
+        self._pages.addWidget(scroll)
 
     def _connect(self) -> None:
         page = self.page
@@ -183,8 +203,6 @@ class Home(QWidget):
         self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
         self.working.stop_pressed.connect(self._on_stop)
         self.recovering.recovered.connect(self._on_recovered)
-        self.settings.told.connect(self.banner.tell)
-        self.settings.restored.connect(self.refresh)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
@@ -241,19 +259,17 @@ class Home(QWidget):
             tr("Leave the demonstration") if is_demonstration else tr("Open demonstration"),
             tr("Import recordings"),
         )
-        self.rail.show_rows(
-            tuple(
-                RailRow(name, state=StepState.CURRENT if is_current else StepState.TODO, icon=icon)
-                for name, is_current, icon in zip(names, states, icons, strict=True)
-            )
+        rows = (
+            RailRow(name, state=StepState.CURRENT if is_current else StepState.TODO, icon=icon)
+            for name, is_current, icon in zip(names, states, icons, strict=True)
         )
+        self.rail.show_rows(tuple(rows))
         note = (
             tr("Simulated, not encrypted, gone when it is closed.")
             if is_demonstration
             else tr("Everything stays on this computer, encrypted.")
         )
-        below: tuple[BelowRow, ...] = home_below()
-        self.rail.show_below(below, note)
+        self.rail.show_below(home_below(), note)
         self.bar.show_state(self._bar())
         self.bar.setVisible(current is not self.working)
 
@@ -327,7 +343,7 @@ class Home(QWidget):
 
     def _on_back(self) -> None:
         self._to_import = None
-        was_settings = self.current is self.settings.page
+        was_settings = isinstance(self.current, SettingsPage)
         self._go_to(self.page)
         if was_settings:
             self.settings_left.emit()
