@@ -9,7 +9,7 @@ To add a finding's message, add its key to `SENTENCES`: the figures in braces ar
 
 import gettext
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from core.body import Joint, Side, Site
@@ -276,6 +276,12 @@ def tr_n(one: str, many: str, count: int) -> str:
 def later(message: str) -> str:
     """Tell the catalogue of a message that is written here but shown, through `tr`, later: as a constant is."""
     return message
+
+
+def filled(message: str, values: Mapping[str, object]) -> str:
+    """Give what was refused elsewhere in the user's language, its braces filled; none are looked for without values."""
+    said = tr(message)
+    return said.format(**values) if values else said
 
 
 def sentence(finding: Finding) -> str:

@@ -8,6 +8,7 @@ import ast
 import io
 import sys
 from collections.abc import Iterator
+from importlib import import_module
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -20,6 +21,7 @@ TAKERS = {"tr": 1, "tr_n": 2, "later": 1}  # of app.wording, with the number of 
 REFUSALS = {
     "SourceRefusedError": 0,
     "OtherStreamError": 0,
+    "FileRefusedError": 1,
     "LibraryError": 0,
     "LibraryBusyError": 0,
     "LibraryFaultError": 0,
@@ -54,13 +56,26 @@ def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
             yield from (one.value for one in told if isinstance(one, ast.Constant) and isinstance(one.value, str))
 
 
+def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
+    """Find what a module of `devices` refuses, and how it says so: in place, or by a constant's name."""
+    module = import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
+    for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(call, ast.Call) and (at := REFUSALS.get(ast.unparse(call.func))) is not None:
+            told = [one.value if isinstance(one, ast.Constant) else one for one in call.args[at:]]
+            named = [getattr(module, one.id, None) if isinstance(one, ast.Name) else one for one in told]
+            yield call, [one for one in named if isinstance(one, str)]
+
+
 def gathered() -> Catalog:
     """Give every sentence of `app`, those that findings are told by, and the refusals of `devices`."""
     catalogue = Catalog(charset="utf-8")
-    for file in sorted([*(ROOT / "app").rglob("*.py"), *(ROOT / "devices").rglob("*.py")]):
+    for file in sorted((ROOT / "app").rglob("*.py")):
         for message in sentences(file):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     sys.path.insert(0, str(ROOT))  # a script sees its own folder only
+    for file in sorted((ROOT / "devices").rglob("*.py")):
+        for message in (said for _, both in refused(file) for said in both):
+            catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     from app.wording import NAMES, SENTENCES
 
     words = [word for names in NAMES.values() for word in names.values()]

@@ -27,7 +27,7 @@ from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
-from app.wording import later, place, side_name, tr
+from app.wording import filled, later, place, side_name, tr
 from app.workers.background import Background, Work
 from app.workers.opening import opening_demonstration, opening_folder
 from core.body import Side
@@ -270,7 +270,8 @@ class SessionScreen(QWidget):
     def _on_failed(self, error: Exception) -> None:
         self._show_page(self._results or self.empty)
         if isinstance(error, FileRefusedError):
-            self.banner.tell(f"{error.where}: {error.what}.", f"{error.remedy}.")
+            what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
+            self.banner.tell(f"{error.where}: {what}.", f"{remedy}.")
         else:
             _log.error("the analysis ended early", exc_info=error)
             self.banner.tell(*map(tr, ENDED_EARLY))

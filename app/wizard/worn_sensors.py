@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
-from app.wording import name_of, tr
+from app.wording import filled, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint, Site
 from devices.live import SourceRefusedError
@@ -168,7 +168,7 @@ class WornSensors(QObject):
     def _on_failed(self, error: Exception) -> None:
         choice, self.choice = self.choice, None
         if isinstance(error, SourceRefusedError):
-            what, remedy = tr(error.what).format(**error.values), tr(error.remedy).format(**error.values)
+            what, remedy = filled(error.what, error.values), filled(error.remedy, error.values)
             self.refused.emit(f"{what}.", f"{remedy}.")
         else:
             _log.error("a source did not open", exc_info=error)

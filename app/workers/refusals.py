@@ -3,7 +3,7 @@
 import logging
 from typing import NamedTuple
 
-from app.wording import capitalised, tr
+from app.wording import capitalised, filled, tr
 
 _log = logging.getLogger(__name__)
 
@@ -31,8 +31,9 @@ def refusal_of(error: Exception) -> Refusal:
     if isinstance(error, LibraryError | KeyRefusedError):
         return Refusal(f"{tr(error.what)}.", f"{tr(error.remedy)}.")
     if isinstance(error, JournalRefusedError | FileRefusedError):
+        values = error.values if isinstance(error, FileRefusedError) else {}
         where = tr("Where: {place}.").format(place=error.where)  # last: a path is long, and helps the fewest
-        return Refusal(f"{capitalised(tr(error.what))}.", f"{tr(error.remedy)}. {where}")
+        return Refusal(f"{capitalised(filled(error.what, values))}.", f"{filled(error.remedy, values)}. {where}")
     if isinstance(error, NothingOpenError):
         return nothing_open()
     _log.error("a call of the library ended early", exc_info=error)

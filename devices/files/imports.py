@@ -36,11 +36,12 @@ def parse_map(text: str) -> dict[Site, str]:
     for part in re.split(r",(?=\s*\w+\s*=)", text):
         site, equals, value = (piece.strip() for piece in part.partition("="))
         if not equals or not value:
-            raise FileRefusedError(MAP, f"{quoted(part)} does not say which file is at which site", AS_IN)
+            raise FileRefusedError(MAP, "{part} does not say which file is at which site", AS_IN, part=quoted(part))
         if site not in list(Site):
-            raise FileRefusedError(MAP, f"{quoted(site)} is not a site", f"Sites are {', '.join(Site)}")
+            sites = ", ".join(Site)
+            raise FileRefusedError(MAP, "{site} is not a site", "Sites are {sites}", site=quoted(site), sites=sites)
         if site in placement:
-            raise FileRefusedError(MAP, f"{site} is there twice", "Name each site once")
+            raise FileRefusedError(MAP, "{site} is there twice", "Name each site once", site=site)
         placement[Site(site)] = value
     return placement
 
@@ -71,14 +72,21 @@ def place_files(
         named = [p for p in files if value in (str(p), p.name, p.stem) or p.resolve() == Path(value).resolve()]
         found = dict.fromkeys(path.resolve() for path in named or [p for p in files if _plain_id(value) in ids[p]])
         if not found:
-            remedy = f"The sensors there are {', '.join(sorted(set().union(*ids.values())))}"
-            raise FileRefusedError(f"{MAP} {site}", f"none of the files is or holds {quoted(value)}", remedy)
+            raise FileRefusedError(
+                f"{MAP} {site}",
+                "none of the files is or holds {value}",
+                "The sensors there are {sensors}",
+                value=quoted(value),
+                sensors=", ".join(sorted(set().union(*ids.values()))),
+            )
         if len(found) > 1:
-            names = " and ".join(path.name for path in found)
-            raise FileRefusedError(f"{MAP} {site}", f"{quoted(value)} may be {names}", "Give the file's name")
+            names = ", ".join(path.name for path in found)
+            raise FileRefusedError(
+                f"{MAP} {site}", "{value} may be {names}", "Give the file's name", value=quoted(value), names=names
+            )
         path = next(iter(found))
         if path in placed.values():
-            raise FileRefusedError(f"{MAP} {site}", f"{path.name} is at two sites", "Name each file once")
+            raise FileRefusedError(f"{MAP} {site}", "{name} is at two sites", "Name each file once", name=path.name)
         placed[site] = path
     left_out = [path for path in files if path.resolve() not in placed.values()]
     return placed, left_out
@@ -101,11 +109,19 @@ def add_recording(
     """
     for other in session.recordings:
         if other.name == recording.name:
-            what = "the session has a recording of this name already"
-            raise FileRefusedError(recording.name, what, "Choose another name with --recording")
+            raise FileRefusedError(
+                recording.name,
+                "the session has a recording of this name already",
+                "Choose another name with --recording",
+            )
         if Path(other.folder) == Path(recording.folder):
-            what = f"the folder {quoted(recording.folder)} holds the recording {quoted(other.name)} already"
-            raise FileRefusedError(recording.name, what, "Choose another name with --recording")
+            raise FileRefusedError(
+                recording.name,
+                "the folder {folder} holds the recording {other} already",
+                "Choose another name with --recording",
+                folder=quoted(recording.folder),
+                other=quoted(other.name),
+            )
     added = sensors or {}
     recordings = (*session.recordings, recording)
     worn = [(one.name, {site: one.imu[site].sensor for site in one.imu}) for one in recordings]

@@ -5,15 +5,15 @@ class FileRefusedError(Exception):
     """A file that cannot be used: what is wrong, where, and what to do, as one line for the person who chose it.
 
     `where` is the file as the reader knows it, with a line or a time where there is one; `what` a clause,
-    `remedy` a sentence without its full stop. What files hold ends up in these words, so whatever would break the line
-    is made visible or dropped.
+    `remedy` a sentence without its full stop: written out as of `devices.live.SourceRefusedError`, with `values` for
+    their braces. What files hold ends up in these words, so whatever would break the line is made visible or dropped.
     """
 
-    def __init__(self, where: str, what: str, remedy: str) -> None:
-        self.where = one_line(where)
-        self.what = one_line(what)
-        self.remedy = one_line(remedy)
-        super().__init__(f"{self.where}: {self.what}. {self.remedy}.")
+    def __init__(self, where: str, what: str, remedy: str, **values: object) -> None:
+        self.where, self.what, self.remedy = one_line(where), one_line(what), one_line(remedy)
+        self.values = {key: one_line(str(value)) for key, value in values.items()}
+        said = f"{self.what}. {self.remedy}."
+        super().__init__(f"{self.where}: {said.format(**self.values) if values else said}")
 
 
 def one_line(text: str) -> str:

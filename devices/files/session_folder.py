@@ -37,8 +37,12 @@ def read_session(folder: Path) -> Session:
     try:
         return _read(folder)
     except OSError as error:
-        what = f"this cannot be read ({error.strerror})"
-        raise FileRefusedError(str(error.filename or folder), what, "Check the folder and its permissions") from error
+        raise FileRefusedError(
+            str(error.filename or folder),
+            "this cannot be read ({why})",
+            "Check the folder and its permissions",
+            why=error.strerror,
+        ) from error
 
 
 def write_session(session: Session, folder: Path) -> None:
@@ -82,8 +86,11 @@ def _read(folder: Path) -> Session:
     session, plans = parse(_read_toml(folder))
     files = {plan.recording.name: _site_files(folder, plan, session) for plan in plans}
     if not any(files.values()):
-        what = "no recording has a file named after a site"
-        raise FileRefusedError(FILE_NAME, what, "Name the files left_thigh.csv, left_shank.csv and so on")
+        raise FileRefusedError(
+            FILE_NAME,
+            "no recording has a file named after a site",
+            "Name the files left_thigh.csv, left_shank.csv and so on",
+        )
     shelf = Shelf() if _size(files) > HELD_BYTES else None
     recordings, findings = [], []
     for plan in plans:
@@ -98,12 +105,16 @@ def _read(folder: Path) -> Session:
 def _read_toml(folder: Path) -> str:
     path = folder / FILE_NAME
     if not path.is_file():
-        remedy = f"Choose the folder that holds {FILE_NAME}, or import the recordings first"
-        raise FileRefusedError(str(folder), f"this is not a session folder, it holds no {FILE_NAME}", remedy)
+        raise FileRefusedError(
+            str(folder),
+            "this is not a session folder, it holds no {file}",
+            "Choose the folder that holds {file}, or import the recordings first",
+            file=FILE_NAME,
+        )
     try:
         return path.read_bytes().decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise FileRefusedError(FILE_NAME, "this is not UTF-8 text", f"Save {FILE_NAME} as UTF-8") from error
+        raise FileRefusedError(FILE_NAME, "this is not UTF-8 text", "Save {file} as UTF-8", file=FILE_NAME) from error
 
 
 def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFile]:
@@ -111,13 +122,24 @@ def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFi
     files = {}
     _check_inside(folder / recording.folder, folder, recording.folder)
     if not (folder / recording.folder).is_dir():
-        what = f"the folder of this recording is missing ({recording.folder})"
-        raise FileRefusedError(recording.name, what, f"Put it back or take the recording out of {FILE_NAME}")
+        raise FileRefusedError(
+            recording.name,
+            "the folder of this recording is missing ({folder})",
+            "Put it back or take the recording out of {file}",
+            folder=recording.folder,
+            file=FILE_NAME,
+        )
     for site in Site:
         names = [site + suffix for suffix in SUFFIXES if (folder / recording.folder / (site + suffix)).exists()]
         if len(names) > 1:
-            remedy = "Keep one of the two files"
-            raise FileRefusedError(recording.folder, f"{site} is there twice: {' and '.join(names)}", remedy)
+            raise FileRefusedError(
+                recording.folder,
+                "{site} is there twice: {first} and {second}",
+                "Keep one of the two files",
+                site=site,
+                first=names[0],
+                second=names[1],
+            )
         for name in names:
             path, where = folder / recording.folder / name, f"{recording.folder}/{name}"
             _check_inside(path, folder, where)
@@ -173,8 +195,9 @@ def _strays(folder: Path) -> Sequence[Path]:
     if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return []
     if not (folder / FILE_NAME).is_file():
-        what = "this is there already and is not a session folder"
-        raise FileRefusedError(str(folder), what, "Choose another folder")
+        raise FileRefusedError(
+            str(folder), "this is there already and is not a session folder", "Choose another folder"
+        )
     session, plans = parse(_read_toml(folder))
     sites = {file.path for plan in plans for file in _site_files(folder, plan, session).values()}
     return [

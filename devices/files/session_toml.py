@@ -23,6 +23,7 @@ from devices.files.refusal import FileRefusedError, quoted
 FORMAT = "gaitwright-session/1"
 FILE_NAME = "session.toml"
 CORRECT_IT = f"Correct {FILE_NAME}"
+SAYS_FORMAT = f'A session folder says format = "{FORMAT}" in its first line'
 SIDES = ("left", "right", "both", "none", "")
 
 Check = Callable[[object], Any]
@@ -180,7 +181,7 @@ def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
     try:
         document = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
-        raise FileRefusedError(FILE_NAME, f"this is not TOML ({error})", CORRECT_IT) from error
+        raise FileRefusedError(FILE_NAME, "this is not TOML ({why})", CORRECT_IT, why=error) from error
     _check_format(document)
     tables = {name: _table(document, name, f"[{name}]") for name in TABLES}
     session_values, session_unknown = _take(tables["session"], SESSION, "[session]")
@@ -261,25 +262,31 @@ def _check_format(document: Table) -> None:
         return
     later = re.fullmatch(r"gaitwright-session/(\d{1,9})", name) if isinstance(name, str) else None
     if later and int(later[1]) > 1:
-        what = f"this session was written by a later version ({quoted(name)})"
-        raise FileRefusedError(FILE_NAME, what, "Update Gaitwright, then open it again")
-    what = "the format is not named" if name is None else f"the format {quoted(name)} is not known"
-    raise FileRefusedError(FILE_NAME, what, f'A session folder says format = "{FORMAT}" in its first line')
+        raise FileRefusedError(
+            FILE_NAME,
+            "this session was written by a later version ({version})",
+            "Update Gaitwright, then open it again",
+            version=quoted(name),
+        )
+    if name is None:
+        raise FileRefusedError(FILE_NAME, "the format is not named", SAYS_FORMAT)
+    raise FileRefusedError(FILE_NAME, "the format {name} is not known", SAYS_FORMAT, name=quoted(name))
 
 
 def _plans(tables: object) -> tuple[Plan, ...]:
     if not isinstance(tables, list) or not all(isinstance(table, dict) for table in tables):
         raise FileRefusedError(FILE_NAME, "recordings is not a list of tables", "Start each one with [[recordings]]")
     if not tables:
-        remedy = "Add one with [[recordings]] and its name, kind and folder"
-        raise FileRefusedError(FILE_NAME, "there is no recording at all", remedy)
+        raise FileRefusedError(
+            FILE_NAME, "there is no recording at all", "Add one with [[recordings]] and its name, kind and folder"
+        )
     plans: list[Plan] = []
     for number, table in enumerate(tables, 1):
         name = table.get("name")
         where = f"[[recordings]] {quoted(name) if isinstance(name, str) and name else f'number {number}'}"
         for key in REQUIRED:
             if key not in table:
-                raise FileRefusedError(f"{FILE_NAME}, {where}", f"{key} is missing", CORRECT_IT)
+                raise FileRefusedError(f"{FILE_NAME}, {where}", "{key} is missing", CORRECT_IT, key=key)
         values, unknown = _take(table, RECORDING, where)
         sensors = _site_texts(unknown.get("sensors"))
         rates_derived = _site_list(unknown.get("rates_derived"))
@@ -291,8 +298,13 @@ def _plans(tables: object) -> tuple[Plan, ...]:
         for other in (plan.recording for plan in plans):
             for key in ("name", "folder"):
                 if _normal(getattr(other, key), key) == _normal(getattr(recording, key), key):
-                    what = f"two recordings have the {key} {quoted(getattr(recording, key))}"
-                    raise FileRefusedError(f"{FILE_NAME}, {where}", what, f"Give each recording a {key} of its own")
+                    raise FileRefusedError(
+                        f"{FILE_NAME}, {where}",
+                        "two recordings have the {key} {value}",
+                        "Give each recording a {key} of its own",
+                        key=key,
+                        value=quoted(getattr(recording, key)),
+                    )
         plans.append(Plan(recording, sensors, rates_derived))
     return tuple(plans)
 
@@ -323,8 +335,14 @@ def _take(table: Table, known: Mapping[str, Known], where: str) -> tuple[dict[st
         try:
             values[attribute] = check(value)
         except ValueError as error:
-            what = f"{key} is {quoted(value)}, expected {error}"
-            raise FileRefusedError(f"{FILE_NAME}, {where}", what, CORRECT_IT) from error
+            raise FileRefusedError(
+                f"{FILE_NAME}, {where}",
+                "{key} is {value}, expected {wanted}",
+                CORRECT_IT,
+                key=key,
+                value=quoted(value),
+                wanted=error,
+            ) from error
     return values, {key: value for key, value in table.items() if key not in known}
 
 

@@ -45,10 +45,12 @@ def read_site(
     try:
         table = read_parquet(path, where, NUMERIC) if path.suffix == ".parquet" else read_csv(path, where, NUMERIC)
     except OSError as error:
-        raise FileRefusedError(where, f"the file cannot be read ({error.strerror})", "Check its permissions") from error
+        why = error.strerror
+        raise FileRefusedError(where, "the file cannot be read ({why})", "Check its permissions", why=why) from error
     missing = [name for name in REQUIRED if name not in table.numbers]
     if missing:
-        raise FileRefusedError(f"{where}, line 1", f"required columns are missing: {', '.join(missing)}", CORRECT_IT)
+        names = ", ".join(missing)
+        raise FileRefusedError(f"{where}, line 1", "required columns are missing: {names}", CORRECT_IT, names=names)
     time_s = table.numbers[TIME]
     is_new = _check_clock(time_s, table, where)
     kept = slice(None) if is_new.all() else is_new  # ten hours are not copied for nothing
@@ -190,14 +192,21 @@ def _check_clock(time_s: FloatArray, table: Table, where: str) -> BoolArray:
     is_new = np.ones(len(time_s), dtype=bool)
     empty = np.flatnonzero(~np.isfinite(time_s))
     if len(empty):
-        what = "a sample has no time" if np.isnan(time_s[empty[0]]) else "a sample's time is infinite"
-        raise FileRefusedError(f"{where}, {table.place(int(empty[0]))}", what, CORRECT_IT)
+        place = f"{where}, {table.place(int(empty[0]))}"
+        if np.isnan(time_s[empty[0]]):
+            raise FileRefusedError(place, "a sample has no time", CORRECT_IT)
+        raise FileRefusedError(place, "a sample's time is infinite", CORRECT_IT)
     step_s = np.diff(time_s)
     back = np.flatnonzero(step_s < 0)
     if len(back):
         row = int(back[0]) + 1
-        what = f"the clock steps back from {time_s[row - 1]:.9g} s to {time_s[row]:.9g} s"
-        raise FileRefusedError(f"{where}, {table.place(row)}", what, "Split the recording there or export it again")
+        raise FileRefusedError(
+            f"{where}, {table.place(row)}",
+            "the clock steps back from {before} s to {after} s",
+            "Split the recording there or export it again",
+            before=f"{time_s[row - 1]:.9g}",
+            after=f"{time_s[row]:.9g}",
+        )
     is_new[1:] = step_s > 0
     return is_new
 

@@ -83,7 +83,7 @@ def read_csv(
         if isinstance(arrow, Exception) or _swallows_lines(arrow, numeric):
             _refuse_line(path, where, start, header_line, names, numeric, delimiter)
             if _has_content(path, start):
-                raise FileRefusedError(where, f"the table cannot be read ({arrow})", COPY_AGAIN)
+                raise FileRefusedError(where, "the table cannot be read ({why})", COPY_AGAIN, why=arrow)
             arrow = None
 
     unnamed = {f"{UNNAMED} {i}" for i in range(1, len(names) + 1)}
@@ -123,14 +123,16 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
             is_number = pa.types.is_integer(column.type) or pa.types.is_floating(column.type)
             if name in numeric:
                 if not (is_number or pa.types.is_decimal(column.type) or pa.types.is_null(column.type)):
-                    raise FileRefusedError(where, f"column {name} holds {column.type}, not numbers", CORRECT_IT)
+                    raise FileRefusedError(
+                        where, "column {name} holds {kind}, not numbers", CORRECT_IT, name=name, kind=column.type
+                    )
                 numbers[name] = np.asarray(column.cast(pa.float64(), safe=False).to_numpy(), dtype=float)
             elif is_number and column.null_count == 0:
                 texts[name] = column.to_numpy()
             else:
                 texts[name] = _as_text(["" if v is None else str(v) for v in column.to_pylist()])
     except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
-        raise FileRefusedError(where, f"this is not a readable Parquet file ({error})", COPY_AGAIN) from error
+        raise FileRefusedError(where, "this is not a readable Parquet file ({why})", COPY_AGAIN, why=error) from error
     return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
 
 
@@ -175,7 +177,8 @@ def _read_header(file: BinaryIO, where: str, comment: str | None, delimiters: st
 def _refuse_twice(names: list[str], where: str, place: str) -> None:
     for name in names:
         if names.count(name) > 1:
-            raise FileRefusedError(f"{where}, {place}", f"column {quoted(name)} is there twice", CORRECT_IT)
+            here = f"{where}, {place}"
+            raise FileRefusedError(here, "column {name} is there twice", CORRECT_IT, name=quoted(name))
 
 
 def _read_body(file: BinaryIO, names: list[str], wanted: list[str], numeric: Collection[str], delimiter: str) -> Any:
@@ -241,16 +244,28 @@ def _refuse_line(
         try:
             cells = next(csv.reader([text], delimiter=delimiter))
         except csv.Error as error:
-            raise FileRefusedError(here, f"the line cannot be read ({error})", COPY_AGAIN) from error
+            raise FileRefusedError(here, "the line cannot be read ({why})", COPY_AGAIN, why=error) from error
         if len(cells) < len(names):
-            what = f"the line ends after {len(cells)} of {len(names)} columns, the file may have been cut"
-            raise FileRefusedError(here, what, COPY_AGAIN)
+            raise FileRefusedError(
+                here,
+                "the line ends after {count} of {whole} columns, the file may have been cut",
+                COPY_AGAIN,
+                count=len(cells),
+                whole=len(names),
+            )
         if len(cells) > len(names):
-            what = f"the line has {len(cells)} columns, the header {len(names)}"
-            raise FileRefusedError(here, what, CORRECT_IT)
+            raise FileRefusedError(
+                here,
+                "the line has {count} columns, the header {whole}",
+                CORRECT_IT,
+                count=len(cells),
+                whole=len(names),
+            )
         for name, cell in zip(names, cells, strict=True):
             if name in numeric and not NUMBER.fullmatch(cell):
-                raise FileRefusedError(here, f"{quoted(cell)} in column {name} is not a number", CORRECT_IT)
+                raise FileRefusedError(
+                    here, "{cell} in column {name} is not a number", CORRECT_IT, cell=quoted(cell), name=name
+                )
 
 
 def _as_text(values: list[str]) -> NDArray[np.generic]:

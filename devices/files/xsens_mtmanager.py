@@ -38,6 +38,7 @@ FINE_TURNS_AT = 2.0**32
 ROTATION_ERROR = 0.01  # of a matrix or norm; six decimals leave 1e-5
 LARGEST_RATE_RAD_S = 35.0  # 2000 deg/s, the widest range of these sensors
 EXPORT_AGAIN = "Export it again from MT Manager"
+WITH_IT = "Export it again from MT Manager, with it"
 Numbers = NDArray[np.int64]
 
 
@@ -70,16 +71,19 @@ def read_mtmanager(path: Path) -> MtFile:
     where = path.name
     comments, names = header_of(path, where, comment="//", delimiters=DELIMITERS)
     if COUNTER not in names:
-        raise FileRefusedError(where, f"there is no column {COUNTER}", f"{EXPORT_AGAIN}, with it")
+        raise FileRefusedError(where, "there is no column {name}", WITH_IT, name=COUNTER)
     if not set(ACC) <= set(names):
-        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", f"{EXPORT_AGAIN}, with it")
+        raise FileRefusedError(where, "there is no acceleration (Acc_X, Acc_Y, Acc_Z)", WITH_IT)
     table = read_csv(path, where, NUMERIC, comment="//", delimiters=DELIMITERS, keep_others=False)
     counter, is_new = _unwrap(table, where)
     q = _orientation(table, where)
     gyr = table.matrix(GYR)[is_new] if set(GYR) <= set(names) else None
     if gyr is None and q is None:
-        what = "there are neither angular rates (Gyr_X) nor an orientation to derive them from"
-        raise FileRefusedError(where, what, f"{EXPORT_AGAIN}, with one of them")
+        raise FileRefusedError(
+            where,
+            "there are neither angular rates (Gyr_X) nor an orientation to derive them from",
+            "Export it again from MT Manager, with one of them",
+        )
     settings = dict(line.split(":", 1) for line in comments if ":" in line)
     rate_hz = _header_rate(settings) or _fine_rate(table, counter)
     file = MtFile(
@@ -182,15 +186,26 @@ def _unwrap(table: Table, where: str) -> tuple[Numbers, BoolArray]:
     is_count = (raw >= 0) & (raw < COUNTER_TURNS_AT) & (raw == np.floor(raw))
     if not is_count.all():
         row = int(np.argmin(is_count))
-        what = f"{COUNTER} is not a whole number from 0 to {COUNTER_TURNS_AT - 1}"
-        raise FileRefusedError(f"{where}, {table.place(row)}", what, CORRECT_IT)
+        raise FileRefusedError(
+            f"{where}, {table.place(row)}",
+            "{name} is not a whole number from 0 to {most}",
+            CORRECT_IT,
+            name=COUNTER,
+            most=COUNTER_TURNS_AT - 1,
+        )
     count = raw.astype(np.int64)
     step: Numbers = np.diff(count) % COUNTER_TURNS_AT
     back = np.flatnonzero(step >= COUNTER_TURNS_AT // 2)
     if len(back):
         row = int(back[0]) + 1
-        what = f"{COUNTER} steps back from {raw[row - 1]:.0f} to {raw[row]:.0f}"
-        raise FileRefusedError(f"{where}, {table.place(row)}", what, EXPORT_AGAIN)
+        raise FileRefusedError(
+            f"{where}, {table.place(row)}",
+            "{name} steps back from {before} to {after}",
+            EXPORT_AGAIN,
+            name=COUNTER,
+            before=f"{raw[row - 1]:.0f}",
+            after=f"{raw[row]:.0f}",
+        )
     counter = np.concatenate([count[:1], count[:1] + np.cumsum(step)])
     return counter, np.concatenate([np.ones(len(count[:1]), dtype=bool), step > 0])
 
@@ -251,13 +266,22 @@ def _common_rate(files: Iterable[MtFile], asked_hz: float | None) -> float:
     if asked_hz is not None:
         told["--rate"] = asked_hz
     if not told:
-        remedy = "Give it in Hz with --rate, as set in MT Manager when recording"
-        raise FileRefusedError("update rate", "none of these files tells it", remedy)
+        raise FileRefusedError(
+            "update rate",
+            "none of these files tells it",
+            "Give it in Hz with --rate, as set in MT Manager when recording",
+        )
     (first, rate_hz), *others = told.items()
     for name, other_hz in others:
         if abs(other_hz - rate_hz) > 0.002 * rate_hz:  # clocks of two sensors differ less, settings more
-            what = f"the update rate is {other_hz:g} Hz, in {first} {rate_hz:g} Hz"
-            raise FileRefusedError(name, what, "Import files of one trial, with the rate it was recorded at")
+            raise FileRefusedError(
+                name,
+                "the update rate is {here} Hz, in {other} {there} Hz",
+                "Import files of one trial, with the rate it was recorded at",
+                here=f"{other_hz:g}",
+                other=first,
+                there=f"{rate_hz:g}",
+            )
     return rate_hz
 
 
@@ -275,8 +299,12 @@ def _start_together(files: Sequence[MtFile]) -> list[Numbers]:
     last_start = max(spans, key=lambda name: spans[name][0])
     first_end = min(spans, key=lambda name: spans[name][1])
     if spans[last_start][0] > spans[first_end][1]:
-        what = f"it starts after the last packet of {first_end}, so they are not of one trial"
-        raise FileRefusedError(last_start, what, "Import the files of one trial at a time")
+        raise FileRefusedError(
+            last_start,
+            "it starts after the last packet of {other}, so they are not of one trial",
+            "Import the files of one trial at a time",
+            other=first_end,
+        )
     start = min(first for first, _ in spans.values())
     return [counter - start for counter in turned]
 
@@ -319,11 +347,19 @@ def _check_units(file: MtFile) -> None:
     where = file.path.name
     median = _median(np.linalg.norm(file.acc_m_s2, axis=1))
     if 0.7 < median < 1.4:
-        what = f"the acceleration is {median:.2f} in the middle, as if it were in g and not in m/s2"
-        raise FileRefusedError(where, what, EXPORT_AGAIN)
+        raise FileRefusedError(
+            where,
+            "the acceleration is {middle} in the middle, as if it were in g and not in m/s2",
+            EXPORT_AGAIN,
+            middle=f"{median:.2f}",
+        )
     if median < 0.7:
-        what = f"the acceleration is {median:.2f} m/s2 in the middle, as if gravity had been taken out of it"
-        raise FileRefusedError(where, what, f"{EXPORT_AGAIN}, with Acc and not with FreeAcc")
+        raise FileRefusedError(
+            where,
+            "the acceleration is {middle} m/s2 in the middle, as if gravity had been taken out of it",
+            "Export it again from MT Manager, with Acc and not with FreeAcc",
+            middle=f"{median:.2f}",
+        )
     if file.gyr_rad_s is None:
         return
     speed = np.linalg.norm(file.gyr_rad_s, axis=1)

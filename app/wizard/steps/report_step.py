@@ -20,7 +20,7 @@ from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
-from app.wording import tr
+from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
 from app.workers.library_desk import LibraryDesk
 from devices.files.refusal import FileRefusedError
@@ -300,7 +300,8 @@ class ReportStep(Step):
                             opened, session_id, formats, beside, DECODERS, report, analysed=lambda _session: analysis
                         )
             except FileRefusedError as refusal:
-                raise LibraryError(refusal.what[:1].upper() + refusal.what[1:], refusal.remedy) from refusal
+                what, remedy = (filled(said, refusal.values) for said in (refusal.what, refusal.remedy))
+                raise LibraryError(capitalised(what), remedy) from refusal
             except OSError as problem:
                 what = tr("{folder} cannot be written").format(folder=out.name)
                 raise LibraryError(what, tr("Choose another folder; nothing is lost")) from problem

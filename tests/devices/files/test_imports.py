@@ -75,7 +75,7 @@ def test_a_file_is_found_by_its_path(files: list[Path], monkeypatch: pytest.Monk
     ("placement", "words"),
     [
         ({Site.LEFT_FOOT: "00B49999"}, "none of the files is or holds .* The sensors there are 00B40001, 00B40002"),
-        ({Site.LEFT_FOOT: "00B40002"}, "may be t_00B40002.txt and u_00B40002.txt"),
+        ({Site.LEFT_FOOT: "00B40002"}, "may be t_00B40002.txt, u_00B40002.txt"),
         ({Site.LEFT_FOOT: "00B40001", Site.LEFT_SHANK: "t_00B40001.txt"}, "t_00B40001.txt is at two sites"),
     ],
 )
