@@ -212,13 +212,15 @@ class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no t
         self._is_dense = len(time_s) > DENSE_FROM * columns
         self._is_dashed = len(time_s) <= DASHED_UP_TO * columns
         if curve is not None:
-            self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], columns)
+            # of each part the lowest and the highest: of smooth, wide lines, which cost most, a point per column
+            parts = columns if self._is_dense else columns // 2
+            self.time_s, self.angle_deg = thin(time_s, curve.angle_deg[part], parts)
             self._line = _runs(self.time_s, self.angle_deg)
             if curve.second_deg is not None:
-                self._second = _runs(*thin(time_s, curve.second_deg[part], columns))
+                self._second = _runs(*thin(time_s, curve.second_deg[part], parts))
             if curve.sd_deg is not None:
                 angle_deg, reach_deg = curve.angle_deg[part], 2 * curve.sd_deg[part]
-                band = envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, columns)
+                band = envelope(time_s, angle_deg - reach_deg, angle_deg + reach_deg, parts)
                 self._bands = _band_paths(*band, BAND_PIECE if self._is_dense else len(time_s))
         self._bounds = QRectF()
         for run in (*self._line, *self._second):

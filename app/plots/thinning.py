@@ -4,7 +4,7 @@ import numpy as np
 
 from core.samples import FloatArray
 
-FEW = 4  # samples per column that are drawn as they are
+FEW = 2  # samples per column that are drawn as they are
 
 
 def thin(time_s: FloatArray, values: FloatArray, columns: int) -> tuple[FloatArray, FloatArray]:
