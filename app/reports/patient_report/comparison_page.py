@@ -26,12 +26,12 @@ from app.reports.patient_report.numbers_in_words import NOTHING, fixed, in_words
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
-from app.wording import joined, tr
+from app.wording import capitalised, joined, tr
 from core.body import Side
 from core.norms import Verdict
 from core.samples import FloatArray
 
-PLOT_WIDTHS = {2: 75.5 * MM, 3: 67 * MM}
+PLOT_WIDTH = 67 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
@@ -109,7 +109,7 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
         lines=tuple(lines),
         band=_band(comparison, shown, kind),
-        plot_width=PLOT_WIDTHS[len(comparison.parts)],
+        plot_width=PLOT_WIDTH,
         is_simulated=comparison.is_simulated,
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
@@ -163,8 +163,9 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
             columns += [Column(f"{part.letter} − {first.letter}"), Column(against, is_number=False)]
     rows: list[Row] = []
     for side in sides:
-        counts = ", ".join(f"{part.letter}\u00a0{part.strides(side)}" for part in comparison.parts)
-        rows.append(tr("{side}: strides {counts}").format(side=role(shown, side), counts=counts))
+        count = tr("{count}\u00a0in\u00a0{part}")
+        counts = ", ".join(count.format(count=part.strides(side), part=part.letter) for part in comparison.parts)
+        rows.append(tr("{side}: strides {counts}").format(side=capitalised(role(shown, side)), counts=counts))
         for measure in MEASURES:
             joint = measure.joint(side)
             if joint is None or joint in comparison.joints:

@@ -34,7 +34,9 @@ def consistency_page(facts: Facts) -> list[Block]:
         (panels.cross_swatch(), tr("Stride left out, with its side")),
     ]
     strip = [figures([_strip(facts)])] if facts.has_joint("knee") else []
-    opening = tr("Every stride that was used. Means are printed from 3 strides on, spreads from 10.")
+    opening = tr(
+        "The strides of page 2, every one that was used. Means are printed from 3 strides on, spreads from 10."
+    )
     return [
         heading(tr("Consistency from stride to stride")),
         note(" ".join(filter(None, [opening, by_hand_in_words(facts.walk)]))),
@@ -46,7 +48,7 @@ def consistency_page(facts: Facts) -> list[Block]:
 
 
 def _panel(facts: Facts, side: Side, kind: str) -> Picture:
-    own = panels.line_of(facts, side, kind, width=1.9, has_peaks=False, dash="" if side is Side.LEFT else "6 1.6")
+    own = panels.line_of(facts, side, kind, width=1.9, dash="" if side is Side.LEFT else "6 1.6")
     chart = Chart(
         title=panels.title_with_side(facts, kind, side),
         axis=panels.axis_of(facts, kind),
@@ -88,8 +90,7 @@ def _strip(facts: Facts) -> Picture:
 def _table(facts: Facts, kinds: list[str]) -> Block:
     columns = [
         Column(tr("Measure"), "1fr", is_number=False),
-        Column(tr("Left, n = {count}").format(count=facts.strides(Side.LEFT)), "30mm"),
-        Column(tr("Right, n = {count}").format(count=facts.strides(Side.RIGHT)), "30mm"),
+        *(Column(facts.counted(side), "30mm") for side in Side),
     ]
     names = {
         "knee": tr("Knee: SD between strides, mean over the stride, °"),

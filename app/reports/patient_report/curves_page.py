@@ -34,7 +34,7 @@ def _figure(facts: Facts, kind: str) -> Block:
     chart = Chart(
         title=panels.title_of(facts, kind),
         axis=panels.axis_of(facts, kind),
-        lines=tuple(panels.line_of(facts, side, kind, width=1.9, has_peaks=True) for side in sides),
+        lines=tuple(panels.line_of(facts, side, kind, width=1.9, peaks=panels.PEAK_COLUMNS[kind]) for side in sides),
         band=panels.band_of(facts, kind),
         plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
@@ -44,8 +44,8 @@ def _figure(facts: Facts, kind: str) -> Block:
     legend = []
     if kind == next(k for k in KINDS if facts.has_joint(k)):
         band = panels.band_swatches() if chart.band is not None else []
-        peaks = panels.event_swatches() if not facts.has_no_zero(kind) else panels.event_swatches()[:2]
-        legend = [*panels.leg_swatches(facts), *band, *peaks]
+        events = panels.event_swatches(has_other_foot=bool(chart.ticks), has_peaks=not facts.has_no_zero(kind))
+        legend = [*panels.leg_swatches(facts), *band, *events]
     title = tr("Knee") if kind == "knee" else tr("Ankle")
     return figure_with_words(draw(chart), legend, title, [*_read_out(facts, kind), *panels.not_drawn(facts, kind)])
 

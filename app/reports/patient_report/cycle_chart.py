@@ -35,6 +35,7 @@ from core.gait.cycles import POINTS
 from core.samples import FloatArray
 
 LEFT_MARGIN, RIGHT_MARGIN, TOP, TOP_LABELS, FOOT = 27.0, 9.0, 13.0, 14.0, 30.0
+SPAN_HEIGHT, SPAN_ROW = 9.0, 11.0
 MIN_BADGE_DISTANCE = 14.0
 PERCENT = np.arange(POINTS, dtype=np.float64)
 
@@ -79,8 +80,21 @@ class Line:
 
 
 @dataclass(frozen=True, slots=True)
+class Span:
+    """Where in the stride, percent, the highest or the lowest angle is looked for."""
+
+    name: str
+    first: float
+    last: float
+    is_maximum: bool
+
+
+@dataclass(frozen=True, slots=True)
 class Chart:
-    """One panel; `band` mean and SD (101,) each, degrees; `ticks` percent and side of the other foot's events."""
+    """One panel; `band` mean and SD (101,) each, degrees; `ticks` percent and side of the other foot's events.
+
+    `spans` stand above the frame, where toe-off is named otherwise.
+    """
 
     title: str
     axis: Axis
@@ -89,6 +103,7 @@ class Chart:
     plot_width: float
     is_simulated: bool
     ticks: tuple[tuple[float, Side], ...] = ()
+    spans: tuple[Span, ...] = ()
     alt: str = ""
 
 
@@ -96,7 +111,7 @@ class _Frame:
     """Where percent and degrees lie on the paper."""
 
     def __init__(self, chart: Chart) -> None:
-        self.left, self.top = LEFT_MARGIN, TOP + TOP_LABELS
+        self.left, self.top = LEFT_MARGIN, TOP + (2 * SPAN_ROW if chart.spans else TOP_LABELS)
         self.width, self.height = chart.plot_width, 0.75 * chart.plot_width
         self.right, self.bottom = self.left + self.width, self.top + self.height
         self._axis = chart.axis
@@ -117,7 +132,7 @@ def draw(chart: Chart) -> Picture:
     if chart.band is not None:
         parts += _band(frame, *chart.band)
     parts += _axes(frame, chart.axis)
-    parts += _toe_offs(frame, chart.lines)
+    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.lines)
     for one in chart.lines:
         thin = 0.32 if np.isfinite(one.angle_deg).any() else 0.8
         parts += [curve(frame.x(PERCENT), frame.y(stride), one.colour, thin) for stride in one.strides_deg]
@@ -166,6 +181,24 @@ def _axes(frame: _Frame, axis: Axis) -> list[str]:
     said = tr("Stride, % (0 and 100 = initial contact of the same foot)")
     parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
     parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", INK, 0.7))
+    return parts
+
+
+def _spans(frame: _Frame, chart: Chart) -> list[str]:
+    """A row of boxes for the highest, one for the lowest, and a dotted line down to each peak that was found."""
+    parts = []
+    for row, said in ((0, tr("max")), (1, tr("min"))):
+        y = TOP + SPAN_ROW * row
+        parts.append(text(frame.left - 4, y + 6.8, said, 6.6, anchor="end", fill=GREY))
+        for span in chart.spans:
+            if span.is_maximum is (row == 0):
+                left, right = float(frame.x(span.first)), float(frame.x(span.last))
+                parts.append(box(left, y, right - left, SPAN_HEIGHT, OUTER, OUTER_EDGE, 0.5))
+                parts.append(text((left + right) / 2, y + 6.8, span.name, 6.6, anchor="middle"))
+    for one in chart.lines:
+        for peak in one.peaks:
+            x, y, top = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg)), frame.top + 12.5  # below the words
+            parts += [line(x, top, x, y, GREY, 0.5, "0.8 1.6")] if y > top else []
     return parts
 
 

@@ -14,7 +14,7 @@ from app.reports.patient_report.consistency_page import consistency_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.first_page import fields, key_numbers, quality_box, time_distance_table
+from app.reports.patient_report.first_page import fields, key_numbers, measured, quality_box, time_distance_table
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.peaks_page import peaks_page
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, shortened, typed
@@ -131,6 +131,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "software": f"Gaitwright {plain(request.software_version)[:CODE_LENGTH]}",
             "page": tr("Page {page} of {pages}"),
         },
+        "measured": measured(facts, comparison),
         "fields": [list(field) for field in fields(request, facts)],
         "quality": quality_box(facts),
         "key_heading": tr("Key numbers"),

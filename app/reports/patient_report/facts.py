@@ -24,7 +24,7 @@ from app.reports.walk_figures import (
     strides_used,
     time_distance_figures,
 )
-from app.wording import capitalised, side_name, tr
+from app.wording import side_name, tr
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
@@ -121,6 +121,13 @@ class Facts:
     def strides(self, side: Side) -> int:
         return strides_used(self.gait[side]) if side in self.gait else 0
 
+    def counted(self, side: Side) -> str:
+        """Head a side's column, with its strides where it was measured."""
+        if side not in self.gait:
+            return tr("Left") if side is Side.LEFT else tr("Right")
+        said = tr("Left, n = {count}") if side is Side.LEFT else tr("Right, n = {count}")
+        return said.format(count=self.strides(side))
+
     def is_measured(self, joint: Joint) -> bool:
         return joint.side in self.gait and joint in self.gait[joint.side].cycles
 
@@ -209,10 +216,10 @@ def joint_of(kind: str, side: Side) -> Joint:
 
 
 def role(facts: Facts, side: Side) -> str:
-    """Name a side with what is known of it: "Right (prosthetic)"."""
+    """Name a side with what is known of it, inside a sentence: "right (prosthetic)"."""
     patient = facts.visit.session.patient
     if patient.prosthetic_side in (side, "both"):
-        return tr("{side} (prosthetic)").format(side=capitalised(side_name(side)))
+        return tr("{side} (prosthetic)").format(side=side_name(side))
     if patient.affected_side in (side, "both"):
-        return tr("{side} (affected)").format(side=capitalised(side_name(side)))
-    return capitalised(side_name(side))
+        return tr("{side} (affected)").format(side=side_name(side))
+    return side_name(side)

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping
 
+from app.reports.comparison import Comparison
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
 from app.reports.patient_report.dates import moment
-from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
     Band,
@@ -17,11 +18,11 @@ from app.reports.patient_report.numbers_in_words import (
     signed,
     spread,
 )
-from app.reports.patient_report.plain_text import typed
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.small_charts import gauge
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
-from app.wording import capitalised, side_name, tr, tr_n
+from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 
@@ -55,6 +56,32 @@ def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
         (tr("Software"), typed(f"Gaitwright {request.software_version}")),
         (tr("Sensors"), _sensors(request, facts)),
     ]
+
+
+def measured(facts: Facts, comparison: Comparison | None) -> str:
+    """What this report is of, in a sentence: joints and legs, and what is compared with what."""
+    worn = facts.visit.recording(facts.walk.name).imu
+    joints = {side: [kind for kind in KINDS if facts.is_measured(joint_of(kind, side))] for side in facts.gait}
+    names = {"knee": tr("knee"), "ankle": tr("ankle")}
+    legs = (
+        tr("both legs") if len(joints) > 1 else "".join(tr("the {side} leg").format(side=side_name(s)) for s in joints)
+    )
+    known = [name_of(joint_of(kind, side)) for side, kinds in joints.items() for kind in kinds]
+    if not known:
+        what = tr("steps")
+    elif len({tuple(kinds) for kinds in joints.values()}) == 1:
+        kinds = next(iter(joints.values()))
+        what = tr("{joints} of {legs}").format(joints=joined([names[kind] for kind in kinds]), legs=legs)
+    else:
+        what = joined(known)
+    sensors = tr_n("{count} motion sensor", "{count} motion sensors", len(worn)).format(count=len(worn))
+    said = [tr("Measured in walking: {what}, with {sensors}.").format(what=what, sensors=sensors)]
+    if comparison is not None:
+        # a mark of direction ends each name: with a space behind it, no glyph that is used elsewhere carries it along
+        parts = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
+        compared = tr("Compared, {last} shown on this page: {parts}")
+        said.append(compared.format(parts=parts, last=comparison.parts[-1].letter))
+    return " ".join(said)
 
 
 def quality_box(facts: Facts) -> Block:
@@ -101,7 +128,8 @@ def key_numbers(facts: Facts) -> list[dict[str, object]]:
     stance = facts.time_distance[tr("Stance")]
     band = stance.band if facts.values_group is not None else None
     values = {side: facts.value(side, "stance_percent") for side in Side}
-    found.append(_key_number(tr("Stance, share of the stride"), "\u00a0%", values, band, None, "[2]", 1, (50, 75, 5)))
+    stance_title = tr("Stance, share of the stride")
+    found.append(_key_number(stance_title, "\u00a0%", values, band, None, "[2]", 1, (50, 75, 5), shown_decimals=1))
     return found
 
 
@@ -114,9 +142,10 @@ def _key_number(
     number: str,
     decimals: int,
     scale: tuple[float, float, float],
+    shown_decimals: int = 0,
 ) -> dict[str, object]:
     known = {s: v.mean for s, v in values.items() if is_mean_enough(v.n) and math.isfinite(v.mean)}
-    parts = [(side[0].upper(), fixed(value, 0) + unit) for side, value in known.items()]
+    parts = [(side[0].upper(), fixed(value, shown_decimals) + unit) for side, value in known.items()]
     if band is not None:
         words = [(side[0].upper(), against_band(value, band)) for side, value in known.items()]
         source = f"{tr('Band')} {number}: {band_in_figures(band, decimals)}{unit}"
@@ -139,11 +168,9 @@ def _key_number(
 
 def time_distance_table(facts: Facts) -> list[Block]:
     one, other = facts.first_and_second
-    counts = {side: facts.strides(side) for side in Side}
     columns = [
         Column(tr("Measure"), "1fr", is_number=False),
-        Column(tr("Left, n = {count}").format(count=counts[Side.LEFT])),
-        Column(tr("Right, n = {count}").format(count=counts[Side.RIGHT])),
+        *(Column(facts.counted(side)) for side in Side),
         Column(tr("Band [2]")),
         Column(tr("Against the band"), "37mm", is_number=False),
         Column(tr("Symmetry") + f"\n{one[0].upper()} − {other[0].upper()}"),
@@ -171,7 +198,8 @@ def time_distance_table(facts: Facts) -> list[Block]:
         else tr("Mean ± SD over strides. No band: nobody of this age or speed is in the group.")
     )
     swing = [tr("Swing band = 100 − stance band.")] if group is not None else []
-    return [heading(tr("Time and distance")), table(columns, rows), note(" ".join([band, symmetry, *swing]))]
+    said = [band, symmetry, *swing] if len(facts.gait) == len(Side) else [band, *swing]
+    return [heading(tr("Time and distance")), table(columns, rows), note(" ".join(said))]
 
 
 def _both_row(facts: Facts, name: str, label: str) -> list[Cell | str]:

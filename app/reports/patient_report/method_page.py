@@ -1,5 +1,6 @@
 """What did the clinician say, how was it measured, and where does every band come from?"""
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
@@ -9,8 +10,10 @@ from app.reports.patient_report.blocks import Block, bullets, heading, note
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.plain_text import plain, plain_lines
+from app.reports.patient_report.quality import MAX_BEYOND_FLOOR_RAD
 from app.reports.patient_report.request import ReportRequest
 from app.wording import sentence, tr
+from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding, Severity
 from core.norms import KNEE_NEW_ATTACHMENT_DEG, SAME_ATTACHMENT_DEG
 from core.results import AxisSource
@@ -70,6 +73,9 @@ def _texts(parts: Sequence[tuple[str, str]]) -> list[list[str]]:
         "knee_error": fixed(KNEE_NEW_ATTACHMENT_DEG, 1),
         "degree": fixed(SAME_ATTACHMENT_DEG, 0),
         "stance": fixed(STANCE_SAME_ATTACHMENT_PERCENT, 1),
+        "floor": fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
+        "walking": fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
+        "beyond": fixed(math.degrees(MAX_BEYOND_FLOOR_RAD), 0),
     }
     return [[title, said.format(**figures)] for title, said in parts]
 
@@ -149,6 +155,14 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
                 "knee differed by less than 1° on the prosthesis and about 3° on the sound leg, the ankle by about "
                 "1° (root mean square; Seel, Raisch, Schauer 2014, Sensors 14:6891). This software has been checked "
                 "against simulated walks. It has not been tested on patients."
+            ),
+        ),
+        (
+            tr("Certainty of joint axes"),
+            tr(
+                "How far the axis that was found may lie from the true one (1 SD): for a human joint never told below "
+                "{floor}°, from walking alone below {walking}°. Up to {beyond}° more can be read; beyond, the height "
+                "of the curve is in doubt, its shape and timing are less."
             ),
         ),
         (

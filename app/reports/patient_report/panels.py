@@ -5,7 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.reports.patient_report.cycle_chart import Axis, Line, Mark
+from app.reports.gait_csv import WINDOWS
+from app.reports.patient_report.cycle_chart import Axis, Line, Mark, Span
 from app.reports.patient_report.drawing import (
     BAND_MEAN,
     COLOURS,
@@ -62,12 +63,17 @@ def title_of(facts: Facts, kind: str) -> str:
 
 def title_with_side(facts: Facts, kind: str, side: Side, *, is_about_mean: bool = False) -> str:
     said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    return said.format(title=small_title(facts, kind, is_about_mean=is_about_mean))
+
+
+def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
+    """Of a panel half as wide as the page, as it goes on behind a side."""
     short = {
         "knee": tr("knee, degrees from the mean (flexion +)"),
         "ankle": tr("ankle, degrees from the mean (dorsiflexion +)"),
     }
     title = title_of(facts, kind)
-    return said.format(title=short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:])
+    return short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:]
 
 
 def band_of(facts: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:
@@ -78,12 +84,14 @@ def band_of(facts: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:
     return (group.knee_mean_deg, group.knee_sd_deg) if kind == "knee" else (group.ankle_mean_deg, group.ankle_sd_deg)
 
 
-def line_of(facts: Facts, side: Side, kind: str, *, width: float, has_peaks: bool, dash: str | None = None) -> Line:
-    """One leg of one walk in its own colour."""
+def line_of(
+    facts: Facts, side: Side, kind: str, *, width: float, peaks: Sequence[str] = (), dash: str | None = None
+) -> Line:
+    """One leg of one walk in its own colour, with marks at the peaks of these columns of strides.csv."""
     letter = side[0].upper()
     off = facts.value(side, "stance_percent")
     is_known = is_mean_enough(off.n)
-    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 0))
+    label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 1))
     return Line(
         letter=letter,
         side=side,
@@ -95,7 +103,7 @@ def line_of(facts: Facts, side: Side, kind: str, *, width: float, has_peaks: boo
         toe_off_percent=off.mean if is_known else math.nan,
         toe_off_sd=off.sd if is_spread_enough(off.n) else math.nan,
         toe_off_label=label,
-        peaks=_marks(facts, side, kind) if has_peaks and not facts.has_no_zero(kind) else (),
+        peaks=_marks(facts, side, peaks) if not facts.has_no_zero(kind) else (),
         strides_deg=np.empty((0, 101)) if is_known else facts.strides_deg(side, kind),
     )
 
@@ -151,17 +159,21 @@ def leg_swatches(facts: Facts) -> list[tuple[Picture, str]]:
     return [(swatch(side), said[side]) for side in Side if side in facts.gait]
 
 
-def event_swatches() -> list[tuple[Picture, str]]:
+def event_swatches(*, has_other_foot: bool, has_peaks: bool) -> list[tuple[Picture, str]]:
     x = SWATCH_WIDTH / 2
     left = COLOURS[Side.LEFT]
     toe_off = [line(x, 0, x, SWATCH_HEIGHT, left, 0.9), line(x - 5, 0.8, x + 5, 0.8, INK, 1.4)]
     other = [line(x, 1, x, 8, left, 1.1)]
-    peak = [line(x, 0.5, x, 8.5, INK, 0.8), marker(x, 4.5, Side.LEFT)]
-    return [
-        (picture(toe_off, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Toe\u2011off, bar on top ±1 SD")),
-        (picture(other, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Other foot: toe\u2011off, contact")),
-        (picture(peak, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Mean of single peaks, ±1 SD")),
-    ]
+    found = [(picture(toe_off, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Toe\u2011off, bar on top ±1 SD"))]
+    if has_other_foot:
+        found.append((picture(other, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Other foot: toe\u2011off, contact")))
+    return [*found, peak_swatch()] if has_peaks else found
+
+
+def peak_swatch() -> tuple[Picture, str]:
+    x = SWATCH_WIDTH / 2
+    parts = [line(x, 0.5, x, 8.5, INK, 0.8), marker(x, 4.5, Side.LEFT)]
+    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Mean of single peaks, ±1 SD")
 
 
 def cross_swatch() -> Picture:
@@ -230,9 +242,24 @@ def peak_name(column: str) -> str:
     }[column]
 
 
-def _marks(facts: Facts, side: Side, kind: str) -> tuple[Mark, ...]:
+def spans_of(kind: str) -> dict[str, Span]:
+    """Where each peak of a joint is looked for, by its column of strides.csv."""
+    names = {
+        "knee_loading_peak_deg": tr("loading"),
+        "knee_stance_minimum_deg": tr("stance"),
+        "knee_swing_peak_deg": tr("swing"),
+        "ankle_loading_plantarflexion_deg": tr("loading"),
+        "ankle_stance_dorsiflexion_deg": tr("stance"),
+        "ankle_push_off_plantarflexion_deg": tr("push\u2011off"),
+        "ankle_swing_dorsiflexion_deg": tr("swing"),
+    }
+    windows = {column: window for column, window in WINDOWS.items() if column.startswith(kind)}
+    return {column: Span(names[column], one.first, one.last, one.is_maximum) for column, one in windows.items()}
+
+
+def _marks(facts: Facts, side: Side, columns: Sequence[str]) -> tuple[Mark, ...]:
     marks = []
-    for column in PEAK_COLUMNS[kind]:
+    for column in columns:
         value, at = facts.value(side, column), facts.peak_percent(side, column)
         if is_mean_enough(value.n) and math.isfinite(at.mean):
             marks.append(Mark(at.mean, value.mean, value.sd if is_spread_enough(value.n) else math.nan))

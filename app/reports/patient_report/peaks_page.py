@@ -3,8 +3,10 @@
 import math
 
 from app.reports.gait_csv import WINDOWS
-from app.reports.patient_report import quality
-from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
+from app.reports.patient_report import panels, quality
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
+from app.reports.patient_report.cycle_chart import Chart, draw
+from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
@@ -40,6 +42,7 @@ COLUMNS = {
     ),
 }
 WEAK = "\u2020"
+PLOT_WIDTH = 70 * MM
 
 
 def peaks_page(facts: Facts) -> list[Block]:
@@ -65,12 +68,13 @@ def peaks_page(facts: Facts) -> list[Block]:
         if facts.curves_group is not None and has_zero:
             rows.append(_score_row(facts, kind))
             has_score = True
-    said = [
-        tr(
+    said = []
+    if len(facts.gait) == len(Side):
+        judged = tr(
             "Differences are formed before rounding; in words: against the measurement error between legs, {error}°."
-        ).format(error=fixed(KNEE_NEW_ATTACHMENT_DEG, 1)),
-        tr("For the ankle no such figure is known, so it is not judged."),
-    ]
+        )
+        said.append(judged.format(error=fixed(KNEE_NEW_ATTACHMENT_DEG, 1)))
+        said.append(tr("For the ankle no such figure is known, so it is not judged."))
     if has_score:
         said.append(
             tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero.")
@@ -84,15 +88,51 @@ def peaks_page(facts: Facts) -> list[Block]:
     if by_hand := by_hand_in_words(facts.walk):
         said.append(by_hand)
     opening = tr(
-        "Degrees, mean ± SD over strides. “at %” is the mean time of the peak in the stride. "
+        "The strides of page 2. Degrees, mean ± SD over strides. “at %” is the mean time of the peak in the stride. "
         "Windows in brackets are % of the stride."
     )
-    return [heading(tr("Peaks and range")), note(opening), table(columns, rows), note(" ".join(said))]
+    found = [note(" ".join(said))] if said else []
+    return [heading(tr("Peaks and range")), note(opening), table(columns, rows), *found, *_where_found(facts)]
+
+
+def _where_found(facts: Facts) -> list[Block]:
+    """The windows over the curves: what the table's rows mean is seen, not only read."""
+    kinds = [kind for kind in KINDS if facts.has_joint(kind)]
+    if not kinds:
+        return []
+    said = [
+        tr("In every stride the highest (max) or lowest (min) angle inside each box is taken."),
+        tr("Range: a stride's highest angle less its lowest."),
+    ]
+    items = panels.leg_swatches(facts)
+    if any(not facts.has_no_zero(kind) for kind in kinds):
+        said.append(tr("At initial contact: at 0 %."))
+        items.append(panels.peak_swatch())
+    drawn = figures([_windows(facts, kind) for kind in kinds], columns=2)
+    return [heading(tr("Where each peak is looked for"), level=2), note(" ".join(said)), legend(items), drawn]
+
+
+def _windows(facts: Facts, kind: str) -> Picture:
+    sides, spans = [side for side in Side if facts.is_measured(joint_of(kind, side))], panels.spans_of(kind)
+    lines = (panels.line_of(facts, side, kind, width=1.4, peaks=list(spans)) for side in sides)
+    each = [f"{panels.peak_name(column)} {span.first}–{span.last} %" for column, span in spans.items()]
+    chart = Chart(
+        title=capitalised(panels.small_title(facts, kind)),
+        axis=panels.axis_of(facts, kind),
+        lines=tuple(lines),
+        band=None,
+        plot_width=PLOT_WIDTH,
+        is_simulated=facts.is_simulated,
+        spans=tuple(spans.values()),
+        alt=" ".join([panels.curve_alt(facts, kind, sides), tr("Windows: {windows}.").format(windows=", ".join(each))]),
+    )
+    return draw(chart)
 
 
 def _side_columns(facts: Facts, side: Side) -> list[Column]:
     said = tr("Left") if side is Side.LEFT else tr("Right")
-    return [Column(f"{said}\nn = {facts.strides(side)}"), Column(tr("at %"))]
+    count = f"n = {facts.strides(side)}" if side in facts.gait else ""
+    return [Column(f"{said}\n{count}".strip()), Column(tr("at %"))]
 
 
 def measure(facts: Facts, column: str) -> str:

@@ -1,20 +1,31 @@
 """What does who reads page one only have to know? At most four sentences, all of them numbers."""
 
 import math
+from collections.abc import Sequence
 
 from app.reports.comparison import MEASURES, Compared, Comparison, Kind
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading
 from app.reports.patient_report.facts import Facts, joint_of, role
 from app.reports.patient_report.first_page import symmetry_in_words
-from app.reports.patient_report.numbers_in_words import against_band, fixed, in_a_sentence, signed
+from app.reports.patient_report.numbers_in_words import (
+    Band,
+    against_band,
+    band_in_figures,
+    fixed,
+    in_a_sentence,
+    signed,
+)
+from app.reports.patient_report.panels import peak_name
+from app.reports.patient_report.peaks_page import COLUMNS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, plain, typed
 from app.reports.walk_figures import is_mean_enough
-from app.wording import capitalised, name_of, sentence, tr
+from app.wording import capitalised, name_of, sentence, tr, tr_n
 from core.body import Side
 from core.norms import Verdict
 
 MAX_SENTENCES = 4
+MAX_BEYOND = 2  # peaks told with their numbers; the table has all
 
 
 def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
@@ -23,10 +34,8 @@ def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
     sides = [side for side in facts.first_and_second if side in facts.gait]
     if comparison is not None:
         said += _comparison_sentences(facts, comparison)
-    shown = sides[:1] if facts.affected is not None else sides
-    for side in shown:
-        if len(said) < 2:
-            said += _knee_sentence(facts, side)
+    if len(said) < 2:
+        said += _knee_sentence(facts, sides)
     said += _difference_sentence(facts)
     for side in sides:
         for column, name in (
@@ -37,6 +46,7 @@ def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
                 sentence = tr("{joint}: no {peak} was found. This is printed as “no peak”, not as a number.")
                 joint = capitalised(name_of(joint_of(column.split("_")[0], side)))
                 said.append(sentence.format(joint=joint, peak=name))
+    said += _beyond_band_sentence(facts)
     stance = _stance_sentence(facts)
     caveat = _caveat(facts)
     kept = said[: MAX_SENTENCES - len(stance) - len(caveat)]
@@ -77,33 +87,83 @@ def _compared(facts: Facts, comparison: Comparison, row: Compared) -> str:
     is_angle = row.measure.unit == "°"
     unit = "°" if is_angle else "\u00a0%"
     is_visits = comparison.kind is Kind.VISITS
-    since = tr("since the earlier visit {change}") if is_visits else tr("{this} against {first} {change}")
+    pattern = (
+        tr("{measure}: {value}; since the earlier visit {change}: {verdict}{error}.")
+        if is_visits
+        else tr("{measure} at {this} {value}; against {first} {change}: {verdict}{error}.")
+    )
     named = {key: typed(part.name, CONDITION_LENGTH) for key, part in (("this", row.part), ("first", row.against))}
     error = f" ({fixed(row.difference.error_deg, 1)}{unit})" if math.isfinite(row.difference.error_deg) else ""
-    return tr("{measure}: {value}; {change}: {verdict}{error}.").format(
-        measure=names[row.measure.column].format(side=role(facts, row.side)),
+    return pattern.format(
+        measure=names[row.measure.column].format(side=capitalised(role(facts, row.side))),
         value=fixed(row.value.mean, 0 if is_angle else 1) + unit,
-        change=since.format(change=signed(row.difference.difference_deg, 1) + unit, **named),
+        change=signed(row.difference.difference_deg, 1) + unit,
         verdict=in_a_sentence(row.difference.verdict),
         error=error,
+        **named,
     )
 
 
-def _knee_sentence(facts: Facts, side: Side) -> list[str]:
-    for column, name in (
-        ("knee_swing_peak_deg", tr("{side} knee in swing: {value}°")),
-        ("knee_range_deg", tr("{side} knee range over the stride: {value}°")),
+def _knee_sentence(facts: Facts, sides: Sequence[Side]) -> list[str]:
+    """Where the knees of these legs lie against the band, swing before range."""
+    for column, pattern in (
+        ("knee_swing_peak_deg", tr("Knee in swing: {values}.")),
+        ("knee_range_deg", tr("Knee range over the stride: {values}.")),
     ):
-        value = facts.value(side, column)
-        if not is_mean_enough(value.n):
-            continue
-        said = name.format(side=role(facts, side), value=fixed(value.mean, 0))
-        band = facts.band(column)
-        if band is None:
-            return [said + "."]
-        number = "[2]" if facts.is_band_two(column) else "[1]"
-        return [f"{said}, {against_band(value.mean, band)} ({tr('band')} {number})."]
+        band, told = facts.band(column), []
+        for side in sides:
+            value = facts.value(side, column)
+            if is_mean_enough(value.n):
+                words = [f"{role(facts, side)} {fixed(value.mean, 0)}°"]
+                told.append(", ".join([*words, against_band(value.mean, band)] if band is not None else words))
+        if told:
+            number = "[2]" if facts.is_band_two(column) else "[1]"
+            source = f" ({tr('band')} {number})" if band is not None else ""
+            return [pattern.format(values="; ".join(told) + source)]
     return []
+
+
+def _beyond_band_sentence(facts: Facts) -> list[str]:
+    """The peaks that lie farthest from band [1], of those more than 2 SD away; not where the height is uncertain."""
+    found: dict[str, float] = {}
+    for column in (*COLUMNS["knee"], *COLUMNS["ankle"]):
+        band = facts.band(column)
+        if band is None or facts.is_band_two(column) or facts.has_no_zero(column.split("_")[0]):
+            continue
+        beyond = [away for side in facts.gait if (away := _away_sd(facts, side, column, band)) > 2]
+        if beyond:
+            found[column] = max(beyond)
+    if not found:
+        return []
+    farthest = sorted(found, key=lambda column: -found[column])
+    told = "; ".join(_beside_band(facts, column) for column in farthest[:MAX_BEYOND])
+    more = len(farthest) - MAX_BEYOND
+    if more > 0:
+        told += "; " + tr_n("{count} more on page 3", "{count} more on page 3", more).format(count=more)
+    return [tr("More than 2\u00a0SD from band [1]: {peaks}.").format(peaks=told)]
+
+
+def _away_sd(facts: Facts, side: Side, column: str, band: Band) -> float:
+    value, joint = facts.value(side, column), joint_of(column.split("_")[0], side)
+    is_told = is_mean_enough(value.n) and math.isfinite(value.mean) and not quality.is_weak_axis(facts, joint)
+    return abs(value.mean - (band[0] + band[1]) / 2) / ((band[1] - band[0]) / 2) if is_told else 0.0
+
+
+def _beside_band(facts: Facts, column: str) -> str:
+    """One peak of the legs that lie more than 2 SD away, and the band."""
+    band = facts.band(column)
+    if band is None:
+        return ""
+    values = [
+        f"{side[0].upper()}\u00a0{fixed(facts.value(side, column).mean, 0)}°"
+        for side in facts.gait
+        if _away_sd(facts, side, column, band) > 2
+    ]
+    peak = tr("at initial contact") if "initial_contact" in column else peak_name(column)
+    said = tr("{joint} {peak}, {values} ({band})")
+    joint = tr("knee") if column.startswith("knee") else tr("ankle")
+    in_band = tr("band {band}°").format(band=band_in_figures(band, 0))
+    return said.format(joint=joint, peak=peak, values=", ".join(values), band=in_band)
 
 
 def _difference_sentence(facts: Facts) -> list[str]:
@@ -141,8 +201,11 @@ def _stance_sentence(facts: Facts) -> list[str]:
     if not (is_mean_enough(left.n) and is_mean_enough(right.n)):
         return []
     symmetry = symmetry_in_words(facts, "stance_percent")
-    said = tr("Stance: left {left} %, right {right} % of the stride (symmetry {symmetry}).")
-    sentence = said.format(left=fixed(left.mean, 1), right=fixed(right.mean, 1), symmetry=symmetry)
+    band = facts.time_distance[tr("Stance")].band if facts.values_group is not None else None
+    against = [f", {against_band(value.mean, band)}" if band is not None else "" for value in (left, right)]
+    each = [f"{fixed(value.mean, 1)}{words}" for value, words in zip((left, right), against, strict=True)]
+    said = tr("Stance, % of the stride: left {left}; right {right} (symmetry {symmetry}).")
+    sentence = said.format(left=each[0], right=each[1], symmetry=symmetry)
     double = facts.time_distance[tr("Double support")]
     if double.both is not None and math.isfinite(double.both) and double.band and facts.values_group is not None:
         more = tr("Double support: {value} %, {against}.")

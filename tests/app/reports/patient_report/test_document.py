@@ -1,6 +1,7 @@
 """Is the report a document that everybody can read, now and in thirty years, and the same each time?"""
 
 import io
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 from datetime import datetime
@@ -18,6 +19,11 @@ pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 def texts(pdf: bytes) -> list[str]:
     return [page.extract_text() for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
+
+
+def first_page(request: ReportRequest) -> str:
+    """The words of page one, as they are read: in lines of one space, without marks of direction."""
+    return re.sub("[\u2066-\u2069]", "", " ".join(texts(make_report(request))[0].split()))
 
 
 def elements(node: pikepdf.Object) -> Iterator[pikepdf.Object]:
@@ -56,7 +62,7 @@ def test_every_figure_has_words_with_numbers_in_them(report: bytes) -> None:
     with pikepdf.open(io.BytesIO(report)) as pdf:
         figures = [node for node in elements(pdf.Root.StructTreeRoot.K) if node.get("/S") == "/Figure"]
         alts = [str(figure.get("/Alt", "")) for figure in figures]
-    assert len(alts) == 3 + 2 + 4 + 4 + 1  # key numbers, curves, comparison, single strides, strip
+    assert len(alts) == 3 + 2 + 2 + 4 + 4 + 1  # key numbers, curves, windows, comparison, single strides, strip
     assert [alt for alt in alts if not any(character.isdigit() for character in alt)] == []
 
 
@@ -124,6 +130,33 @@ def test_the_pages_stand_in_their_order(report: bytes) -> None:
 
 def test_without_a_comparison_there_are_five_pages(request_of_demonstration: ReportRequest) -> None:
     assert len(texts(make_report(request_of_demonstration))) == 5
+
+
+@pytest.mark.parametrize("paper", ["a4", "letter"])
+def test_nothing_of_a_page_is_left_for_the_next(
+    request_of_alignments: ReportRequest, request_of_demonstration: ReportRequest, paper: str
+) -> None:
+    """Every page holds its heading and all that belongs to it: conditions or visits compared, peaks with windows."""
+    two_visits = replace(request_of_demonstration, earlier=request_of_alignments.visit, paper=paper)
+    for wanted in (replace(request_of_alignments, paper=paper), two_visits):
+        pages = texts(make_report(wanted))
+        assert len(pages) == 6
+        assert "Where each peak is looked for" in pages[2]
+        assert "the first is thin and pale" in pages[3]
+
+
+def test_page_one_alone_says_what_was_measured_and_what_differs(
+    request_of_alignments: ReportRequest, request_of_one_leg: ReportRequest
+) -> None:
+    first = first_page(request_of_alignments)
+    assert "Measured in walking: knee and ankle of both legs, with 6 motion sensors." in first
+    assert "Compared, C shown on this page: A alignment A · B alignment B · C alignment C" in first
+    assert re.search(r"knee in swing at alignment C \d+°; against alignment A", first)
+    first = first_page(request_of_one_leg)
+    assert "Measured in walking: knee and ankle of the left leg, with 3 motion sensors." in first
+    assert "More than 2 SD from band [1]: ankle most plantarflexed, loading, L −13° (band −4 ± 2°)" in first
+    assert "Right, n = 0" not in first
+    assert "Symmetry =" not in first
 
 
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.reports.patient_report import comparison_page, consistency_page, curves_page, cycle_chart, panels
+from app.reports.patient_report import comparison_page, consistency_page, curves_page, cycle_chart, panels, peaks_page
 from app.reports.patient_report.cycle_chart import Chart
 from app.reports.patient_report.document import report_data
 from app.reports.patient_report.drawing import Picture
@@ -123,7 +123,7 @@ def test_every_curve_and_mark_is_in_a_file(
     """Means are of cycles.csv, single strides of angles.csv between the times of strides.csv, marks of both tables."""
     charts = drawn(request_of_demonstration, monkeypatch)
     cycles, angles = table(results / "walk_1" / "cycles.csv"), table(results / "walk_1" / "angles.csv")
-    assert len(charts) == 2 + 4
+    assert len(charts) == 2 + 2 + 4
     for chart in charts:
         kind = "knee" if "nee" in chart.title else "ankle"
         for line in chart.lines:
@@ -132,7 +132,8 @@ def test_every_curve_and_mark_is_in_a_file(
             joint = f"{line.side}_{kind}"
             np.testing.assert_allclose(line.angle_deg, column(cycles, f"{joint}_mean_deg"), atol=DIGITS)
             assert line.toe_off_percent == pytest.approx(fmean(column(strides, "stance_percent")), abs=DIGITS)
-            for mark, name in zip(line.peaks, panels.PEAK_COLUMNS[kind], strict=False):
+            names = list(panels.spans_of(kind)) if chart.spans else panels.PEAK_COLUMNS[kind]
+            for mark, name in zip(line.peaks, names, strict=bool(chart.spans)):
                 assert mark.mean_deg == pytest.approx(fmean(column(strides, name)), abs=DIGITS)
                 at = fmean(column(peaks, name.removesuffix("_deg") + "_percent"))
                 assert mark.percent == pytest.approx(at, abs=DIGITS)
@@ -150,7 +151,7 @@ def drawn(request: ReportRequest, monkeypatch: pytest.MonkeyPatch) -> list[Chart
         charts.append(chart)
         return cycle_chart.draw(chart)
 
-    for page in (curves_page, comparison_page, consistency_page):
+    for page in (curves_page, peaks_page, comparison_page, consistency_page):
         monkeypatch.setattr(page, "draw", draw)
     report_data(request)
     return charts
