@@ -59,7 +59,7 @@ class StrideChoice(QObject):
         if take is not None:
             wanted = {side: left_out_s[side] for side in Side if left_out_s.get(side)}
             self._wanted[take_id] = wanted
-            self._takes.change(take, replace(take.told, left_out_s=wanted))
+            self._takes.change(take, lambda told: replace(told, left_out_s=wanted))
 
     def _take(self, walk: str) -> "Take | None":
         return next((take for take in self._takes.walks if take.told.name == walk), None)

@@ -1,6 +1,6 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, NamedTuple
@@ -244,15 +244,18 @@ class Takes(QObject):
         self._put(replace(take, is_decided=True))
         if take.stored.state is RecordingState.RECOVERED or not take.stored.is_decided:
             self._decide(take, is_kept)
-        elif take.told.is_kept != is_kept:
-            self.change(take, replace(take.told, is_kept=is_kept))
+        else:  # also where it seems to be so already: what was said a moment before may still be on its way
+            self.change(take, lambda told: replace(told, is_kept=is_kept))
 
-    def change(self, take: Take, told: Recording) -> None:
-        """Correct what was told of a recording; `changed` follows."""
+    def change(self, take: Take, corrected: Callable[[Recording], Recording]) -> None:
+        """Correct what was told of a recording; `changed` follows.
+
+        `corrected` is given what the library holds by then: what was put right a moment before stays so.
+        """
 
         def save(opened: "OpenedLibrary") -> StoredRecording:
-            current = opened.library.recordings.find(take.id)
-            return opened.library.recordings.change(current or take.stored, told)
+            current = opened.library.recordings.find(take.id) or take.stored
+            return opened.library.recordings.change(current, corrected(current.told))
 
         self._desk.run(save, self._on_changed, self._on_not_changed, self)
 

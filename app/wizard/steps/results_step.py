@@ -285,7 +285,7 @@ class ResultsStep(Step):
 
     def _change_condition(self, key: str, condition: str) -> None:
         if (take := self._take(key)) is not None:
-            self._visit.takes.change(take, replace(take.told, condition=condition))
+            self._visit.takes.change(take, lambda told: replace(told, condition=condition))
 
     def _on_kept_turned(self, key: str, is_kept: bool) -> None:
         take = self._take(key)

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from threading import Event
 
 import pytest
@@ -14,7 +15,7 @@ from app.storage.stored import LibraryFaultError, RecordingState
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
-from core.body import Site
+from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record
 
@@ -98,6 +99,30 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     with qtbot.waitSignal(takes.ended, timeout=WAIT_MS) as ended:
         pass
     assert ended.args[0].told.name == "walk 1"
+
+
+def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
+    """The second is made before the library has answered the first."""
+    begin(qtbot, visit, worn)
+    walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)
+    takes = visit.takes
+    takes.keep(walk, is_kept=True)
+    takes.change(walk, lambda told: replace(told, condition="barefoot"))
+    takes.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+    takes.keep(walk, is_kept=False)
+    qtbot.waitUntil(lambda: not takes.walks[0].told.is_kept, timeout=WAIT_MS)
+    told = takes.walks[0].told
+    assert (told.condition, dict(told.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
+    for is_kept in (True, False):
+        takes.keep(takes.walks[0], is_kept)
+    assert visit.desk.state is not None
+    recordings = visit.desk.state.library.library.recordings
+    passed = Event()
+    visit.desk.run(lambda _opened: passed.set(), None, None, visit)
+    assert passed.wait(20)
+    stored = recordings.find(walk.id)
+    assert stored is not None
+    assert not stored.told.is_kept
 
 
 def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:

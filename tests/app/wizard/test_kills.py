@@ -1,0 +1,211 @@
+"""Killed at any point, started again, gone on with: what was recorded and said is there, and what is open is asked."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+from uuid import UUID
+
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.settings import Settings
+from app.storage.stored import RecordingState
+from app.theme import Look, load_fonts
+from app.widgets.rail_row import StepState
+from app.wizard import wizard as wizard_module
+from app.wizard.steps.report_step import ReportStep
+from app.wizard.steps.results_step import ResultsStep
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.visit import Visit
+from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
+from app.workers.library_desk import LibraryDesk
+from core.body import Joint, Side, Site
+from tests.app.wizard.conftest import PASSPHRASE
+from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
+
+WAIT_MS = 60_000
+LOST_S = 0.25  # of our time: as the journal promises at worst
+
+pytestmark = [
+    pytest.mark.endurance,
+    pytest.mark.skipif(os.name == "nt", reason="SIGKILL is POSIX's"),
+]
+
+
+def killed_at(point: Point, folder: Path, untouched: Path) -> dict[str, Any]:
+    """Lead the application to a point, and kill it there; returns what it said of what it had."""
+    library = shutil.copytree(untouched, folder / "library")
+    command = [sys.executable, "-m", "tests.safety.wizard_kills", str(library), PASSPHRASE, str(point)]
+    with subprocess.Popen(command, cwd=Path(__file__).parents[3], stdout=subprocess.PIPE, text=True) as child:
+        try:
+            assert child.stdout is not None
+            line = child.stdout.readline()
+        finally:
+            child.send_signal(signal.SIGKILL)
+    assert line, "it ended before it came to its point"
+    told: dict[str, Any] = json.loads(line)
+    return told
+
+
+@pytest.fixture
+def desk() -> Iterator[LibraryDesk]:
+    """Nothing is open yet."""
+    desk = LibraryDesk()
+    yield desk
+    desk.finish()
+
+
+@pytest.fixture
+def start_again(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> Iterator[Callable[[str], tuple[Home, Wizard]]]:
+    """Open the library as the next start does, and then the session that was killed."""
+    load_fonts()
+    monkeypatch.setattr(wizard_module, "choices", tuple)
+    made: list[Wizard] = []
+
+    def start(session: str) -> tuple[Home, Wizard]:
+        settings = Settings(QSettings(str(tmp_path / "again.ini"), QSettings.Format.IniFormat))
+        home, wizard = Home(Look(), desk, settings), Wizard(Look(), desk, settings)
+        made.append(wizard)
+        for widget in (home, wizard):
+            qtbot.addWidget(widget)
+            widget.resize(1280, 800)
+        home.show()
+        with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
+            desk.open(tmp_path / "library", PASSPHRASE)
+        assert desk.state is not None
+        home.show_library(desk.state)
+        if desk.state.interrupted:
+            with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+                pass
+        wizard.show()
+        wizard.show_session(UUID(session))
+        qtbot.waitUntil(lambda: wizard.shell.page is not None, timeout=WAIT_MS)
+        return home, wizard
+
+    yield start
+    for wizard in made:
+        wizard.finish()
+    qapp.setStyleSheet("")
+
+
+def visit_of(wizard: Wizard) -> Visit:
+    assert wizard.visit is not None
+    return wizard.visit
+
+
+def place_of(wizard: Wizard) -> int:
+    assert wizard.current is not None
+    return wizard._steps.index(wizard.current)
+
+
+def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
+    return {
+        take.told.name: {str(site): len(block) for site, block in take.recording.imu.items()}
+        for take in visit.takes.every
+        if take.recording is not None
+    }
+
+
+Start = Callable[[str], tuple[Home, Wizard]]
+
+
+def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
+    """All of it is there but the last moment, and it is asked whether it is kept."""
+    told = killed_at(Point.WALKING, tmp_path, untouched_library)
+    home, wizard = start_again(told["session"])
+    assert "of walk 1 was recovered" in home.banner.text
+    visit = visit_of(wizard)
+    (walk,) = visit.takes.walks
+    assert walk.stored.state is RecordingState.RECOVERED
+    assert place_of(wizard) == WALKING
+    assert walk.recording is not None
+    assert set(walk.recording.imu) == set(Site)
+    for block in walk.recording.imu.values():
+        assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
+    assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == told["takes"]
+    assert "was recovered" in page_notice(qtbot, wizard)
+
+
+def page_notice(qtbot: QtBot, wizard: Wizard) -> str:
+    step = wizard.current
+    assert isinstance(step, WalkingStep)
+    qtbot.waitUntil(lambda: bool(step.page.notice.text), timeout=WAIT_MS)
+    return step.page.notice.text
+
+
+def test_before_a_walk_was_kept_or_discarded(
+    qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path
+) -> None:
+    """It is whole, and the question is still there; answered, it is asked no more."""
+    told = killed_at(Point.ASKED, tmp_path, untouched_library)
+    _, wizard = start_again(told["session"])
+    visit = visit_of(wizard)
+    assert samples_of(visit) == told["takes"]
+    assert visit.takes.walks[0].stored.state is RecordingState.CLOSED
+    assert place_of(wizard) == WALKING
+    step = wizard.current
+    assert isinstance(step, WalkingStep)
+    assert (step.state, step.note) == (StepState.ATTENTION, "keep or discard?")
+    step._on_keep_pressed(str(visit.takes.walks[0].id))
+    qtbot.waitUntil(lambda: visit.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
+    wizard.show_session(UUID(told["session"]))
+    qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
+    assert place_of(wizard) == RESULTS
+
+
+def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> None:
+    """All that was put right holds, in the library and in what is computed of it."""
+    visit = visit_of(wizard)
+    assert samples_of(visit) == told["takes"]
+    first, second = visit.takes.walks
+    assert (first.told.condition, dict(first.told.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
+    assert (first.told.is_kept, second.told.is_kept) == (True, False)
+    assert visit.told.turned_sign == {Joint.LEFT_KNEE: -1}
+    qtbot.waitUntil(lambda: visit.evaluation.analysis is not None and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    assert visit.evaluation.session is not None
+    assert visit.evaluation.session.turned_sign == {Joint.LEFT_KNEE: -1}
+    walks = [recording.name for recording in visit.evaluation.session.recordings if recording.name.startswith("walk")]
+    assert walks == ["walk 1"]
+
+
+def test_amid_the_results(qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path) -> None:
+    """Every correction is there: a stride left out, a condition, a sign, a walk that does not count."""
+    told = killed_at(Point.RESULTS, tmp_path, untouched_library)
+    _, wizard = start_again(told["session"])
+    assert place_of(wizard) == RESULTS
+    check_corrections(qtbot, wizard, told)
+    step = wizard.current
+    assert isinstance(step, ResultsStep)
+    qtbot.waitUntil(lambda: step.note == "1 kept" and step.state is StepState.DONE, timeout=WAIT_MS)
+
+
+@pytest.mark.parametrize("point", [Point.REPORT, Point.SAVING])
+def test_amid_the_report(
+    qtbot: QtBot, start_again: Start, untouched_library: Path, tmp_path: Path, point: Point
+) -> None:
+    """What was typed is there; a report that was not written whole is not there, and can be written again."""
+    told = killed_at(point, tmp_path, untouched_library)
+    out = tmp_path / "out"
+    assert not out.exists()
+    _, wizard = start_again(told["session"])
+    assert place_of(wizard) == RESULTS
+    check_corrections(qtbot, wizard, told)
+    wizard.go_to(REPORT)
+    step = wizard.current
+    assert isinstance(step, ReportStep)
+    assert step.page.report.comment.toPlainText() == COMMENT
+    qtbot.waitUntil(step._can_save, timeout=WAIT_MS)
+    step._on_folder_selected(str(out))
+    qtbot.waitUntil(lambda: step._saved == out, timeout=WAIT_MS)
+    assert (out / "report.pdf").read_bytes().startswith(b"%PDF")

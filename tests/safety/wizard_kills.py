@@ -1,0 +1,216 @@
+"""A session that is led to a point and left there, for whoever kills it: what can be found again afterwards?
+
+    python -m tests.safety.wizard_kills LIBRARY PASSPHRASE POINT
+
+The whole window without a display, on a library with one patient coded for simulations, whose time runs twenty times
+as fast as ours. When the point is reached it prints one line of JSON, what was said and recorded until then, and waits.
+"""
+
+import argparse
+import json
+import os
+import sys
+from collections.abc import Callable
+from dataclasses import replace
+from enum import StrEnum
+from pathlib import Path
+
+os.environ["QT_QPA_PLATFORM"] = "offscreen"
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+from PySide6.QtCore import QSettings
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+
+from app.acquisition.acquisition import Acquisition
+from app.main_window import SWITCH_S, MainWindow
+from app.settings import Settings
+from app.theme import Look, load_fonts
+from app.wizard import sources
+from app.wizard.keys import Action, Intent
+from app.wizard.steps.report_step import ReportStep
+from app.wizard.steps.results_step import ResultsStep
+from app.wizard.worn_sensors import SourceChoice
+from core.body import Joint, Side, Site
+from core.samples import RecordingKind
+from devices.replay import ReplaySource
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.safety.window_material import linger, wait
+
+SPEED = 20.0
+WALKED_S = 14.0
+COMMENT = "Walks further than in spring; the left foot drags."
+CONDITION = "alignment B"
+WAITS_S = 120.0  # for its end, if nobody comes
+
+
+class Point(StrEnum):
+    WALKING = "walking"  # amid a walk
+    ASKED = "asked"  # after a walk, which is neither kept nor discarded
+    RESULTS = "results"  # when strides, a condition, a sign and a walk's keeping were corrected
+    REPORT = "report"  # when a comment was typed
+    SAVING = "saving"  # while the report is written
+
+
+class Guide:
+    """Leads the window from point to point."""
+
+    def __init__(self, application: QApplication, window: MainWindow) -> None:
+        self._application, self._window = application, window
+
+    def begin(self, library: Path, passphrase: str) -> None:
+        """Open the library, begin a session with its patient, put the sensors on, stand and move."""
+        window = self._window
+        window.desk.open(library, passphrase)
+        self._wait(lambda: window.home is not None and window.home._patient is not None)
+        assert window.home is not None
+        window._on_session_wished(window.home._patient)
+        assert window._wizard is not None
+        assert window._wizard.visit is not None
+        self.wizard, self.visit = window._wizard, window._wizard.visit
+        self._wait(lambda: self.visit.patient.stored is not None)
+        self.wizard.go_to(1)
+        self._wait(lambda: self.visit.session is not None)
+        self.visit.sensors.search(self.visit.choices[0])
+        self._wait(lambda: len(self.visit.sensors.status) == len(Site))
+        assert self.visit.sensors.acquisition is not None
+        self.acquisition = self.visit.sensors.acquisition
+        self.visit.sensors.assign_all(dict(zip(self.acquisition.sensors, Site, strict=True)))
+        self.wizard.go_to(2)
+        self._wait(lambda: self.visit.session is not None and bool(self.visit.session.placements))
+        self._record(RecordingKind.STANDING, 6.0)
+        self._record(RecordingKind.FREE_MOTION, WALKED_S)
+        self.wizard.go_to(4)
+
+    def walk(self) -> None:
+        """Record a walk, and answer nothing."""
+        self.wizard._on_intent(Intent(Action.RUN))
+        self._wait(lambda: self.visit.takes.has_begun)
+        self._began_s = self.acquisition.now_s
+        linger(self._application, WALKED_S / SPEED)
+
+    def stop(self) -> None:
+        count = len(self.visit.takes.walks)
+        self.wizard._on_intent(Intent(Action.RUN))
+        self._wait(lambda: len(self.visit.takes.walks) > count and self.visit.takes.is_idle)
+
+    def keep(self) -> None:
+        self.wizard._on_intent(Intent(Action.KEEP))
+        self._wait(lambda: self.visit.takes.walks[-1].stored.is_decided)
+
+    def correct(self) -> None:
+        """Leave a stride out, name a condition, turn a sign, and let the second walk not count."""
+        self.wizard.go_to(5)
+        self._wait(lambda: self.visit.evaluation.analysis is not None and not self.visit.evaluation.is_busy)
+        first, second = self.visit.takes.walks
+        step = self._results
+        self.visit.takes.change(first, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+        step._on_condition_typed(str(first.id), CONDITION)  # before the library has the stride: both hold
+        step._on_sign_turned(str(Joint.LEFT_KNEE), True)
+        step._on_kept_turned(str(second.id), False)
+        self._wait(lambda: bool(self.visit.told.turned_sign) and not self.visit.takes.walks[1].told.is_kept)
+        linger(self._application, 0.5)
+
+    def comment(self) -> None:
+        self.wizard.go_to(6)
+        page = self._report.page.report
+        self._wait(page.isVisible)
+        QTest.keyClicks(page.comment, COMMENT)
+        assert self._window.desk.state is not None
+        assert self.visit.session is not None
+        sessions, session_id = self._window.desk.state.library.library.sessions, self.visit.session.id
+        self._wait(lambda: sessions.get(session_id).comment == COMMENT)  # half a second after the last letter
+
+    def save(self) -> None:
+        """Begin to write the report, and see that it has begun."""
+        assert self._window.desk.state is not None
+        out = self._window.desk.state.library.folder.parent / "out"
+        self._report._on_folder_selected(str(out))
+        self._wait(lambda: any(out.parent.glob(f".{out.name}-*/new/*")))
+
+    def tell(self) -> None:
+        """Print what was said and recorded."""
+        assert self.visit.session is not None
+        heard = self.acquisition.latest(self.acquisition.sensors[0], 29.0)  # as long as it holds
+        takes = {
+            take.told.name: {
+                str(site): len(block) for site, block in (take.recording.imu if take.recording else {}).items()
+            }
+            for take in self.visit.takes.every
+        }
+        told = {
+            "session": str(self.visit.session.id),
+            "takes": takes,
+            "heard_s": float(heard.time_s[-1]) - self._began_s,
+        }
+        print(json.dumps(told), flush=True)
+
+    def _record(self, kind: RecordingKind, seconds: float) -> None:
+        takes, count = self.visit.takes, len(self.visit.takes.every)
+        self.acquisition.ask(kind)
+        takes.begin(self.acquisition, kind)
+        self._wait(lambda: takes.has_begun)
+        linger(self._application, seconds / SPEED)
+        takes.stop()
+        self._wait(lambda: len(takes.every) > count and takes.is_idle)
+
+    @property
+    def _results(self) -> ResultsStep:
+        return next(step for step in self.wizard._steps if isinstance(step, ResultsStep))
+
+    @property
+    def _report(self) -> ReportStep:
+        return next(step for step in self.wizard._steps if isinstance(step, ReportStep))
+
+    def _wait(self, until: Callable[[], bool]) -> None:
+        wait(self._application, until)
+
+
+def lead(guide: Guide, point: Point) -> None:
+    """Go as far as `point`."""
+    guide.walk()
+    if point is Point.WALKING:
+        return
+    guide.stop()
+    if point is Point.ASKED:
+        return
+    guide.keep()
+    guide.walk()
+    guide.stop()
+    guide.keep()
+    guide.correct()
+    if point is Point.RESULTS:
+        return
+    guide.comment()
+    if point is Point.SAVING:
+        guide.save()
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("library", type=Path)
+    parser.add_argument("passphrase")
+    parser.add_argument("point", type=Point)
+    wanted = parser.parse_args()
+    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
+    session = simulate(replace(DEMONSTRATION, recordings=played)).session
+    source = ReplaySource(session, speed=SPEED)
+    fast = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
+    sources.choices = lambda: (fast,)  # before the wizard takes it from there
+    sys.setswitchinterval(SWITCH_S)
+    application = QApplication([])
+    application.setStyle("Fusion")
+    load_fonts()
+    settings = Settings(QSettings(str(wanted.library.parent / "settings.ini"), QSettings.Format.IniFormat))
+    window = MainWindow(Look(application), settings, wanted.library)
+    window.show()
+    guide = Guide(application, window)
+    guide.begin(wanted.library, wanted.passphrase)
+    lead(guide, wanted.point)
+    guide.tell()
+    linger(application, WAITS_S)
+    return 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
