@@ -199,6 +199,8 @@ def time_distance_table(facts: Facts) -> list[Block]:
     )
     swing = [tr("Swing band = 100 − stance band.")] if group is not None else []
     said = [band, symmetry, *swing] if len(facts.gait) == len(Side) else [band, *swing]
+    if group is not None or facts.curves_group is not None:
+        said.append(tr("Whose bands these are: last page."))
     return [heading(tr("Time and distance")), table(columns, rows), note(" ".join(said))]
 
 

@@ -157,6 +157,7 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
     assert "More than 2 SD from band [1]: ankle most plantarflexed, loading, L −13° (band −4 ± 2°)" in first
     assert "Right, n = 0" not in first
     assert "Symmetry =" not in first
+    assert "Whose bands these are: last page." in first
 
 
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
