@@ -87,5 +87,8 @@ class LiveSource(Protocol):
     def identify(self, sensor: str) -> bool:
         """Light the sensor's LED; False where it has none."""
 
-    def ask(self, kind: RecordingKind | None) -> None:
-        """What the patient is asked to do; None: nothing. Only simulated patients listen."""
+    def ask(self, kind: RecordingKind | None) -> float | None:
+        """What the patient is asked to do; None: nothing. Only simulated patients listen.
+
+        Answers how long it will be done, s, 0 by who cannot; None: for as long as it takes, or nobody listens.
+        """

@@ -174,20 +174,23 @@ class ReplaySource:
         self.shake(sensor)
         return True
 
-    def ask(self, kind: RecordingKind | None) -> None:
+    def ask(self, kind: RecordingKind | None) -> float | None:
         """Begin with the next recording of this kind, at once or after the present one; then stand."""
         with self._lock:
             if not self._clips:
-                return
+                return None
             now_s = self._now_s()
             self._play_on(now_s)
             self._asked = kind
             playing = self._clips[-1]
             if self._finishes and not playing.is_idle:
-                return
+                return None
             at_s = min(self._next_tick_s(playing.start_s, now_s), playing.end_s)
             self._clips[-1] = replace(playing, length_s=at_s - playing.start_s)
             self._clips.append(self._next_clip(at_s))
+            if self._finishes or kind is None:
+                return None
+            return self._clips[-1].end_s - now_s if self._by_kind[kind] else 0.0
 
     def _next_clip(self, start_s: float) -> _Clip:
         recording = self._next(self._asked)

@@ -140,10 +140,13 @@ class Acquisition:
         """What is done with new samples from now on; see `LiveWork`."""
         self._preview.set_work(work)
 
-    def ask(self, kind: RecordingKind | None) -> None:
-        """Ask simulated patients to do what is recorded next; None: nothing."""
-        for reader in self._readers:
-            reader.source.ask(kind)
+    def ask(self, kind: RecordingKind | None) -> float | None:
+        """Ask simulated patients to do what is recorded next; None: nothing.
+
+        Answers how long that will be done, s, as by a replay, whose recording ends; None: nobody knows.
+        """
+        told = [reader.source.ask(kind) for reader in self._readers]
+        return max((length_s for length_s in told if length_s is not None), default=None)
 
     def identify(self, sensor: str) -> bool:
         """Light a sensor's LED; False where it has none."""

@@ -62,6 +62,15 @@ def last_hint(motion: FreeMotionState) -> Hint:
     return Hint(tr("As good as it gets"), how, how, Icon.INFO)
 
 
+def played_hint(has_played: bool) -> Hint:
+    """When a replayed patient moves no more, or never did."""
+    if not has_played:
+        how = tr("Its joints are found from its walks, less surely. Go on to walking.")
+        return Hint(tr("Replay has no free motion"), how, tr("Go on to walking."), Icon.INFO)
+    how = tr("Record again to play it from its beginning, or go on with what there is.")
+    return Hint(tr("The replay has ended"), how, tr("Record again, or go on."), Icon.INFO)
+
+
 def recorded_hint(motion: FreeMotionState) -> Hint:
     """Once it is recorded: what came of it, as far as that is known; of an earlier day it is not."""
     how = tr("Go on to walking, or repeat one leg.")
@@ -152,7 +161,9 @@ class HintHold:
         return state is None or state.is_closed or state.is_plateau
 
 
-def price_of_stopping(motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset()) -> str:
+def price_of_stopping(
+    motion: FreeMotionState, prosthetic_sides: frozenset[Side] = frozenset(), can_move: bool = True
+) -> str:
     """Say what stopping now leaves undone; empty where nothing is."""
     if not motion.joints:
         return tr("Nothing is known of the joints yet.")
@@ -165,7 +176,7 @@ def price_of_stopping(motion: FreeMotionState, prosthetic_sides: frozenset[Side]
         return ""
     worst = max(is_open, key=lambda joint: motion.joints[joint].wanting)
     figure = _figure(worst, motion.joints[worst], wanted_of(worst, prosthetic_sides))
-    if motion.joints[worst].is_plateau or len(is_open) > 1:
+    if motion.joints[worst].is_plateau or len(is_open) > 1 or not can_move:
         rest = tr("Go on and the report says so.")
     elif worst.side is Side.LEFT:
         rest = tr("Go on and the report says so, or move the left leg for {seconds:.0f} more seconds.")

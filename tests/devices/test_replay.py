@@ -112,6 +112,22 @@ def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(make: Make, c
         assert np.array_equal(after, standing.gyr_rad_s[: len(after)])
 
 
+def test_it_says_how_long_it_will_do_what_it_is_asked(make: Make, session: Session, clock: Clock) -> None:
+    source = make()
+    assert source.ask(RecordingKind.WALKING) is None, "it is not open"
+    source.open()
+    walk = max(session.recordings[2].imu.values(), key=len)
+    assert source.ask(RecordingKind.WALKING) == pytest.approx(len(walk) / RATE_HZ, abs=0.1)
+    assert source.ask(None) is None
+    walks_only = replace(session, recordings=session.recordings[2:3])
+    source = ReplaySource(walks_only, now_ns=clock, sleep=clock.sleep)
+    source.open()
+    assert source.ask(RecordingKind.FREE_MOTION) == 0.0
+    source = ReplaySource(session, finishes=True, now_ns=clock, sleep=clock.sleep)
+    source.open()
+    assert source.ask(RecordingKind.FREE_MOTION) is None, "over and over"
+
+
 def test_asking_for_nothing_ends_a_walk(make: Make, clock: Clock) -> None:
     source = make()
     source.open()

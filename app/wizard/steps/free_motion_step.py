@@ -15,12 +15,11 @@ from app.widgets.rail_row import StepState
 from app.wizard.hints import (
     Asked,
     HintHold,
-    absent_note,
     first_hint,
+    played_hint,
     price_of_stopping,
     recorded_hint,
     unplaced_hint,
-    wanted_of,
 )
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.step import Step
@@ -33,15 +32,12 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
     from app.pages.free_motion_page import FreeMotionPage
-    from app.widgets.body_figure import SensorMark
-    from app.widgets.gauge import GaugeFace
     from app.wizard.visit import Visit
     from core.placement.chains import Chains
 
 SENSORS = 1  # the step that says who wears what
 SETTLED_MS = 2000  # all ready: time to see it, and to say otherwise
 TICKS = 3  # of 30 Hz: ten looks a second
-SILENT_S = 1.0
 KIND = RecordingKind.FREE_MOTION
 
 
@@ -60,13 +56,16 @@ class FreeMotionStep(Step):
         self._motion = FreeMotionState()
         self._before = FreeMotionState()  # of the leg that is not repeated
         self._repeated: Side | None = None
+        self._again_side: Side | None = None  # that was being repeated when it was to begin again
         self._elapsed_s: float | None = None
         self._kept_labels: set[tuple[Site, ...]] = set()
         self._doubted: tuple[Site, ...] = ()
         self._ready: frozenset[Joint] = frozenset()
         self._replaced: FreeMotionState | None = None  # of the free motion that is in force while another is recorded
         self._left = "", ""  # what is to be said of one that was left before its end
-        self._is_in_sight = self._goes_on = self._must_correct = False
+        self._plays_s: float | None = None  # for how long a replayed patient moves
+        self._plays_to_s = 0.0
+        self._is_in_sight = self._goes_on = self._begins_again = self._must_correct = False
         self._is_side_asked = self._is_refused = False
         self._ticks = 0
         self._settled = QTimer(self)
@@ -134,8 +133,9 @@ class FreeMotionStep(Step):
     def leave(self) -> None:
         self._is_in_sight = False
         self._settled.stop()
-        if self._is_recording and not self._goes_on:  # not to its end
+        if self._is_recording and not (self._goes_on or self._begins_again):  # not to its end
             self._break_off()
+        self._begins_again = False
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_work(None)
         self._work = None
@@ -146,12 +146,12 @@ class FreeMotionStep(Step):
             return
         if self._work is not None and self._is_recording:
             self._look_at_motion()
-        elif not (self._has_moved or self._visit.takes.is_recording or self._is_refused):
-            self._begin()  # what was recorded before has been closed by now
+        elif self._may_begin:
+            self._begin(self._again_side)  # what was recorded before has been closed by now
         self._show()
 
     def bar(self) -> BarState:
-        price = price_of_stopping(self._motion, self._visit.prosthetic_sides)
+        price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
         words = {Side.LEFT: (tr("Repeat left"), "L"), Side.RIGHT: (tr("Repeat right"), "R")}
         repeat = tuple(Verb(*words[side], Icon.REPEAT) for side in self._repeatable)
         go_on = Verb(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
@@ -163,6 +163,11 @@ class FreeMotionStep(Step):
             return BarState(primary=go_on, others=(again,), quiet=repeat)
         if self._is_done:
             return BarState(primary=go_on, quiet=repeat, note=price or tr("Goes on by itself."))
+        if self._is_played:
+            if not self._plays_s:
+                return BarState(primary=go_on)
+            again = Verb(tr("Record again"), icon=Icon.REPEAT, is_wished=False)
+            return BarState(primary=go_on, others=(again,), note=price)
         stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
         return BarState(primary=stop, quiet=repeat, note=price)
 
@@ -175,7 +180,12 @@ class FreeMotionStep(Step):
             self._begin()
 
     def on_other(self, number: int) -> None:
-        self._begin()
+        if not self._is_recording:
+            self._begin()
+            return
+        self._begins_again, self._again_side = True, self._repeated
+        self._motion = self._replaced or FreeMotionState()
+        self._visit.takes.stop(is_kept=False)
 
     def on_quiet(self, number: int) -> None:
         self._repeat(self._repeatable[number])
@@ -222,6 +232,20 @@ class FreeMotionStep(Step):
     def _is_done(self) -> bool:
         return self._motion.is_done
 
+    @property
+    def _is_played(self) -> bool:
+        """Whether a replayed patient has ended the free motion, and moves no more."""
+        acquisition = self._visit.sensors.acquisition
+        return acquisition is not None and self._plays_s is not None and acquisition.now_s > self._plays_to_s
+
+    @property
+    def _may_begin(self) -> bool:
+        """Whether it is time to record by itself: none is in force, or the one before was given up for another."""
+        takes = self._visit.takes
+        if self._begins_again:
+            return takes.is_idle and not takes.every[-1].told.is_kept
+        return not (self._has_moved or takes.is_recording or self._is_refused)
+
     def _begin(self, side: Side | None = None) -> None:
         """Record; one leg alone takes only that leg's sensors, so that what the other's motion told stays in force."""
         acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
@@ -230,13 +254,20 @@ class FreeMotionStep(Step):
         self._replaced = self._motion if self._has_moved else None
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
-        self._goes_on = self._is_refused = False
+        self._goes_on = self._begins_again = self._is_refused = False
+        self._again_side = None
         self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if side is not None:
             self._visit.place_sensors(only=side)
-        acquisition.ask(KIND)
+        self._plays_s = None
         takes.begin(acquisition, KIND)
         self.changed.emit()
+
+    def _ask_patient(self) -> None:
+        """Let one who is simulated move from now on."""
+        if (acquisition := self._visit.sensors.acquisition) is not None:
+            self._plays_s = acquisition.ask(KIND)
+            self._plays_to_s = acquisition.now_s + (self._plays_s or 0.0)
 
     def _watch(self) -> None:
         """Follow the motion from now on."""
@@ -303,13 +334,22 @@ class FreeMotionStep(Step):
         if self._is_recording and self._work is not None:
             self._settled.stop()
             self._work.repeat(side)
+            self._ask_patient()
         elif self._has_moved and any(site.side is side for site in self._visit.sensors.site_of.values()):
             self._begin(side)
 
     def _stop(self) -> None:
         self._settled.stop()
         self._goes_on = True
-        self._visit.takes.stop()
+        joints = self._motion.joints
+        is_kept = not joints or any(state.moved_s > 0 for state in joints.values())
+        if not is_kept and self._replaced is not None:
+            self._left = tr("No leg moved: the free motion before this one stays in force."), ""
+            self._motion = self._replaced
+        elif not is_kept:
+            then = tr("The joints are found from the walks, less surely; or go back to free motion to record it again.")
+            self._left = tr("No leg moved in the free motion, so it does not count."), then
+        self._visit.takes.stop(is_kept=is_kept)
         self.changed.emit()
 
     def _break_off(self) -> None:
@@ -385,15 +425,16 @@ class FreeMotionStep(Step):
         if self._page is None:
             return
         from app.pages.free_motion_page import FreeMotionView
+        from app.wizard.motion_shown import gauge_faces, sensor_marks
 
         asked = self._asked()
         self._page.show_state(
             FreeMotionView(
-                gauges=self._faces(asked.joint),
+                gauges=gauge_faces(self._visit, self._motion, asked.joint),
                 hint=asked.hint,
                 elapsed_s=self._elapsed_s if self._is_recording else None,
                 emphasised=asked.site,
-                worn=self._marks(),
+                worn=sensor_marks(self._visit.sensors),
             )
         )
 
@@ -401,42 +442,23 @@ class FreeMotionStep(Step):
         acquisition, sensors = self._visit.sensors.acquisition, self._visit.sensors
         if not self._is_recording:
             return Asked(recorded_hint(self._motion) if self._has_moved else first_hint())
+        if self._is_played and not self._is_done:
+            return Asked(played_hint(has_played=bool(self._plays_s)))
         if sensors.is_left_to_motion and not sensors.site_of:
             return Asked(unplaced_hint())
         return self._hold.ask(self._motion, acquisition.now_s if acquisition is not None else 0.0)
-
-    def _faces(self, now: Joint | None) -> "dict[Joint, GaugeFace]":
-        from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
-
-        worn, prosthetic = self._visit.sensors.sensor_at, self._visit.prosthetic_sides
-        faces = {}
-        for joint in Joint:
-            note = absent_note(joint, worn, self._visit.without_ankle) if worn else ""
-            if note:
-                faces[joint] = GaugeFace(GaugeState.ABSENT, note=note)
-            else:
-                wanted = wanted_of(joint, prosthetic)
-                faces[joint] = gauge_face(joint, self._motion.joints.get(joint), wanted, is_now=joint is now)
-        return faces
-
-    def _marks(self) -> "dict[Site, SensorMark]":
-        from app.widgets.body_figure import SensorMark
-
-        status = self._visit.sensors.status
-        return {
-            site: SensorMark.SILENT if name in status and status[name].silent_s > SILENT_S else SensorMark.WORN
-            for name, site in self._visit.sensors.site_of.items()
-        }
 
     # slots
 
     def _on_begun(self) -> None:
         if self._is_recording:
-            self._watch()  # only what is recorded counts
+            self._ask_patient()  # only what is recorded counts
+            self._watch()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
         if self._is_in_sight and not self._visit.takes.is_recording:
             self._is_refused = not self._has_moved  # it is begun again by a word, not by the clock
+            self._begins_again = False
             self.changed.emit()
 
     def _on_settled(self) -> None:
@@ -449,9 +471,6 @@ class FreeMotionStep(Step):
         if self._repeated is not None:  # the other leg's sensors are worn as before
             self._repeated = None
             self._visit.place_sensors()
-        if self._left[0]:
-            self.told.emit(*self._left)
-            self._left = "", ""
         if self._must_correct:
             self._must_correct = False
             self._visit.correct_placement()
@@ -459,3 +478,6 @@ class FreeMotionStep(Step):
         if self._goes_on and self._is_in_sight:
             self._goes_on = False
             self.done.emit()
+        if self._left[0]:  # over the step that came next
+            self.told.emit(*self._left)
+            self._left = "", ""

@@ -18,7 +18,8 @@ from app.wizard.visit import Visit
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
-from tests.app.wizard.test_hints import state
+from devices.replay import ReplaySource
+from tests.app.wizard.test_hints import motion, state
 from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -106,6 +107,42 @@ def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotio
         assert step.on_intent(SPACE)
     assert visit.takes.free_motion is not None
     assert step.state is StepState.ATTENTION
+
+
+def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginning(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    step.enter()
+    ticks(qtbot, step, lambda: step._work is not None)
+    open_joints = motion({joint: state(3.8, 6.0) for joint in Joint})
+    step._work = Told(worn, open_joints)  # type: ignore[assignment]  # as far as it came
+    ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
+    bar = step.bar()
+    assert bar.primary is not None
+    assert bar.primary.text == "Go on to walking"
+    assert [verb.text for verb in bar.others] == ["Record again"]
+    assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
+    step.on_other(0)
+    ticks(qtbot, step, lambda: len(visit.takes.every) == 1 and visit.takes.has_begun)
+    assert not visit.takes.every[0].told.is_kept
+    assert step.page.band.hint.sentence != "The replay has ended"
+    ticks(qtbot, step, lambda: knows(step))
+
+
+def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_count(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, source: ReplaySource
+) -> None:
+    source._by_kind[RecordingKind.FREE_MOTION] = []
+    step.enter()
+    ticks(
+        qtbot, step, lambda: step.page.band.hint.sentence == "Replay has no free motion" and bool(step._motion.joints)
+    )
+    assert [verb.text for verb in step.bar().others] == []
+    with qtbot.waitSignals([step.done, step.told], timeout=10_000, order="strict"):
+        step.on_primary()
+    qtbot.waitUntil(lambda: visit.takes.free_motion is None, timeout=10_000)
+    assert len(visit.takes.every) == 1  # nothing is deleted
+    assert step.state is StepState.TODO
 
 
 def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:

@@ -16,6 +16,7 @@ from app.wizard.hints import (
     first_hint,
     hint_for,
     last_hint,
+    played_hint,
     price_of_stopping,
     unplaced_hint,
 )
@@ -55,6 +56,8 @@ def every_hint() -> Iterator[str]:
             yield hint_for(Missing(site, movement)).sentence
     yield first_hint().sentence
     yield unplaced_hint().sentence
+    yield played_hint(has_played=True).sentence
+    yield played_hint(has_played=False).sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(1, 9, None, is_closed=True)})).sentence
     yield last_hint(motion({Joint.LEFT_KNEE: state(4, 9, is_plateau=True)})).sentence
 
@@ -156,6 +159,12 @@ def test_moving_on_is_not_proposed_where_it_brings_nothing() -> None:
     assert price_of_stopping(motion({Joint.RIGHT_ANKLE: state(9, 18, is_plateau=True)})) == (
         "Right ankle: 18 mm, 10 mm wanted. Go on and the report says so."
     )
+
+
+def test_a_replayed_patient_who_has_ended_is_not_asked_to_move() -> None:
+    nearly = motion({Joint.LEFT_KNEE: state(3.8, 9)})
+    said = price_of_stopping(nearly, can_move=False)
+    assert said == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
 
 
 def test_of_a_prosthesis_more_is_wanted() -> None:

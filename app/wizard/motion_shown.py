@@ -1,0 +1,38 @@
+"""What does the page of free motion show of each joint, and of each sensor?"""
+
+from typing import TYPE_CHECKING
+
+from app.widgets.body_figure import SensorMark
+from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
+from app.wizard.hints import absent_note, wanted_of
+from core.body import Joint, Site
+from core.live.free_motion import FreeMotionState
+
+if TYPE_CHECKING:
+    from app.wizard.visit import Visit
+    from app.wizard.worn_sensors import WornSensors
+
+SILENT_S = 1.0
+
+
+def gauge_faces(visit: "Visit", motion: FreeMotionState, now: Joint | None) -> dict[Joint, GaugeFace]:
+    """Give each joint's gauge; `now` is the one whose motion is asked for."""
+    worn, prosthetic = visit.sensors.sensor_at, visit.prosthetic_sides
+    faces = {}
+    for joint in Joint:
+        note = absent_note(joint, worn, visit.without_ankle) if worn else ""
+        if note:
+            faces[joint] = GaugeFace(GaugeState.ABSENT, note=note)
+        else:
+            wanted = wanted_of(joint, prosthetic)
+            faces[joint] = gauge_face(joint, motion.joints.get(joint), wanted, is_now=joint is now)
+    return faces
+
+
+def sensor_marks(sensors: "WornSensors") -> dict[Site, SensorMark]:
+    """Give how the sensors that are worn look on the legs."""
+    status = sensors.status
+    return {
+        site: SensorMark.SILENT if name in status and status[name].silent_s > SILENT_S else SensorMark.WORN
+        for name, site in sensors.site_of.items()
+    }
