@@ -1,5 +1,6 @@
 """What does the walking patient do now, and did in the last seconds? Curves, phases, steps: what the screen draws."""
 
+from bisect import bisect_left
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -147,7 +148,7 @@ class WalkingWork:
             now_s=self._now_s,
             joints=joints,
             lanes=lanes,
-            strides={side: foot.strides_since(self._count_from_s) for side, foot in self._feet.items()},
+            strides={side: foot.strides_since(self._count_from_s, kept_from_s) for side, foot in self._feet.items()},
             cadence_steps_min=float(np.mean(cadences)) if cadences else None,
             slips=told.slips,
             missing=missing,
@@ -219,7 +220,9 @@ class _Foot:
         self._phases: list[tuple[Phase, float]] = []  # each lasts until the next
         self._silent_s: list[tuple[float, float]] = []
         self._heard_s: float | None = None
-        self._contacts_s: list[float] = []
+        self._contacts_s: list[float] = []  # of the last seconds
+        self._from_s = -np.inf
+        self._passed = 0  # strides since `_from_s` whose beginning is not among them any more
 
     def take(self, foot: LiveFoot, block: ImuBlock | None) -> None:
         if block is not None:
@@ -235,10 +238,18 @@ class _Foot:
                     self._contacts_s.append(event.time_s)
             self._go_over(change)
 
-    def strides_since(self, time_s: float) -> int:
-        """Two contacts that follow each other are a stride; farther apart than MAX_STRIDE_S, a pause."""
-        first = int(np.searchsorted(self._contacts_s, time_s))
-        return sum(end - start <= MAX_STRIDE_S for start, end in pairwise(self._contacts_s[first:]))
+    def strides_since(self, time_s: float, kept_from_s: float) -> int:
+        """Two contacts that follow each other are a stride; farther apart than MAX_STRIDE_S, a pause.
+
+        Contacts before `kept_from_s` are forgotten: who asks for another `time_s` than before has those since then.
+        """
+        if time_s != self._from_s:
+            self._from_s, self._passed = time_s, 0
+        strides = [(start, end) for start, end in pairwise(self._contacts_s) if end - start <= MAX_STRIDE_S]
+        count = self._passed + sum(start >= time_s for start, _ in strides)
+        self._passed += sum(time_s <= start and end < kept_from_s for start, end in strides)
+        self._contacts_s = self._contacts_s[max(bisect_left(self._contacts_s, kept_from_s) - 1, 0) :]
+        return count
 
     def lane(self, from_s: float, is_silent: bool) -> FootLane:
         """What is still of interest; the rest is forgotten."""

@@ -1,0 +1,33 @@
+"""A walk may last as long as it likes: what is held of it does not grow, and no stride is forgotten."""
+
+import pytest
+
+from app.acquisition.walking_work import KEPT_S, _Foot
+from core.gait.live import FootEvent, LiveEvent, PhaseChange
+from core.gait.phases import Phase
+from core.gait.strides import MAX_STRIDE_S
+from core.live.walking import LiveFoot
+
+
+def contact(time_s: float) -> LiveFoot:
+    """What a foot tells when it touches the floor."""
+    event = LiveEvent(FootEvent.INITIAL_CONTACT, time_s, time_s)
+    return LiveFoot((event,), (PhaseChange(Phase.LOADING, time_s, time_s),), Phase.LOADING, 100.0, 0)
+
+
+@pytest.mark.parametrize("begins", [0, 1000])
+def test_no_stride_is_forgotten_and_no_contact_kept_for_ever(begins: int) -> None:
+    """Strides of 1.2 s for an hour with a pause after each hundred; the walk that is counted begins amid them."""
+    foot, time_s, from_s, counted = _Foot(), 0.0, -1.0, 0
+    for k in range(3000):
+        is_pause = k % 100 == 0
+        time_s += MAX_STRIDE_S + 1.0 if is_pause else 1.2
+        foot.take(contact(time_s), None)
+        foot.lane(time_s - KEPT_S, is_silent=False)
+        counted += k > begins and not is_pause
+        if k == begins:
+            from_s = time_s
+        assert k < begins or foot.strides_since(from_s, time_s - KEPT_S) == counted
+        if k < begins:
+            foot.strides_since(-1.0, time_s - KEPT_S)
+    assert len(foot._contacts_s) <= KEPT_S / 1.2 + 2
