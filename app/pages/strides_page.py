@@ -12,10 +12,10 @@ from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.icons import Icon
-from app.widgets.stride_list import StrideLine, StrideList
+from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import NAMES, tr
-from core.body import Joint, Side
+from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.strides import Reason
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
@@ -31,16 +31,20 @@ class StridesPage(Card):
     def __init__(self, look: Look) -> None:
         super().__init__(look, padding=12)
         self._recording: RecordingAnalysis | None = None
-        self._can_choose = False
         self.list = StrideList(look, tr("Strides"))
         self.turn = Button(look, "", Kind.SECONDARY, key=tr("Space"), height=44)
         self.all = Button(look, tr("Take all in again"), Kind.QUIET, Icon.REPEAT, height=44)
+        self.legend = Text(look, tr("Each curve is over its side's mean, in grey."), size=12, tone="ink2")
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self._buttons = QHBoxLayout()
         self._buttons.addWidget(self.turn)
         self._buttons.addWidget(self.all)
         self._buttons.addStretch(1)
-        self.column.addWidget(Text(look, tr("Strides"), size=16, weight=SEMIBOLD))
+        head = QHBoxLayout()
+        head.addWidget(Text(look, tr("Strides"), size=16, weight=SEMIBOLD))
+        head.addStretch(1)
+        head.addWidget(self.legend)
+        self.column.addLayout(head)
         self.column.addWidget(self.list, 1)
         self.column.addLayout(self._buttons)
         self.column.addWidget(self.note)
@@ -55,14 +59,21 @@ class StridesPage(Card):
 
     def show_walk(self, recording: RecordingAnalysis, can_choose: bool) -> None:
         """Show the strides of a walk; `can_choose`: there is a library that keeps what is chosen."""
-        self._recording, self._can_choose = recording, can_choose
+        self._recording = recording
+        self.list.set_can_turn(can_choose)
         self.list.show_lines(stride_lines(recording))
         told = [by_hand_in_words(recording)]
         if not can_choose:
             told.append(tr("Strides are left out in the library: import this session first."))
         said = " ".join(filter(None, told))
         self.note.setText(said or tr("What is left out stays in the files, with the reason beside it."))
+        self.turn.setVisible(can_choose)
         self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.strides.lines))
+
+    def set_charts_beside(self, are_beside: bool) -> None:
+        """Draw the curves in the list itself where no charts have room beside it."""
+        self.list.set_shapes_shown(not are_beside)
+        self.legend.setVisible(not are_beside)
 
     def choose_nearest(self, is_knee: bool, percent: float, angle_deg: float) -> None:
         """Go to the stride whose curve runs nearest to a point of its chart."""
@@ -85,8 +96,7 @@ class StridesPage(Card):
         return {joint: curve for joint, curve in curves.items() if np.isfinite(curve).all()}
 
     def _on_chosen(self, line: StrideLine | None) -> None:
-        can_turn = self._can_choose and line is not None and line.can_be_turned
-        self.turn.setEnabled(can_turn)
+        self.turn.setEnabled(line is not None and line.can_be_turned)
         is_out = line is not None and line.is_by_hand
         words = tr("Take this stride in again") if is_out else tr("Leave this stride out")
         self.turn.setText(words)
@@ -95,7 +105,7 @@ class StridesPage(Card):
         self.chosen.emit(self._curves(line) if line is not None else {})
 
     def _on_turned(self, line: StrideLine) -> None:
-        if self._can_choose and self._recording is not None:
+        if self._recording is not None:
             self.turned.emit(self._recording.name, line, not line.is_by_hand)
 
     def _on_all(self) -> None:
@@ -112,7 +122,9 @@ def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:
             continue
         gait = recording.gait[side]
         knee, ankle = parameter(gait, "knee_range_deg"), parameter(gait, "ankle_range_deg")
+        curves = {KNEE_SHAPE: gait.cycles.get(knee_of(side)), ANKLE_SHAPE: gait.cycles.get(ankle_of(side))}
         for k, reason in enumerate(gait.strides.reason):
+            known = {shape: np.rad2deg(found[k]) for shape, found in curves.items() if found is not None}
             lines.append(
                 StrideLine(
                     side=side,
@@ -123,6 +135,7 @@ def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:
                     ankle_range_deg=float(ankle[k]),
                     reason=tr(NAMES["reason"][reason]) if reason else "",
                     is_by_hand=reason is Reason.BY_HAND,
+                    shapes_deg={shape: curve for shape, curve in known.items() if np.isfinite(curve).all()},
                 )
             )
     return tuple(lines)

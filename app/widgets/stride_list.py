@@ -1,11 +1,12 @@
 """Every stride of a walk, a line each: Space, Enter or a click on its mark leaves it out or takes it in again."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
+import numpy as np
 from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelIndex, QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFocusEvent, QFontMetrics, QKeyEvent, QPainter, QResizeEvent
+from PySide6.QtGui import QColor, QFocusEvent, QFontMetrics, QKeyEvent, QPainter, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -22,13 +23,25 @@ from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM
 from app.wording import capitalised, later, side_name, tr
 from core.body import Side
+from core.samples import FloatArray
 
 ROW, HEAD = 44, 36
 LEAST_ROWS = 2.5  # in sight: half a row says that there are more
 PADDING, MARK = 8, 20
-STRIDE, BEGINS, TAKES, KNEE, ANKLE, STATE = range(6)
-HEADS = (later("Stride"), later("at (s)"), later("takes (s)"), later("knee range (°)"), later("ankle range (°)"), "")
+STRIDE, BEGINS, TAKES, KNEE, ANKLE, STATE, KNEE_SHAPE, ANKLE_SHAPE = range(8)
+HEADS = (
+    later("Stride"),
+    later("at (s)"),
+    later("takes (s)"),
+    later("knee range (°)"),
+    later("ankle range (°)"),
+    "",
+    later("knee"),
+    later("ankle"),
+)
 FIGURES = (BEGINS, TAKES, KNEE, ANKLE)
+SHAPES = (KNEE_SHAPE, ANKLE_SHAPE)
+LEAST_SHAPE = 64  # narrower, a curve tells nothing
 WIDEST = {BEGINS: "000.0", TAKES: "0.00", KNEE: "000.0", ANKLE: "000.0"}
 STATE_WIDTH = 112  # words wrap in it
 Index = QModelIndex | QPersistentModelIndex
@@ -38,7 +51,8 @@ Index = QModelIndex | QPersistentModelIndex
 class StrideLine:
     """One stride of one side. `reason` says in words why it is left out; empty: it is used.
 
-    Only what is used, or was left out by hand, can be turned. NaN: not known.
+    Only what is used, or was left out by hand, can be turned. NaN: not known. `shapes_deg`: knee and ankle over the
+    stride (101,), as far as they are known.
     """
 
     side: Side
@@ -49,6 +63,7 @@ class StrideLine:
     ankle_range_deg: float
     reason: str
     is_by_hand: bool
+    shapes_deg: Mapping[int, FloatArray] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def is_used(self) -> bool:
@@ -67,13 +82,14 @@ class StrideModel(QAbstractTableModel):
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
         self.lines: tuple[StrideLine, ...] = ()
+        self.can_turn = True
 
     def show(self, lines: Sequence[StrideLine]) -> None:
         """Show other lines, or what became of the same ones: those stay where they are, and so does the focus."""
         if [_key(line) for line in self.lines] == [_key(line) for line in lines]:
             self.lines = tuple(lines)
             if lines:
-                self.dataChanged.emit(self.index(0, 0), self.index(len(lines) - 1, STATE))
+                self.dataChanged.emit(self.index(0, 0), self.index(len(lines) - 1, len(HEADS) - 1))
             return
         self.beginResetModel()
         self.lines = tuple(lines)
@@ -98,17 +114,19 @@ class StrideModel(QAbstractTableModel):
                 return _number(line.knee_range_deg, 1)
             case 4:
                 return _number(line.ankle_range_deg, 1)
-        return line.reason or tr("used")
+            case 5:
+                return line.reason or tr("used")
+        return ""  # a curve
 
     def data(self, index: Index, role: int = Qt.ItemDataRole.DisplayRole) -> object:
         line = self.lines[index.row()]
         if role == Qt.ItemDataRole.DisplayRole:
             return self.words(index)
         if role == Qt.ItemDataRole.AccessibleTextRole:
-            if HEADS[index.column()] and index.column() != STRIDE:
+            if index.column() in FIGURES:
                 return f"{tr(HEADS[index.column()])}: {self.words(index)}"
-            return ", ".join([capitalised(line.name), self.words(self.index(index.row(), STATE))])
-        if role == Qt.ItemDataRole.CheckStateRole and index.column() == STRIDE:
+            return ", ".join([capitalised(line.name), self.words(self.index(index.row(), STATE))])  # of a curve, too
+        if role == Qt.ItemDataRole.CheckStateRole and index.column() == STRIDE and self.can_turn:
             return Qt.CheckState.Checked if line.is_used else Qt.CheckState.Unchecked
         return None
 
@@ -119,7 +137,10 @@ class StrideModel(QAbstractTableModel):
 
 
 class StrideList(QTableView):
-    """The line in force is drawn bold in the charts; the figures of a side that has none are hidden."""
+    """The line in force is drawn bold in the charts; the figures of a side that has none are hidden.
+
+    Where there are no charts beside it, every line draws its own curves over the mean of its side.
+    """
 
     chosen = Signal(object)  # StrideLine, or None
     turned = Signal(object)  # StrideLine as it is now
@@ -128,13 +149,15 @@ class StrideList(QTableView):
         super().__init__()
         self._look = look
         self.strides = StrideModel(self)
+        self.means: dict[tuple[Side, int], FloatArray] = {}
+        self.reach: dict[int, tuple[float, float]] = {}
+        self._has_shapes = False
         self.setModel(self.strides)
         self.setHorizontalHeader(_Header(look, self))
         self.verticalHeader().hide()
         self.verticalHeader().setMinimumSectionSize(1)
         self.setItemDelegate(_StrideDelegate(look, self))
         self.setAccessibleName(name)
-        self.setAccessibleDescription(tr("Space leaves the stride out, or takes it in again."))
         self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
         self.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
@@ -144,6 +167,7 @@ class StrideList(QTableView):
         self.setShowGrid(False)
         self.setTabKeyNavigation(False)
         self.setStyleSheet("background: transparent")
+        self.set_can_turn(True)
         self.selectionModel().currentChanged.connect(self._on_current_changed)
         self.clicked.connect(self._on_clicked)
         look.changed.connect(self._on_look_changed)
@@ -155,13 +179,30 @@ class StrideList(QTableView):
         index = self.currentIndex()
         return self.strides.lines[index.row()] if index.isValid() else None
 
+    def set_can_turn(self, can_turn: bool) -> None:
+        """Let strides be left out and taken in again; else they are only looked at, and nothing looks like a box."""
+        self.strides.can_turn = can_turn
+        self.setAccessibleDescription(tr("Space leaves the stride out, or takes it in again.") if can_turn else "")
+        self.viewport().update()
+
     def show_lines(self, lines: Sequence[StrideLine]) -> None:
         self.strides.show(lines)
         for column, values in ((KNEE, "knee_range_deg"), (ANKLE, "ankle_range_deg")):
             is_known = any(math.isfinite(getattr(line, values)) for line in lines)
             self.setColumnHidden(column, not is_known)
+        used = [line for line in lines if line.is_used]
+        for shape in SHAPES:
+            every = [line.shapes_deg[shape] for line in lines if shape in line.shapes_deg]
+            self.reach[shape] = (float(np.min(every)), float(np.max(every))) if every else (0.0, 1.0)
+            for side in Side:
+                of_side = [line.shapes_deg[shape] for line in used if line.side is side and shape in line.shapes_deg]
+                self.means[side, shape] = np.mean(of_side, axis=0) if of_side else np.empty(0)
         self._on_look_changed()
         self.chosen.emit(self.line)
+
+    def set_shapes_shown(self, is_shown: bool) -> None:
+        self._has_shapes = is_shown
+        self._share_width()
 
     def choose(self, row: int) -> None:
         self.setCurrentIndex(self.strides.index(row, STRIDE))
@@ -181,7 +222,7 @@ class StrideList(QTableView):
 
     def turn(self) -> None:
         """Leave the stride in force out, or take it in again."""
-        if (line := self.line) is not None and line.can_be_turned:
+        if self.strides.can_turn and (line := self.line) is not None and line.can_be_turned:
             self.turned.emit(line)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -207,9 +248,16 @@ class StrideList(QTableView):
         return [*widths, theme.px(STATE_WIDTH)]
 
     def _share_width(self) -> None:
-        """Give every column what it needs, and the rest to the words."""
+        """Give every column what it needs, and the rest to the curves where they are shown, else to the words."""
         needed = self._widths()
-        needed[STATE] += max(0, self.viewport().width() - sum(needed))
+        spare = max(0, self.viewport().width() - sum(needed))
+        known = [shape for shape in SHAPES if any(len(self.means.get((side, shape), ())) for side in Side)]
+        each = spare // max(len(known), 1)
+        is_shown = self._has_shapes and bool(known) and each >= self._look.theme.px(LEAST_SHAPE)
+        for shape in SHAPES:
+            self.setColumnHidden(shape, not (is_shown and shape in known))
+            needed.append(each if is_shown and shape in known else 0)
+        needed[STATE] += 0 if is_shown else spare
         for column, width in enumerate(needed):
             if width:
                 self.setColumnWidth(column, width)
@@ -257,6 +305,8 @@ class _StrideDelegate(QStyledItemDelegate):
         ink = QColor(c.ink if line.is_used else c.ink2)
         if index.column() == STRIDE:
             self._paint_stride(painter, rect, line, ink)
+        elif index.column() in SHAPES:
+            self._paint_shape(painter, rect, line, index.column())
         else:
             is_figure = index.column() in FIGURES
             painter.setFont(theme.font(14, MEDIUM) if is_figure else theme.font(12))
@@ -267,11 +317,22 @@ class _StrideDelegate(QStyledItemDelegate):
             painter.drawText(inner, wrap, model.words(index))
         painter.restore()
 
+    def _paint_shape(self, painter: QPainter, rect: QRectF, line: StrideLine, shape: int) -> None:
+        """The stride in its side's line, over the mean of that side's strides in grey; all on the same scale."""
+        theme, view = self._look.theme, self._view
+        inner = rect.adjusted(theme.px(PADDING), theme.px(5), -theme.px(PADDING), -theme.px(5))
+        own = theme.side_pen(line.side, 1.6) if line.is_used else theme.pen(theme.colours.ink2, 1)
+        mean = theme.pen(theme.colours.control, 1)
+        for curve_deg, pen in ((view.means.get((line.side, shape)), mean), (line.shapes_deg.get(shape), own)):
+            if curve_deg is not None and len(curve_deg):
+                painter.setPen(pen)
+                painter.drawPolyline(_points(curve_deg, inner, view.reach[shape]))
+
     def _paint_stride(self, painter: QPainter, rect: QRectF, line: StrideLine, ink: QColor) -> None:
         theme = self._look.theme
         c, px = theme.colours, theme.px
         mark = QRectF(rect.left() + px(PADDING), rect.center().y() - px(MARK) / 2, px(MARK), px(MARK))
-        if line.can_be_turned:
+        if line.can_be_turned and self._view.strides.can_turn:
             painter.setPen(theme.pen(c.control, 1.25))
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.drawRoundedRect(mark.adjusted(1, 1, -1, -1), px(4), px(4))
@@ -311,6 +372,14 @@ class _Header(QHeaderView):
 def _heading(column: int) -> str:
     """The column's name, its unit not parted from the word before."""
     return tr(HEADS[column]).replace(" (", "\N{NO-BREAK SPACE}(") if HEADS[column] else ""
+
+
+def _points(curve_deg: FloatArray, room: QRectF, reach: tuple[float, float]) -> QPolygonF:
+    """The curve from the left to the right of `room`, its lowest and highest angle at the edges."""
+    low, high = reach
+    x = np.linspace(room.left(), room.right(), len(curve_deg))
+    y = room.bottom() - room.height() * (curve_deg - low) / max(high - low, 1e-9)
+    return QPolygonF([QPointF(float(a), float(b)) for a, b in zip(x, y, strict=True)])
 
 
 def _key(line: StrideLine) -> tuple[Side, int, float]:

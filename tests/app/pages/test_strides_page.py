@@ -109,14 +109,25 @@ def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned:
     assert not page.strides.turn.isEnabled()
 
 
-@pytest.mark.endurance
 def test_where_nothing_is_kept_nothing_can_be_left_out(page: ResultPage, turned: Turned, analysis: Analysis) -> None:
-    """A session folder is looked at; what is chosen belongs into the library."""
+    """A session folder is looked at: nothing looks as if it could be pressed, and it is said why."""
+    strides = page.strides.list
     page.show_analysis(analysis)
-    page.strides.list.choose(first_used(page))
-    QTest.keyClick(page.strides.list, Qt.Key.Key_Space)
+    row = first_used(page)
+    strides.choose(row)
+    mark = strides.strides.index(row, STRIDE)
+    without_boxes = strides.grab().toImage()
+    QTest.keyClick(strides, Qt.Key.Key_Space)
+    QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=strides.visualRect(mark).center())
     assert turned == []
+    assert page.strides.turn.isHidden()
+    assert strides.accessibleDescription() == ""
+    assert mark.data(Qt.ItemDataRole.CheckStateRole) is None
     assert "import this session first" in page.strides.note.text()
+    page.show_analysis(analysis, can_choose=True)
+    assert not page.strides.turn.isHidden()
+    assert mark.data(Qt.ItemDataRole.CheckStateRole) is not None
+    assert strides.grab().toImage() != without_boxes
 
 
 @pytest.mark.endurance
