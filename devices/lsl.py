@@ -230,8 +230,13 @@ class LslSource:
         pylsl = _library()
         try:
             samples, stamps = self._inlet.pull_chunk(timeout=READ_S, max_samples=MOST_SAMPLES)
+            # a chunk is waited for until the time is over, however long its last sample has been there: the next one is
+            # given at the moment when it comes
+            newest, stamp = self._inlet.pull_sample(timeout=READ_S)
         except pylsl.util.LostError as problem:
             raise SourceLostError(f"the stream {self._stream.name} has ended") from problem
+        if stamp is not None:
+            samples, stamps = [*samples, newest], [*stamps, stamp]
         if not stamps:
             return ()
         rows, sent_s = np.array(samples, dtype=float), np.array(stamps, dtype=float)
@@ -263,12 +268,14 @@ class LslSource:
 
     def _host_s(self, newest_s: float, pylsl: ModuleType) -> float:
         """When the newest sample was sent, by the host's clock: as Lab Streaming Layer knows it, or when it came."""
-        now_s = self._now_ns() / 1e9
+        came_s = self._now_ns() / 1e9
         try:
-            late_s = pylsl.local_clock() - (newest_s + self._inlet.time_correction(timeout=0.0))
+            sent_s = newest_s + self._inlet.time_correction(timeout=0.0)
         except (pylsl.util.LostError, pylsl.util.TimeoutError):
-            return now_s
-        return now_s - late_s if -EARLY_S < late_s < PLAUSIBLE_S else now_s
+            return came_s
+        late_s = pylsl.local_clock() - sent_s
+        now_s = self._now_ns() / 1e9  # looked at last: what comes between the two looks is a delay, never the reverse
+        return now_s - late_s if -EARLY_S < late_s < PLAUSIBLE_S else came_s
 
     def _key(self) -> tuple[str, str]:
         return ("source_id", self._stream.source) if self._stream.source else ("name", self._stream.name)

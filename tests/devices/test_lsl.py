@@ -5,7 +5,7 @@ import sys
 import threading
 import time
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -83,7 +83,8 @@ def test_without_the_library_there_are_no_streams_and_the_refusal_says_what_to_d
 class Outlet:
     """Sends a sample every 5 ms, in a thread, stamped by a clock that is `offset_s` wrong and `skew` too fast.
 
-    The rate about x tells the sample's number, so that whoever hears it knows when it was taken.
+    The rate about x tells the sample's number, so that whoever hears it knows when it was taken: when the thread had
+    its turn, for a busy machine's sensors are no better.
     """
 
     def __init__(self, offset_s: float = 0.0, skew: float = 0.0, per_chunk: int = 1) -> None:
@@ -95,8 +96,8 @@ class Outlet:
         self._clock = pylsl.local_clock
         self._offset_s, self._skew, self._per_chunk = offset_s, skew, per_chunk
         self._outlet = pylsl.StreamOutlet(info, chunk_size=per_chunk)
-        self._begin_s = self._clock()
-        self.host_begin_s = host_time_ns() / 1e9
+        self._begin_s, self._ahead_s = self._clock(), host_ahead_s(self._clock)
+        self._taken_s: list[float] = []
         self._is_closing = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
@@ -106,7 +107,8 @@ class Outlet:
 
     def taken_s(self, number: FloatArray) -> FloatArray:
         """When samples (n,) were taken, by the host's clock."""
-        return self.host_begin_s + number / RATE_HZ
+        taken_s: FloatArray = np.array(self._taken_s)[number.astype(int)] + self._ahead_s
+        return taken_s
 
     def close(self) -> None:
         self._is_closing.set()
@@ -116,11 +118,20 @@ class Outlet:
     def _run(self) -> None:
         number = 0
         while not self._is_closing.is_set():
-            while (passed_s := number / RATE_HZ) <= self._clock() - self._begin_s:
-                stamp_s = self._begin_s + self._offset_s + passed_s * (1 + self._skew)
+            while number / RATE_HZ <= self._clock() - self._begin_s:
+                taken_s = self._clock()
+                self._taken_s.append(taken_s)
+                stamp_s = self._begin_s + self._offset_s + (taken_s - self._begin_s) * (1 + self._skew)
                 self._outlet.push_sample([float(number), 0.0, 0.0, 0.0, 0.0, 9.81], stamp_s)
                 number += 1
             time.sleep(0.002)
+
+
+def host_ahead_s(clock: Callable[[], float]) -> float:
+    """How much more the host's clock shows than another one, by the narrowest of many looks at both."""
+    looks = [(host_time_ns(), clock(), host_time_ns()) for _ in range(100)]
+    before_ns, shown_s, after_ns = min(looks, key=lambda look: look[2] - look[0])
+    return (before_ns + after_ns) / 2e9 - shown_s
 
 
 @pytest.fixture
@@ -150,6 +161,53 @@ def heard(sources: list[LslSource], seconds: float) -> list[tuple[FloatArray, Fl
         (np.concatenate([number for number, _ in pieces]), np.concatenate([time_s for _, time_s in pieces]))
         for pieces in got
     ]
+
+
+class Simulated:
+    """An inlet, its library and the host's clock: every 5 ms a sample comes, 0.2 ms after it was taken.
+
+    Every 15 ms three of them are there, the last one for a while already. Whenever the library's clock is looked at the
+    thread has no turn for 3 ms, by turns before it and after.
+    """
+
+    def __init__(self, offset_s: float) -> None:
+        self.util = pytest.importorskip("pylsl").util
+        self.now_s, self.number, self.looks, self._offset_s = 50.0, 0, 0, offset_s
+
+    def local_clock(self) -> float:
+        self.looks += 1
+        shown_s = self.now_s + 0.003 * (self.looks % 2)
+        self.now_s += 0.003
+        return shown_s
+
+    def time_correction(self, timeout: float) -> float:
+        return 0.0
+
+    def pull_sample(self, timeout: float) -> tuple[list[float], float]:
+        self.number += 1
+        taken_s = 50.0 + self.number / RATE_HZ + 0.004
+        self.now_s = max(self.now_s, taken_s + 0.0002)
+        return [taken_s, 0.0, 0.0, 0.0, 0.0, 9.81], taken_s + self._offset_s
+
+    def pull_chunk(self, timeout: float, max_samples: int) -> tuple[list[list[float]], list[float]]:
+        end_s, pulled = self.now_s + timeout, []
+        while 50.0 + (self.number + 1) / RATE_HZ + 0.0042 < end_s:
+            pulled.append(self.pull_sample(0.0))
+        self.now_s = end_s
+        return [row for row, _ in pulled], [stamp_s for _, stamp_s in pulled]
+
+
+@pytest.mark.parametrize("offset_s", [0.0, 3.0])
+def test_how_long_a_sample_waits_to_be_read_does_not_count_for_its_way(
+    offset_s: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simulated = Simulated(offset_s)
+    monkeypatch.setattr("devices.lsl._library", lambda: simulated)
+    source = LslSource(LslStream("s", "IMU", "", "", RATE_HZ), now_ns=lambda: round(simulated.now_s * 1e9))
+    source._sensors, source._inlet = (LslSensor("s", (0, 1, 2), (3, 4, 5), 1.0, 1.0),), simulated
+    blocks = [block for _ in range(50) for block in source.read(lambda _: None)]
+    wrong_s = np.concatenate([block.time_s - block.gyr_rad_s[:, 0] for block in blocks])
+    assert np.abs(wrong_s[50:]).max() < 0.0007
 
 
 def assert_stamped(outlets: list[Outlet], seconds: float) -> None:
