@@ -330,7 +330,9 @@ class Shimmer3:
         }
         try:
             _Shape(settings)
-        except (ValueError, KeyError, struct.error) as problem:
+        except KeyError as problem:  # channels that were not asked for
+            raise _unwilling(channel) from problem
+        except (ValueError, struct.error) as problem:
             raise SourceRefusedError(
                 "The Shimmer3 at {place} holds no calibration",
                 "Calibrate it in Consensys, then search again",

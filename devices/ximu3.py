@@ -171,7 +171,7 @@ class Ximu3:
     Parameters
     ----------
     rate_hz
-        Of inertial messages, a divisor of 400 Hz; then what we do not need is switched off. 115200 baud carry 100 Hz.
+        Of inertial messages, a divisor of 400 Hz; then what we do not need is switched off. 115200 baud carry 200 Hz.
     """
 
     driver, version = DRIVER, VERSION
