@@ -308,6 +308,7 @@ class ResultPage(QWidget):
             self._foot.addWidget(self._notes, 0, 0)
             self._foot.addWidget(self.whole, 0, 1)
         self.compare.set_room(self._is_compact, self._is_spacious)
+        self.strides.set_charts_beside(not self._is_narrow)
         self.findings.setMinimumHeight(self._look.theme.px(LEAST_FINDINGS) if self._columns_wanted == 2 else 0)
         for frame in (self.charts.knee, self.charts.ankle):
             frame.set_narrow(self._is_narrow)

@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
+from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import MEAN, STRIDES, ResultPage
 from app.theme import Look, load_fonts
-from app.widgets.stride_list import STATE, STRIDE, StrideLine
+from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.chosen_strides import leave_out
@@ -174,6 +175,32 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     page.show_analysis(analysis, session.recordings, can_choose=True)
     assert page.cycles.by_hand.text() == ""
     assert not page.cycles.by_hand.isVisible()
+
+
+def test_without_room_for_charts_every_line_draws_its_own_curves(page: ResultPage, analysis: Analysis) -> None:
+    """Whoever chooses sees what is chosen, in the smallest window, too."""
+    strides = page.strides.list
+    shapes = (KNEE_SHAPE, ANKLE_SHAPE)
+    assert page.cycles.isVisible()
+    assert all(strides.isColumnHidden(shape) for shape in shapes)
+    page.set_room(736.0, 432.0)
+    page.resize(736, 550)
+    QApplication.processEvents()
+    assert not page.cycles.isVisible()
+    assert not any(strides.isColumnHidden(shape) for shape in shapes)
+    (walk,) = (recording for recording in analysis.recordings if recording.gait)
+    row = first_used(page)
+    line = strides.strides.lines[row]
+    for shape, joint in zip(shapes, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True):
+        np.testing.assert_array_equal(line.shapes_deg[shape], np.rad2deg(walk.gait[Side.LEFT].cycles[joint][row]))
+        room = strides.visualRect(strides.strides.index(row, shape))
+        picture = strides.viewport().grab(room).toImage()
+        colours = {picture.pixelColor(x, y).rgb() for x in range(picture.width()) for y in range(4, picture.height())}
+        assert page.strides.list.viewport().rect().contains(room)
+        assert any(abs(QColor(one).hslHue() - 25) < 12 and QColor(one).hslSaturation() > 120 for one in colours)
+    page.set_room(1280.0, 672.0)
+    QApplication.processEvents()
+    assert all(strides.isColumnHidden(shape) for shape in shapes)
 
 
 @pytest.mark.endurance
