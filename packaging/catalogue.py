@@ -67,7 +67,7 @@ def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
 
 
 def gathered() -> Catalog:
-    """Give every sentence of `app`, those that findings are told by, and the refusals of `devices`."""
+    """Give every sentence of `app`, those that findings are told by, and the refusals and drivers of `devices`."""
     catalogue = Catalog(charset="utf-8")
     for file in sorted((ROOT / "app").rglob("*.py")):
         for message in sentences(file):
@@ -77,10 +77,13 @@ def gathered() -> Catalog:
         for message in (said for _, both in refused(file) for said in both):
             catalogue.add(message, locations=[(file.relative_to(ROOT).as_posix(), 0)])
     from app.wording import NAMES, SENTENCES
+    from devices.catalogue import DRIVERS
 
     words = [word for names in NAMES.values() for word in names.values()]
     for message in (*SENTENCES.values(), *words):
         catalogue.add(message, locations=[("app/wording.py", 0)])
+    for driver in DRIVERS:
+        catalogue.add(driver.name, locations=[("devices/catalogue.py", 0)])
     return catalogue
 
 

@@ -49,8 +49,13 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     joints = [joint for joint in POINTS if joint in recording.joints]
     rows, step_s = _rows_of_frames(recording)
     if len(rows) > MOST_FRAMES:
-        what = f"{len(rows)} frames are more than a C3D can hold ({MOST_FRAMES})"
-        raise FileRefusedError(recording.name, what, "Take the CSV or the OpenSim file of this recording")
+        raise FileRefusedError(
+            recording.name,
+            "{count} frames are more than a C3D can hold ({most})",
+            "Take the CSV or the OpenSim file of this recording",
+            count=len(rows),
+            most=MOST_FRAMES,
+        )
     values = np.zeros((4, len(joints), len(rows)))
     values[3] = 1.0
     for k, joint in enumerate(joints):

@@ -42,8 +42,12 @@ def check_formats(formats: Sequence[Format]) -> None:
     """
     for wanted in formats:
         if wanted in NEEDED and find_spec(NEEDED[wanted]) is None:
-            what = f"this format needs {NEEDED[wanted]}, which is not installed"
-            raise FileRefusedError(wanted, what, "Install gaitwright[exports]")
+            raise FileRefusedError(
+                wanted,
+                "this format needs {library}, which is not installed",
+                "Install gaitwright[exports]",
+                library=NEEDED[wanted],
+            )
 
 
 def export_from_folder(

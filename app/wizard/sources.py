@@ -87,7 +87,7 @@ class Sources(Sequence[SourceChoice]):
         from devices.catalogue import DRIVERS
 
         by_driver = {driver: found.of(driver.key) for driver in DRIVERS}
-        return [self._choice(driver.key, driver.name, sensors) for driver, sensors in by_driver.items() if sensors]
+        return [self._choice(driver.key, tr(driver.name), sensors) for driver, sensors in by_driver.items() if sensors]
 
     def _of_lines(self) -> list[SourceChoice]:
         lines = self._found.lines if self._found is not None else ()
