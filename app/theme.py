@@ -193,5 +193,6 @@ def _style_sheet(theme: Theme) -> str:
         min-height: {px(32)}px; min-width: {px(32)}px; }}
     QScrollBar::add-line, QScrollBar::sub-line {{ width: 0; height: 0; }}
     QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
+    QAbstractScrollArea::corner {{ background: transparent; border: none; }}
     QToolTip {{ background: {c.inv}; color: {c.inv_ink}; border: none; padding: {px(8)}px; }}
     """
