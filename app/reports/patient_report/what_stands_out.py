@@ -55,15 +55,17 @@ def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
 
 
 def _comparison_sentences(facts: Facts, comparison: Comparison) -> list[str]:
-    """The knee's swing peak of the first side, the last part against the first; then what differs most of all else.
+    """The knee's swing peak of the first side that both have, the last part against the first; then what differs most.
 
     Without a difference beyond the measurement error, the knee's range is told as second.
     """
-    side, shown = facts.first_and_second[0], comparison.parts[-1]
+    shown = comparison.parts[-1]
     measures = {measure.column: measure for measure in MEASURES}
-    swing, span = (
-        comparison.compare(measures[column], side, shown) for column in ("knee_swing_peak_deg", "knee_range_deg")
-    )
+    pairs = [
+        [comparison.compare(measures[column], side, shown) for column in ("knee_swing_peak_deg", "knee_range_deg")]
+        for side in facts.first_and_second
+    ]
+    swing, span = next((pair for pair in pairs if any(row.is_told for row in pair)), pairs[0])
     beyond = [row for row in comparison.rows if row.exceeds and not _is_of(row, swing)]
     most = max(beyond, key=lambda row: abs(row.difference.difference_deg) / row.difference.error_deg, default=span)
     return [_compared(facts, comparison, row) for row in (swing, most) if row.is_told]

@@ -152,6 +152,9 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
     assert "Measured in walking: knee and ankle of both legs, with 6 motion sensors." in first
     assert "Compared, C shown on this page: A alignment A · B alignment B · C alignment C" in first
     assert re.search(r"knee in swing at alignment C \d+°; against alignment A", first)
+    with_one_leg_before = replace(request_of_alignments, earlier=request_of_one_leg.visit)
+    first = first_page(with_one_leg_before)
+    assert re.search(r"Left, knee in swing: \d+°; since the earlier visit \S+°: inside measurement error", first)
     first = first_page(request_of_one_leg)
     assert "Measured in walking: knee and ankle of the left leg, with 3 motion sensors." in first
     assert "More than 2 SD from band [1]: ankle most plantarflexed, loading, L −13° (band −4 ± 2°)" in first
