@@ -21,6 +21,7 @@ from app.wizard.steps.step import Step
 from app.wizard.stride_choice import StrideChoice
 from app.wording import capitalised, name_of, place, tr
 from core.body import Joint
+from core.samples import RecordingKind
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -355,7 +356,7 @@ class ResultsStep(Step):
             self._show()
         elif self._frame is not None and self._frame.has_results and not self._visit.takes.is_recording:
             analysis = self._visit.evaluation.analysis
-            if analysis is not None and analysis.recordings:
+            if analysis is not None and any(one.kind is RecordingKind.WALKING for one in analysis.recordings):
                 self._hold(self._frame.results(), analysis)  # before somebody comes, who would wait for it then
 
     def _on_progressed(self, share: float, what: str) -> None:

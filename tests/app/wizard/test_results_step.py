@@ -26,7 +26,7 @@ from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
-from core.samples import FloatArray, Session
+from core.samples import FloatArray, RecordingKind, Session
 from devices.walker import DEMONSTRATION, simulate
 from tests.app.room import words_cut
 
@@ -111,6 +111,22 @@ def test_results_are_on_the_screen_quickly_once_they_are_known(visit: Visit, ste
     assert process_time() - began < QUICK_S
     assert other.page.currentWidget() is other.page.results()
     other.page.deleteLater()
+
+
+def test_results_that_are_made_ready_ahead_open_with_the_walk(visit: Visit, step: ResultsStep) -> None:
+    """The free motion is analysed first; who comes after a walk wants to see that walk."""
+    session, analysis = visit.evaluation.session, visit.evaluation.analysis
+    assert session is not None
+    assert analysis is not None
+    ahead = ResultsStep(Look(), visit)
+    ahead.page.results()
+    of_motion = (one for one in analysis.recordings if one.kind is not RecordingKind.WALKING)
+    visit.evaluation.take_over(session, replace(analysis, recordings=tuple(of_motion)))
+    visit.evaluation.take_over(session, analysis)
+    assert ahead.page.results().recording is walk_of(visit)  # before anybody came
+    ahead.enter()
+    assert ahead.page.results().recording is walk_of(visit)
+    ahead.page.deleteLater()
 
 
 def test_a_sign_is_turned_kept_in_the_history_and_undone(
