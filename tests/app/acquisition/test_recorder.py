@@ -237,12 +237,12 @@ class Busy:
             monkeypatch.setattr(recordings, name, self._held(getattr(recordings, name)))
 
     def _held(self, call: Callable[..., object]) -> Callable[..., object]:
-        def held(*arguments: object) -> object:
+        def held(*arguments: object, **named: object) -> object:
             while self.is_held and not self.refuses:
                 time.sleep(0.005)
             if self.is_held:
                 raise LibraryBusyError("Another program keeps the library busy", "Wait a moment")
-            return call(*arguments)
+            return call(*arguments, **named)
 
         return held
 
