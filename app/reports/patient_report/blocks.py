@@ -63,6 +63,11 @@ def figure_with_words(one: Picture, items: Sequence[tuple[Picture, str]], title:
     return {"kind": "beside", "picture": one.as_data(), "items": entries, "title": title, "said": list(said)}
 
 
+def if_room(blocks: Sequence[Block]) -> Block:
+    """What is told only where its page has the room: it explains, and what it explains can be read without it."""
+    return {"kind": "if_room", "blocks": list(blocks)}
+
+
 def table(columns: Sequence[Column], rows: Sequence[Row], *, is_dense: bool = False) -> Block:
     return {
         "kind": "table",

@@ -4,7 +4,7 @@ import math
 
 from app.reports.gait_csv import WINDOWS
 from app.reports.patient_report import panels, quality
-from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, if_room, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
@@ -96,7 +96,7 @@ def peaks_page(facts: Facts) -> list[Block]:
 
 
 def _where_found(facts: Facts) -> list[Block]:
-    """The windows over the curves: what the table's rows mean is seen, not only read."""
+    """The windows over the curves: what the table's rows mean is seen, not only read; where the page has room."""
     kinds = [kind for kind in KINDS if facts.has_joint(kind)]
     if not kinds:
         return []
@@ -109,7 +109,8 @@ def _where_found(facts: Facts) -> list[Block]:
         said.append(tr("At initial contact: at 0 %."))
         items.append(panels.peak_swatch())
     drawn = figures([_windows(facts, kind) for kind in kinds], columns=2)
-    return [heading(tr("Where each peak is looked for"), level=2), note(" ".join(said)), legend(items), drawn]
+    title = heading(tr("Where each peak is looked for"), level=2)
+    return [if_room([title, note(" ".join(said)), legend(items), drawn])]
 
 
 def _windows(facts: Facts, kind: str) -> Picture:

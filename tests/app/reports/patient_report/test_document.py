@@ -145,6 +145,14 @@ def test_nothing_of_a_page_is_left_for_the_next(
         assert "the first is thin and pale" in pages[3]
 
 
+@pytest.mark.usefixtures("pseudo_language")
+def test_what_explains_the_peaks_takes_no_page_of_its_own(request_of_demonstration: ReportRequest) -> None:
+    """A longer language makes the table longer: the windows are then left away, not put behind it alone."""
+    pages = texts(make_report(request_of_demonstration))
+    assert len(pages) == 5
+    assert "100 =" not in pages[2]  # no axis: no chart
+
+
 def test_page_one_alone_says_what_was_measured_and_what_differs(
     request_of_alignments: ReportRequest, request_of_one_leg: ReportRequest
 ) -> None:
