@@ -1,5 +1,6 @@
 """Which sensors are silent, what does that cost, and which is back? In words, while a walk goes on and in between."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from app.wording import name_of, tr
@@ -7,6 +8,7 @@ from core.body import Joint, Segment, Side, Site
 
 TOLD_AFTER_S = 2.0
 BACK_TOLD_S = 6.0
+TOGETHER_S = 2.0  # those that a receiver lost come back one after the other
 
 Message = tuple[str, str]
 NOTHING: Message = "", ""
@@ -17,7 +19,9 @@ class Losses:
 
     def __init__(self) -> None:
         self._silent_s: dict[Site, float] = {}
-        self._back: tuple[Site, float, float] | None = None
+        self._worn = 0
+        self._back: dict[Site, float] = {}  # for how long those were silent that are back
+        self._back_s = -math.inf
 
     @property
     def silent(self) -> tuple[Site, ...]:
@@ -33,35 +37,53 @@ class Losses:
                     news.append(site)
                 self._silent_s[site] = seconds
             elif site in self._silent_s:
-                self._back = site, self._silent_s.pop(site), now_s
+                if now_s - self._back_s > TOGETHER_S:
+                    self._back = {}
+                self._back[site], self._back_s = self._silent_s.pop(site), now_s
         for site in self._silent_s.keys() - silent_s.keys():  # worn no more
             del self._silent_s[site]
+        self._worn = len(silent_s)
         return tuple(news)
 
     def message(self, is_recording: bool, joints: Sequence[Joint], now_s: float) -> Message:
         """Say it, and what it costs of `joints`, those that have a sensor on both sides."""
         if self._silent_s:
             return self._silent_message(is_recording, joints)
-        if self._back is not None and is_recording and now_s - self._back[2] < BACK_TOLD_S:
-            site, seconds, _ = self._back
-            what = tr("{sensor} is back after {seconds:.1f} s.").format(sensor=name_of(site), seconds=seconds)
+        if self._back and is_recording and now_s - self._back_s < BACK_TOLD_S:
+            if len(self._back) == 1:
+                said = tr("{sensor} is back after {seconds:.1f} s.")
+            elif len(self._back) < self._worn:
+                said = tr("{sensor} are back after {seconds:.1f} s.")
+            else:
+                said = tr("All sensors are back after {seconds:.1f} s.")
+            names = ", ".join(name_of(site) for site in Site if site in self._back)
+            what = said.format(sensor=names, seconds=max(self._back.values()))
             return what, tr("The strides in between are left out.")
         return NOTHING
 
     def _silent_message(self, is_recording: bool, joints: Sequence[Joint]) -> Message:
         longest_s = int(max(self._silent_s.values()))
+        if 1 < len(self._silent_s) == self._worn:  # it is not the sensors
+            what = tr("No sensor has been heard for {seconds} s.").format(seconds=longest_s)
+            then = tr("Check that the receiver is plugged in and near the patient, and the sensors are switched on.")
+            return what, f"{tr('Recording goes on.')} {then}" if is_recording else then
         names = ", ".join(name_of(site) for site in self.silent)
-        said = tr("{sensor} has been silent for {seconds} s.")
-        if len(self._silent_s) > 1:
-            said = tr("{sensor} have been silent for {seconds} s.")
+        is_one = len(self._silent_s) == 1
+        have = tr("{sensor} have been silent for {seconds} s.")
+        said = tr("{sensor} has been silent for {seconds} s.") if is_one else have
         lost = [name_of(joint) for joint in joints if {joint.proximal, joint.distal} & self._silent_s.keys()]
         phases = {Side.LEFT: tr("left phases"), Side.RIGHT: tr("right phases")}
         feet = [phases[site.side] for site in self.silent if site.segment is Segment.FOOT]
         if is_recording:
             missing = ", ".join([*lost, *feet])
-            then = tr("Recording goes on. Missing until it is back: {missing}.").format(missing=missing)
+            they = tr("Recording goes on. Missing until they are back: {missing}.")
+            it = tr("Recording goes on. Missing until it is back: {missing}.")
+            then = (it if is_one else they).format(missing=missing)
         elif lost:
-            then = tr("Switch it off and on, or go on without these angles: {joints}.").format(joints=", ".join(lost))
+            they = tr("Switch them off and on, or go on without these angles: {joints}.")
+            it = tr("Switch it off and on, or go on without these angles: {joints}.")
+            then = (it if is_one else they).format(joints=", ".join(lost))
         else:
-            then = tr("Switch it off and on, or go on without it.")
+            they = tr("Switch them off and on, or go on without them.")
+            then = tr("Switch it off and on, or go on without it.") if is_one else they
         return said.format(sensor=names, seconds=longest_s), then

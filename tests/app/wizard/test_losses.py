@@ -51,5 +51,23 @@ def test_a_sensor_worn_no_more_is_forgotten() -> None:
 
 def test_two_are_told_together() -> None:
     losses = Losses()
-    losses.update({Site.RIGHT_FOOT: 3.1, Site.LEFT_FOOT: 5.0}, 10.0)
-    assert losses.message(True, [], 10.0)[0] == "L foot, R foot have been silent for 5 s."
+    losses.update({Site.RIGHT_FOOT: 3.1, Site.LEFT_FOOT: 5.0, Site.LEFT_SHANK: 0.0}, 10.0)
+    assert losses.message(True, [], 10.0) == (
+        "L foot, R foot have been silent for 5 s.",
+        "Recording goes on. Missing until they are back: left phases, right phases.",
+    )
+    assert losses.message(False, [], 10.0)[1] == "Switch them off and on, or go on without them."
+
+
+def test_where_none_is_heard_the_receiver_is_told_of_and_their_return_is_told_together() -> None:
+    losses = Losses()
+    losses.update(dict.fromkeys(Site, 3.0), 10.0)
+    then = "Check that the receiver is plugged in and near the patient, and the sensors are switched on."
+    assert losses.message(False, ALL, 10.0) == ("No sensor has been heard for 3 s.", then)
+    assert losses.message(True, ALL, 10.0)[1] == f"Recording goes on. {then}"
+    losses.update({**dict.fromkeys(Site, 0.02), Site.LEFT_FOOT: 3.5}, 10.5)
+    losses.update(dict.fromkeys(Site, 0.02), 11.0)
+    assert losses.message(True, ALL, 11.0)[0] == "All sensors are back after 3.5 s."
+    losses.update({**dict.fromkeys(Site, 0.02), Site.LEFT_FOOT: 2.1}, 20.0)
+    losses.update(dict.fromkeys(Site, 0.02), 20.5)
+    assert losses.message(True, ALL, 20.5)[0] == "L foot is back after 2.1 s."
