@@ -1,5 +1,6 @@
 """The wizard: seven steps, one at a time, jumped between at will, and what is always in sight round them."""
 
+import time
 from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol, runtime_checkable
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 PATIENT, SENSORS, STAND_STILL, FREE_MOTION, WALKING, RESULTS, REPORT = range(7)
 TICK_MS = 33
 PREPARE_MS = 400  # between one page that is made ahead and the next: what the user does comes first
+DEAF_S = 0.4  # after a page turned by itself; a hand that was on its way arrives, one that answers takes longer
 SLOW_TICKS = 8  # tiles and stopwatch: four times a second
 MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
 
@@ -64,6 +66,7 @@ class Wizard(QWidget):
         self._steps: list[Step] = []
         self._current = PATIENT
         self._ticks = 0
+        self._deaf_until_s = 0.0
         self.shell = WizardShell(look)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -135,7 +138,7 @@ class Wizard(QWidget):
         shell.rail.step_pressed.connect(self.go_to)
         shell.rail.below_pressed.connect(self._on_below_pressed)
         shell.bar.back_pressed.connect(self._on_back)
-        shell.bar.primary_pressed.connect(self._on_primary)
+        shell.bar.primary_pressed.connect(self._on_primary_pressed)
         shell.bar.other_pressed.connect(self._on_other)
         shell.bar.quiet_pressed.connect(self._on_quiet)
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
@@ -267,7 +270,7 @@ class Wizard(QWidget):
             del self._to_prepare[0]
 
     def _on_intent(self, intent: Intent) -> None:
-        if not self._steps:
+        if not self._steps or (intent.action in (Action.RUN, Action.PRIMARY) and self._has_just_turned()):
             return
         step = self._steps[self._current]
         if step.on_intent(intent):
@@ -293,6 +296,14 @@ class Wizard(QWidget):
                 self._look.grow(-1)
             case Action.USUAL_SIZE:
                 self._look.grow(0)
+
+    def _has_just_turned(self) -> bool:
+        """Whether the page turned by itself a moment ago: what is pressed now was meant for the one before."""
+        return time.monotonic() < self._deaf_until_s
+
+    def _on_primary_pressed(self) -> None:
+        if not self._has_just_turned():
+            self._on_primary()
 
     def _on_primary(self) -> None:
         if self._steps and (verb := self._bar().primary) is not None and verb.is_enabled:
@@ -361,6 +372,8 @@ class Wizard(QWidget):
 
     def _on_step_done(self) -> None:
         if self.sender() is self.current and self._current < REPORT:
+            if self._current in (STAND_STILL, FREE_MOTION):  # which end by themselves
+                self._deaf_until_s = time.monotonic() + DEAF_S
             self.go_to(self._current + 1)
 
     def _on_visit_changed(self) -> None:

@@ -19,7 +19,7 @@ from app.wizard.keys import Action, Intent
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
-from app.wizard.wizard import RESULTS, Wizard
+from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
@@ -315,3 +315,28 @@ def test_a_report_still_being_set_when_the_session_is_left_is_waited_for_at_the_
     wizard.finish()
     assert is_over.is_set()
     assert left.is_idle
+
+
+def test_a_key_that_was_meant_for_the_page_before_does_nothing(
+    qtbot: QtBot, wizard: Wizard, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Space ends the free motion, and begins a walk once that page is there: it may have turned by itself meanwhile."""
+    heard: list[Intent] = []
+
+    def hear(_step: WalkingStep, intent: Intent) -> bool:
+        heard.append(intent)
+        return True
+
+    monkeypatch.setattr(WalkingStep, "on_intent", hear)
+    monkeypatch.setattr(WalkingStep, "cannot_enter", "")
+    wizard.begin(None)
+    wizard._go_to(FREE_MOTION)
+    wizard._steps[FREE_MOTION].done.emit()
+    assert wizard._current == WALKING
+    wizard._on_intent(Intent(Action.RUN))
+    assert heard == []
+    wizard._on_intent(Intent(Action.UNDO))
+    assert heard == [Intent(Action.UNDO)]
+    qtbot.wait(round(1000 * DEAF_S) + 20)
+    wizard._on_intent(Intent(Action.RUN))
+    assert heard[1:] == [Intent(Action.RUN)]
