@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
 from app.pages.sentence_page import SentencePage
@@ -41,7 +41,7 @@ class ResultsStep(Step):
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
-        self._held: Analysis | None = None  # by the page of results, which may be out of sight
+        self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
         self._is_correcting = self._is_asking = False
         self._how_found: HowFoundDesk | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
@@ -174,10 +174,10 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        if self._held is analysis:
-            return
-        self._held = analysis
         session = self._visit.evaluation.session
+        if self._held is not None and self._held[0] is session and self._held[1] is analysis:
+            return
+        self._held = session, analysis  # of other words for a walk the same analysis may come
         results.show_analysis(
             analysis,
             session.recordings if session is not None else (),
@@ -353,11 +353,16 @@ class ResultsStep(Step):
     def _on_evaluated(self) -> None:
         if self._is_in_sight():
             self._evaluate_if_stale()  # something may have been put right meanwhile
+        frame, analysis = self._frame, self._visit.evaluation.analysis
+        if frame is None or analysis is None:
+            return
+        has_walk = any(one.kind is RecordingKind.WALKING for one in analysis.recordings)
+        if has_walk and frame.has_results and not self._visit.takes.is_recording:
+            self._hold(frame.results(), analysis)  # before somebody comes, who would wait for it then
+        if frame.isVisible() and frame.currentWidget() is frame.working:
+            QTimer.singleShot(0, self, self._show)  # filling the page and painting it would hold up the screen together
+        elif frame.isVisible():
             self._show()
-        elif self._frame is not None and self._frame.has_results and not self._visit.takes.is_recording:
-            analysis = self._visit.evaluation.analysis
-            if analysis is not None and any(one.kind is RecordingKind.WALKING for one in analysis.recordings):
-                self._hold(self._frame.results(), analysis)  # before somebody comes, who would wait for it then
 
     def _on_progressed(self, share: float, what: str) -> None:
         if self._is_in_sight():
