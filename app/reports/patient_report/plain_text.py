@@ -95,11 +95,13 @@ def _coverages() -> tuple[frozenset[int], ...]:
 def _has_marks(letter: str) -> bool:
     """Whether a letter with its marks is of a family other than Inter, whose letters every word of ours is made of.
 
+    A colon is in every family and set in Inter, whatever the marks behind it.
+
     A PDF tells what each glyph of a font means once: a mark on an Inter letter that no glyph holds together with it
     would be copied and read aloud with that letter in every word.
     """
-    _, *others = _coverages()
-    return any(set(map(ord, letter)) <= covered for covered in others)
+    inter, *others = _coverages()
+    return ord(letter[0]) not in inter and any(set(map(ord, letter)) <= covered for covered in others)
 
 
 @cache

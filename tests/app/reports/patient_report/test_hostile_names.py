@@ -91,6 +91,7 @@ def test_what_no_font_shows_becomes_a_box_and_what_nobody_sees_is_dropped() -> N
     assert plain(" \t a \n b ") == "a b"
     assert plain_lines("one\n\n\n\ntwo\n") == ["one", "", "two"]
     assert isolated("") == ""
+    assert plain("a:\u034fb") == "a:b"  # an unseen mark: every colon of the report would be copied with it
 
 
 def test_only_long_words_may_break_within() -> None:
