@@ -41,7 +41,7 @@ MANUAL = {
     "10b-walking": "walking",
     "13a-results": "results",
 }
-PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # and Debian's package of each
+PROGRAMS = {"Xvfb": "xvfb", "openbox": "openbox", "xdotool": "xdotool", "convert": "imagemagick"}  # Debian's packages
 SCREEN = "2000x1200x24"
 WINDOW = "1280x800@100"
 THEMES = ("light", "dark")
