@@ -47,11 +47,12 @@ def sentences(file: Path) -> Iterator[str | tuple[str, ...]]:
     """Find what stands inside the functions of `app.wording`, in the order of reading; one and many as a pair."""
     calls = [node for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))) if isinstance(node, ast.Call)]
     for call in sorted(calls, key=lambda call: (call.lineno, call.col_offset)):
-        taken = call.args[: TAKERS.get(ast.unparse(call.func), 0)]
+        function = call.func.id if isinstance(call.func, ast.Name) else ""
+        taken = call.args[: TAKERS.get(function, 0)]
         said = [one.value for one in taken if isinstance(one, ast.Constant) and isinstance(one.value, str)]
         if said and len(said) == len(taken):
             yield said[0] if len(said) == 1 else tuple(said)
-        if (function := ast.unparse(call.func)) in REFUSALS:
+        if function in REFUSALS:
             told = call.args[REFUSALS[function] :]
             yield from (one.value for one in told if isinstance(one, ast.Constant) and isinstance(one.value, str))
 
@@ -60,7 +61,8 @@ def refused(file: Path) -> Iterator[tuple[ast.Call, list[str]]]:
     """Find what a module of `devices` refuses, and how it says so: in place, or by a constant's name."""
     module = import_module(".".join(file.relative_to(ROOT).with_suffix("").parts))
     for call in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
-        if isinstance(call, ast.Call) and (at := REFUSALS.get(ast.unparse(call.func))) is not None:
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Name) and call.func.id in REFUSALS:
+            at = REFUSALS[call.func.id]
             told = [one.value if isinstance(one, ast.Constant) else one for one in call.args[at:]]
             named = [getattr(module, one.id, None) if isinstance(one, ast.Name) else one for one in told]
             yield call, [one for one in named if isinstance(one, str)]

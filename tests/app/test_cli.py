@@ -231,6 +231,7 @@ def test_what_files_say_cannot_steer_the_terminal(
 # The demonstration
 
 
+@pytest.mark.endurance
 def test_a_demonstration_is_a_session_with_its_truth_and_the_analysis_of_it(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

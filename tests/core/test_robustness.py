@@ -216,9 +216,8 @@ def test_the_axis_of_a_real_hinge_lies_within_two_deviations(test_data: Callable
     assert worst < 2 * found.axis_sd_rad
 
 
-@pytest.mark.parametrize(
-    "rows", [14, pytest.param(9, marks=pytest.mark.endurance), pytest.param(23, marks=pytest.mark.endurance)]
-)
+@pytest.mark.endurance
+@pytest.mark.parametrize("rows", [9, 14, 23])
 def test_one_gap_does_not_spoil_the_rest_of_a_walk(rows: int) -> None:
     """A gap of 240 ms in one sensor, once: up to 12 deg wrong for the rest of the walk, claimed sd 0.6 deg, nothing
     said but `gaps`. 50 ms: 0.1 deg; 310 ms, where a new stretch begins: 0.1 deg. Interpolated rates across a step turn

@@ -388,6 +388,7 @@ def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScr
     assert window.results.findings.accessibleDescription() == "Nothing stands out."
 
 
+@pytest.mark.endurance
 def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionScreen) -> None:
     window.open_demonstration()
     qtbot.waitUntil(lambda: not window.is_working, timeout=60_000)
