@@ -86,18 +86,23 @@ class Home(QWidget):
     @property
     def settings(self) -> SettingsDesk:
         """The settings, made when they are first asked for: beside the rest of home they would hold up the screen."""
-        if self._settings_desk is None:
-            self._settings_desk = made = SettingsDesk(self._look, self._desk, self._settings, self)
-            self._add_page(made.page)
-            made.told.connect(self.banner.tell)
-            made.restored.connect(self.refresh)
-            if self._state is not None:
-                made.show_library(self._state)
-        return self._settings_desk
+        return self._settings_desk or self._make_settings()
 
     def prepare(self) -> bool:
         """Make the next part before somebody asks for it; whether there was one."""
-        return self._settings_desk is None and self.settings is not None
+        if self._settings_desk is not None:
+            return False
+        self._make_settings()
+        return True
+
+    def _make_settings(self) -> SettingsDesk:
+        made = self._settings_desk = SettingsDesk(self._look, self._desk, self._settings, self)
+        self._add_page(made.page)
+        made.told.connect(self.banner.tell)
+        made.restored.connect(self.refresh)
+        if self._state is not None:
+            made.show_library(self._state)
+        return made
 
     def show_library(self, state: OpenedState) -> None:
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
