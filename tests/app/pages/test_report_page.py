@@ -1,0 +1,46 @@
+"""The report's page: pictures of the pages are as fine as there is room for them."""
+
+import pytest
+from PySide6.QtCore import QBuffer, QByteArray
+from PySide6.QtGui import QImage
+from pytestqt.qtbot import QtBot
+
+from app.pages.report_page import PAPER_INCH, REBUILT_AFTER_MS, ReportPage
+from app.theme import Look
+
+
+@pytest.fixture
+def page(qtbot: QtBot) -> ReportPage:
+    page = ReportPage(Look())
+    qtbot.addWidget(page)
+    page.resize(1000, 600)
+    page.show()
+    return page
+
+
+def png(ppi: float) -> bytes:
+    """A page of A4, blank."""
+    image = QImage(round(ppi * PAPER_INCH), round(ppi * 11.69), QImage.Format.Format_RGB32)
+    image.fill(0xFFFFFFFF)
+    content = QByteArray()
+    file = QBuffer(content)
+    file.open(QBuffer.OpenModeFlag.WriteOnly)
+    assert image.save(file, "PNG")  # type: ignore[call-overload]  # the stubs know no device here
+    return bytes(content.data())
+
+
+def test_pictures_that_come_too_coarse_are_asked_for_once_more(qtbot: QtBot, page: ReportPage) -> None:
+    """They were asked for before the page had its size."""
+    with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):
+        page.show_pages([png(page.pages_ppi / 2)])
+    with qtbot.assertNotEmitted(page.sharper_wanted, wait=2 * REBUILT_AFTER_MS):
+        page.show_pages([png(page.pages_ppi)])
+
+
+def test_more_room_asks_for_finer_pictures_and_less_for_none(qtbot: QtBot, page: ReportPage) -> None:
+    page.show_pages([png(page.pages_ppi)])
+    with qtbot.waitSignal(page.sharper_wanted, timeout=10 * REBUILT_AFTER_MS):
+        page.resize(1400, 900)
+    page.show_pages([png(page.pages_ppi)])
+    with qtbot.assertNotEmitted(page.sharper_wanted, wait=2 * REBUILT_AFTER_MS):
+        page.resize(1000, 600)
