@@ -307,6 +307,9 @@ def _calibration(
         walks_from=tuple(name for name in found.recordings if name in basis.walks),
         acc_bias_proximal_m_s2=found.geometry.unknowns[6:9] if robust else None,
         acc_bias_distal_m_s2=found.geometry.unknowns[9:12] if robust else None,
+        is_same_joint=robust.is_same_joint if robust else True,
+        is_lag_at_border=robust.lag.is_at_border if robust else False,
+        disagreement=robust.disagreement if robust else None,
     )
     return calibration, sign
 

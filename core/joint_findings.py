@@ -17,9 +17,6 @@ class Say(Protocol):
 
 
 MIN_SIGN_MARGIN = 1.3  # of the best hypothesis against its best rival; below, the data hardly tell them apart
-# Two sensors with no joint between them leave 0.6 and more of their accelerations unexplained, and hypotheses that
-# hardly differ; neighbours under loose tissue leave up to 0.6, but their hypotheses differ.
-MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.55, 3.0
 MAX_AXIS_SD_RAD = np.deg2rad(10.0)
 MAX_DIFFERENCE_RAD = np.deg2rad(5.0)  # between the result and the published angle, about their means
 
@@ -81,8 +78,7 @@ def _about_robust(calibration: JointCalibration, found: Identified, say: Say) ->
     assert robust is not None
     residual = round(calibration.hinge_residual_rad_s or 0.0, 3)
     say("is_a_hinge" if found.is_hinge else "not_a_hinge", Severity.INFO, hinge_residual_rad_s=residual)
-    is_apart = robust.disagreement > MAX_DISAGREEMENT and robust.sign_margin < STRANGERS_MARGIN
-    if robust.lag.is_at_border or is_apart:
+    if not robust.is_same_joint:
         say("not_the_same_joint", Severity.WARNING, margin=round(robust.sign_margin, 2))
     elif calibration.lag_s:
         say("lag_corrected", Severity.INFO, lag_ms=round(1000 * calibration.lag_s, 1))

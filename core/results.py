@@ -39,6 +39,9 @@ class JointCalibration:
     `clinical_sign` (1 or -1) turns the twist about the axes (distal against proximal) into flexion or dorsiflexion;
     where `is_sign_certain` is False it is no more than the likelier one. `zero_rad` is subtracted from the twist
     before the sign, `offset_rad` (the goniometer's value) added after it.
+    `is_same_joint` is False where both sensors do not move as neighbours; its evidence is `disagreement`, what the best
+    common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would coincide best
+    at a lag that no clock has.
     """
 
     joint: Joint
@@ -68,6 +71,9 @@ class JointCalibration:
     walks_from: tuple[str, ...] = ()
     acc_bias_proximal_m_s2: FloatArray | None = None
     acc_bias_distal_m_s2: FloatArray | None = None
+    is_same_joint: bool = True
+    is_lag_at_border: bool = False
+    disagreement: float | None = None
 
 
 @dataclass(frozen=True, slots=True)

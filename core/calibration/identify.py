@@ -37,6 +37,9 @@ ACCELERATION_COST_FLOOR = 0.05
 MAX_REST_S = 0.01  # after the first correction
 ELEVATION_SD_RAD = np.deg2rad(25.0)
 MAX_ELEVATION_RAD = np.deg2rad(40.0)
+# Two sensors with no joint between them leave 0.6 and more of their accelerations unexplained, and hypotheses that
+# hardly differ; neighbours under loose tissue leave up to 0.6, but their hypotheses differ.
+MAX_DISAGREEMENT, STRANGERS_MARGIN = 0.55, 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +58,12 @@ class Identification:
     elevation_rad: float | None
     did_flexion_dominate: bool
     disagreement: float
+
+    @property
+    def is_same_joint(self) -> bool:
+        """Whether the two sensors may be neighbours."""
+        is_apart = self.disagreement > MAX_DISAGREEMENT and self.sign_margin < STRANGERS_MARGIN
+        return not (self.lag.is_at_border or is_apart)
 
 
 Downs = tuple[FloatArray, FloatArray]
