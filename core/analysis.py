@@ -113,7 +113,7 @@ def analyse(
             findings += about_angles(found)
             findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
     findings += about_missing_joints(session, quality.unusable, recordings)
-    findings += about_prosthesis(recordings, session.patient)
+    findings += about_prosthesis(recordings)
     unique = {(f.key, f.where, tuple(sorted(f.numbers.items()))): f for f in findings}
     whole = Analysis(
         method=method,

@@ -117,6 +117,9 @@ class SideGait:
         and no angle does.
     without_zero
         Joints whose zero is not known: their curves hold in range and shape, and no angle does.
+    is_toe_off_biased
+        The side's toe-offs are late, alike in every stride, so its stance and swing are neither to be judged against a
+        band nor compared with another side's: a prosthetic foot rolls on where a heel would rise.
     """
 
     events: tuple[FootEvents, ...]
@@ -126,6 +129,7 @@ class SideGait:
     phase: IntArray
     sign_in_doubt: frozenset[Joint] = frozenset()
     without_zero: frozenset[Joint] = frozenset()
+    is_toe_off_biased: bool = False
 
 
 @dataclass(frozen=True, slots=True)

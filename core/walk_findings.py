@@ -11,7 +11,6 @@ from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import RecordingAnalysis, SideGait
-from core.samples import Patient
 
 
 def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> list[Finding]:
@@ -32,12 +31,15 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
     return [*findings, *_about_counts(walk)]
 
 
-def about_prosthesis(recordings: Iterable[RecordingAnalysis], patient: Patient) -> list[Finding]:
+def about_prosthesis(recordings: Iterable[RecordingAnalysis]) -> list[Finding]:
     """A prosthetic foot rolls on where a heel would rise, so its toe-off is found late, alike in every stride."""
-    sides = {Side.LEFT, Side.RIGHT} if patient.prosthetic_side == "both" else {patient.prosthetic_side}
-    walked = {side for recording in recordings for side, gait in recording.gait.items() if len(gait.strides)}
-    worn = [side for side in Side if side in sides & walked]
-    return [Finding("prosthetic_toe_off", Severity.INFO, f"{side}_{Segment.FOOT}") for side in worn]
+    late = {
+        side
+        for recording in recordings
+        for side, gait in recording.gait.items()
+        if gait.is_toe_off_biased and len(gait.strides)
+    }
+    return [Finding("prosthetic_toe_off", Severity.INFO, f"{side}_{Segment.FOOT}") for side in Side if side in late]
 
 
 def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:

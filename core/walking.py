@@ -20,7 +20,7 @@ from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
 from core.gait.strides import Strides, strides_of
 from core.results import JointAngle, SideGait
-from core.samples import BoolArray, FloatArray, Recording
+from core.samples import BoolArray, FloatArray, Patient, Recording
 from core.sensors import SensorTracks
 
 SAME_S = 0.2  # two landings of one foot lie further apart
@@ -33,6 +33,11 @@ def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Si
         if tracks.is_usable(recording, site):
             return site
     return None
+
+
+def prosthetic_sides(patient: Patient) -> frozenset[Side]:
+    """The sides that wear a prosthetic foot, as the clinic typed them."""
+    return frozenset(side for side in Side if patient.prosthetic_side in (side, "both"))
 
 
 def gait_in(
@@ -67,7 +72,14 @@ def gait_in(
             if joint in joints
         }
         parameters = {**parameters_of(mine, other), **_joint_parameters(mine, cycles)}
-        gait[side] = SideGait(tuple(found), mine, parameters, cycles, phases_at(time_s, found))
+        gait[side] = SideGait(
+            tuple(found),
+            mine,
+            parameters,
+            cycles,
+            phases_at(time_s, found),
+            is_toe_off_biased=side in prosthetic_sides(tracks.session.patient),
+        )
     return gait
 
 

@@ -11,11 +11,11 @@ from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason, Strides, strides_of
 from core.results import RecordingAnalysis, SideGait
-from core.samples import Patient, RecordingKind
+from core.samples import RecordingKind
 from core.walk_findings import about_prosthesis, about_walk
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
-FEET: Mapping[Side, Site | None] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
+FEET: Mapping[Side, Site] = {Side.LEFT: Site.LEFT_FOOT, Side.RIGHT: Site.RIGHT_FOOT}
 
 
 @pytest.fixture(scope="module")
@@ -99,13 +99,13 @@ def test_standing_through_a_walk_is_no_walk() -> None:
     assert "no_strides" in {finding.key for finding in analyse(walked).findings}
 
 
-@pytest.mark.parametrize(
-    ("side", "where"),
-    [("right", ["right_foot"]), ("both", ["left_foot", "right_foot"]), ("none", []), ("", [])],
-)
-def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(
-    walk: RecordingAnalysis, side: str, where: list[str]
-) -> None:
-    found = about_prosthesis([walk], Patient(prosthetic_side=side))
-    assert [(one.key, one.where) for one in found] == [("prosthetic_toe_off", place) for place in where]
-    assert about_prosthesis([replace(walk, gait={})], Patient(prosthetic_side=side)) == []
+@pytest.mark.parametrize("typed", ["left", "right", "both", "none", ""])
+def test_the_late_toe_off_of_a_prosthetic_foot_that_walked_is_told(typed: str) -> None:
+    made = simulate(WalkerSettings(recordings=(Standing(), Walk()), sites=tuple(FEET.values()))).session
+    found = analyse(replace(made, patient=replace(made.patient, prosthetic_side=typed)))
+    gait = found.recordings[0].gait
+    worn = [side for side in Side if typed in (side.value, "both")]
+    assert [side for side in Side if gait[side].is_toe_off_biased] == worn
+    told = [one.where for one in found.findings if one.key == "prosthetic_toe_off"]
+    assert told == [f"{side}_foot" for side in worn]
+    assert about_prosthesis([replace(found.recordings[0], gait={})]) == []
