@@ -14,12 +14,12 @@ if TYPE_CHECKING:
     from app.reports.comparison import Comparison, Part
 
 DIFFERENCES = "differences.csv"
-FLAGS = {  # as core.norms.Verdict and app.reports.differences have them
+FLAGS = {  # as core.verdicts.measurement_error has them
     "exceeds_error": "beyond measurement error",
     "inside_error": "inside measurement error",
     "too_few_strides": "too few strides",
     "no_published_figure": "not judged",
-    "no_common_zero": "no common zero",
+    "withheld": "withheld",
 }
 
 Report = Callable[[float, str], None]
@@ -96,9 +96,10 @@ def _table(comparison: "Comparison") -> Iterator[str]:
         yield f"  {'':5} {'':38} {'one':>9} {'other':>9} {'differs':>9} {'error':>7}"
         for row in rows:
             side = "" if row.side is None else row.side[0].upper()
-            figures = (row.value.mean, row.other.mean, row.difference)
+            found = row.difference
+            figures = (row.value.mean, row.other.mean, found.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)
-            yield f"  {side:5} {row.parameter:38} {cells} {_short(row.error):>7}  {FLAGS[row.verdict]}"
+            yield f"  {side:5} {row.parameter:38} {cells} {_short(found.error):>7}  {FLAGS[found.judgement]}"
 
 
 def _named(part: "Part") -> str:

@@ -20,7 +20,7 @@ from core.joint_findings import about_angles, about_joint, about_missing_joints,
 from core.measure import Twist, measure
 from core.placement.labels import about_labels
 from core.published.angles import DEFAULT_TAU_S
-from core.quality import look_at
+from core.quality import look_at, lost_percent
 from core.rate_kind import find_rate_kind
 from core.results import (
     Analysis,
@@ -38,6 +38,7 @@ from core.samples import FloatArray, Patient, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 from core.strap import slips_in_walks
 from core.validity import Basis, basis_of, spans_of_validity
+from core.verdicts.gates import verdicts_of
 from core.walk_findings import about_prosthesis, about_walk
 from core.walking import gait_in, site_of_events
 
@@ -84,6 +85,7 @@ def analyse(
     calibrations: list[Calibration] = []
     recordings: list[RecordingAnalysis] = []
     spans = spans_of_validity(session)
+    stiff_sides = _stiff_sides(session.patient)
     has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
@@ -108,7 +110,9 @@ def analyse(
         findings += told
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
-            found = replace(found, gait=_before_slips(found, slipped))
+            found = _before_slips(found, slipped)
+            here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
+            found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
             recordings.append(found)
             findings += about_angles(found)
             findings += about_walk(found, {side: site_of_events(tracks, recording, side) for side in found.gait})
@@ -122,6 +126,8 @@ def analyse(
         recordings=tuple(recordings),
         findings=tuple(unique.values()),
         affected_side=_affected_side(session.patient),
+        stiff_sides=stiff_sides,
+        prosthetic_sides=_sides(session.patient.prosthetic_side),
     )
     return leave_out(whole, session.recordings)
 
@@ -131,6 +137,14 @@ def _affected_side(patient: Patient) -> Side | None:
     said = (patient.affected_side, patient.prosthetic_side)
     one = [side for side in said if side in set(Side)]
     return Side(one[0]) if one and "both" not in said else None
+
+
+def _sides(said: str) -> frozenset[Side]:
+    return frozenset(side for side in Side if said in (side, "both"))
+
+
+def _stiff_sides(patient: Patient) -> frozenset[Side]:
+    return _sides(patient.affected_side) | _sides(patient.prosthetic_side)
 
 
 class _Steps:
@@ -386,18 +400,9 @@ def _angles(
     time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
         offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
-        known = {joint: calibrated[bases[recording.name, joint]] for joint in joints}
-        in_doubt = frozenset(joint for joint, found in known.items() if not found.is_sign_certain)
-        without_zero = frozenset(joint for joint, found in known.items() if found.zero is ZeroKind.NONE)
-        gait = {
-            side: replace(
-                found,
-                sign_in_doubt=in_doubt & set(found.cycles),
-                without_zero=without_zero & set(found.cycles),
-            )
-            for side, found in gait_in(tracks, recording, time_s, joints, offsets).items()
-        }
-    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait)
+        gait = gait_in(tracks, recording, time_s, joints, offsets)
+    lost = {site: lost_percent(block) for site, block in recording.imu.items() if tracks.is_usable(recording, site)}
+    return RecordingAnalysis(recording.name, recording.folder, recording.kind, time_s, joints, gait, lost)
 
 
 Slipped = dict[tuple[str, Side], float]
@@ -432,14 +437,16 @@ def _until_free_motion(span: tuple[Recording, ...], walk: Recording, site: Site)
     return [recording for recording in later if recording.kind is RecordingKind.WALKING]
 
 
-def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> dict[Side, SideGait]:
-    """The gait, without the strides of a side after its strap slipped."""
-    return {
-        side: replace(gait, strides=gait.strides.left_out_from(slipped[recording.name, side], Reason.SLIPPED))
-        if (recording.name, side) in slipped
-        else gait
-        for side, gait in recording.gait.items()
+def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> RecordingAnalysis:
+    """The same, without the strides of a side after its strap slipped."""
+    from_s = {side: slipped[recording.name, side] for side in Side if (recording.name, side) in slipped}
+    gait = {
+        side: replace(found, strides=found.strides.left_out_from(from_s[side], Reason.SLIPPED))
+        if side in from_s
+        else found
+        for side, found in recording.gait.items()
     }
+    return replace(recording, gait=gait, slipped_from_s=from_s)
 
 
 def _clock_offset_s(

@@ -13,6 +13,7 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
 from core.samples import Recording
+from core.verdicts.gates import verdicts_of
 from core.walk_findings import about_walk
 
 
@@ -29,6 +30,7 @@ def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
     for walk in analysis.recordings:
         times_s = chosen.get(walk.name, {})
         found = replace(walk, gait={side: _without(gait, times_s.get(side, ())) for side, gait in walk.gait.items()})
+        found = replace(found, verdicts=verdicts_of(found, analysis.calibrated_for(found), analysis.stiff_sides))
         walks.append(found)
         told = [
             Finding(

@@ -1,4 +1,4 @@
-"""What do others walk like, and when is a difference real? Cited groups, each with its source, ages, n and speed.
+"""What do others walk like? Cited groups, each with its source, ages, n and speed.
 
 Nothing here is called normal: laboratories differ by 5 to 7 deg in offset, and speed changes every curve. The figures
 are files of `resources`; this module is given their text.
@@ -7,19 +7,15 @@ are files of `resources`; this module is given their text.
 import csv
 from collections.abc import Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 
 import numpy as np
 
-from core.body import Joint
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.samples import FloatArray
 
 MAX_SPEED_DIFFERENCE_M_S = 0.15  # further from its speed, a band is not drawn without saying so
 MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD = 3, 10
-KNEE_NEW_ATTACHMENT_DEG = 9.2  # upper end of the published minimal detectable change, 3.4 to 9.2, 15 volunteers
-SAME_ATTACHMENT_DEG = 1.0  # beside chance, for what sensors that stay on may do between two walks
 
 SOURCE = (
     "Fukuchi, Fukuchi & Duarte 2018, PeerJ 6:e4640, data doi 10.6084/m9.figshare.5722711, CC BY 4.0, "
@@ -57,24 +53,6 @@ class ReferenceValues:
     @property
     def speed_m_s(self) -> float:
         return self.values["walking_speed"].mean
-
-
-class Verdict(StrEnum):
-    """Is a difference real? The first two are judgements, the others say why there is none."""
-
-    EXCEEDS_ERROR = "exceeds_error"
-    INSIDE_ERROR = "inside_error"
-    TOO_FEW_STRIDES = "too_few_strides"
-    NO_PUBLISHED_FIGURE = "no_published_figure"
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """One mean less another, and the measurement error it has to exceed to be real; NaN where there is none."""
-
-    difference_deg: float
-    error_deg: float
-    verdict: Verdict
 
 
 def read_curves(text: str) -> ReferenceCurves:
@@ -125,34 +103,6 @@ def read_time_distance(text: str) -> tuple[ReferenceValues, ...]:
 def nearest_class(classes: tuple[ReferenceValues, ...], speed_m_s: float) -> ReferenceValues:
     """The class whose mean speed is nearest; whether it is near enough is the reader's to see."""
     return min(classes, key=lambda reference: abs(reference.speed_m_s - speed_m_s))
-
-
-def compare_same_attachment(one: MeanAndSd, other: MeanAndSd) -> Difference:
-    """Two walks of one session with the sensors left on, any joint: the error is that of two means, and a degree."""
-    if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
-        return _not_judged(one, other, Verdict.TOO_FEW_STRIDES)
-    spread_deg = float(np.sqrt(one.sd**2 / one.n + other.sd**2 / other.n))
-    return _judged(one, other, 1.96 * spread_deg + SAME_ATTACHMENT_DEG)
-
-
-def compare_new_attachment(joint: Joint, one: MeanAndSd, other: MeanAndSd) -> Difference:
-    """Two visits, sensors strapped on anew, or the left against the right joint; ankles are never judged."""
-    if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
-        return _not_judged(one, other, Verdict.TOO_FEW_STRIDES)
-    if not joint.is_knee:
-        return _not_judged(one, other, Verdict.NO_PUBLISHED_FIGURE)
-    return _judged(one, other, KNEE_NEW_ATTACHMENT_DEG)
-
-
-def _judged(one: MeanAndSd, other: MeanAndSd, error_deg: float) -> Difference:
-    difference_deg = one.mean - other.mean
-    is_real = abs(difference_deg) > error_deg
-    return Difference(difference_deg, error_deg, Verdict.EXCEEDS_ERROR if is_real else Verdict.INSIDE_ERROR)
-
-
-def _not_judged(one: MeanAndSd, other: MeanAndSd, why: Verdict) -> Difference:
-    has_means = min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
-    return Difference(one.mean - other.mean if has_means else float("nan"), float("nan"), why)
 
 
 def _table(text: str) -> list[dict[str, str]]:

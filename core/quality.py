@@ -122,12 +122,22 @@ def _about_units(block: ImuBlock, is_there: BoolArray, kind: RecordingKind) -> l
     return about
 
 
+def lost_percent(block: ImuBlock) -> float:
+    """How many of a sensor's samples are missing, to its own rate; 100 where next to none was heard."""
+    heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
+    return _missing_percent(block, heard_s) if len(heard_s) >= MIN_STRETCH_SAMPLES else 100.0
+
+
+def _missing_percent(block: ImuBlock, heard_s: FloatArray) -> float:
+    missing = float(np.sum(np.maximum(np.round(np.diff(heard_s) / nominal_step_s(heard_s)) - 1, 0)))
+    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
+    return 100 * missing / (missing + len(heard_s))
+
+
 def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
     step_s = nominal_step_s(heard_s)
     steps = np.diff(heard_s)
-    missing = float(np.sum(np.maximum(np.round(steps / step_s) - 1, 0)))
-    missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
-    percent = 100 * missing / (missing + len(heard_s))
+    percent = _missing_percent(block, heard_s)
     longest_s = float(np.max(steps))
     count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
     if percent < MIN_LOSS_PERCENT and count == 0:

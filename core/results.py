@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
 
-from core.body import Joint, Side
+from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.samples import FloatArray, IntArray, RecordingKind
+from core.verdicts.model import Verdicts
 
 
 class Method(StrEnum):
@@ -41,7 +42,7 @@ class JointCalibration:
     before the sign, `offset_rad` (the goniometer's value) added after it.
     `is_same_joint` is False where both sensors do not move as neighbours; its evidence is `disagreement`, what the best
     common joint leaves of their accelerations (0 nothing, 1 all), and `is_lag_at_border`, that they would coincide best
-    at a lag that no clock has.
+    at a lag that no clock has. `is_clock_shared`: both sensors are told to share one clock, so there is no lag to find.
     """
 
     joint: Joint
@@ -73,6 +74,7 @@ class JointCalibration:
     acc_bias_distal_m_s2: FloatArray | None = None
     is_same_joint: bool = True
     is_lag_at_border: bool = False
+    is_clock_shared: bool = False
     disagreement: float | None = None
 
 
@@ -112,11 +114,6 @@ class SideGait:
         Per joint the angle over each stride, (k, 101) radians; NaN rows where it is not known.
     phase : (n,)
         Index into `core.gait.phases.PHASES` at each sample of the recording.
-    sign_in_doubt
-        Joints whose clinical sign is only the likelier one: their curves may be mirrored, so ranges and spreads hold
-        and no angle does.
-    without_zero
-        Joints whose zero is not known: their curves hold in range and shape, and no angle does.
     is_toe_off_biased
         The side's toe-offs are late, alike in every stride, so its stance and swing are neither to be judged against a
         band nor compared with another side's: a prosthetic foot rolls on where a heel would rise.
@@ -127,14 +124,22 @@ class SideGait:
     parameters: Mapping[str, FloatArray]
     cycles: Mapping[Joint, FloatArray]
     phase: IntArray
-    sign_in_doubt: frozenset[Joint] = frozenset()
-    without_zero: frozenset[Joint] = frozenset()
     is_toe_off_biased: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class RecordingAnalysis:
-    """Angles of one recording, all on the clock `time_s` (n,); gait of the sides that walked with a foot sensor."""
+    """Angles of one recording, all on the clock `time_s` (n,); gait of the sides that walked with a foot sensor.
+
+    Attributes
+    ----------
+    lost_percent
+        Samples missing, by site.
+    slipped_from_s
+        From when on a side's straps are not to be trusted, on the recording's clock; -inf throughout.
+    verdicts
+        What may be said of it; whoever changes what is above makes them anew.
+    """
 
     name: str
     folder: str
@@ -142,11 +147,17 @@ class RecordingAnalysis:
     time_s: FloatArray
     joints: Mapping[Joint, JointAngle]
     gait: Mapping[Side, SideGait] = field(default_factory=dict)
+    lost_percent: Mapping[Site, float] = field(default_factory=dict)
+    slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
+    verdicts: Verdicts = field(default_factory=Verdicts)
 
 
 @dataclass(frozen=True, slots=True)
 class Analysis:
-    """Everything one session tells. `calibrations` one per span of validity, in order of time."""
+    """Everything one session tells. `calibrations` one per span of validity, in order of time.
+
+    `stiff_sides` are those that a patient's device or condition may stiffen: the affected and the prosthetic ones.
+    """
 
     method: Method
     is_simulated: bool
@@ -154,3 +165,15 @@ class Analysis:
     recordings: tuple[RecordingAnalysis, ...]
     findings: tuple[Finding, ...] = ()
     affected_side: Side | None = None
+    stiff_sides: frozenset[Side] = frozenset()
+    prosthetic_sides: frozenset[Side] = frozenset()
+
+    def calibrated_for(self, recording: RecordingAnalysis) -> Mapping[Joint, JointCalibration]:
+        """The calibrations that `recording` was measured with."""
+        for calibration in self.calibrations:
+            if recording.name in calibration.walks:
+                return calibration.joints
+        for calibration in self.calibrations:  # a free motion is measured with what it gave
+            if any(found.free_motion_from == recording.name for found in calibration.joints.values()):
+                return calibration.joints
+        return self.calibrations[-1].joints if self.calibrations else {}

@@ -27,7 +27,7 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
     for side, gait in walk.gait.items():
         findings += _about_events(f"{walk.name}, {sites[side]}", gait)
         findings += _about_gaps(walk.name, gait)
-        findings += _about_peaks(walk.name, gait)
+        findings += _about_peaks(walk, gait)
     return [*findings, *_about_counts(walk)]
 
 
@@ -85,12 +85,12 @@ def _about_gaps(walk: str, gait: SideGait) -> Iterator[Finding]:
             yield Finding("angle_without_mean", Severity.WARNING, f"{walk}, {joint}", numbers)
 
 
-def _about_peaks(walk: str, gait: SideGait) -> Iterator[Finding]:
+def _about_peaks(walk: RecordingAnalysis, gait: SideGait) -> Iterator[Finding]:
     """Peaks that no stride has, though its angle is known: the angle only passes through the window."""
     for joint, cycles in gait.cycles.items():
         is_known = gait.strides.is_used & np.isfinite(cycles).all(axis=1)
-        if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or joint in gait.sign_in_doubt:
+        if np.count_nonzero(is_known) < MIN_STRIDES_FOR_MEAN or not walk.verdicts.joint(joint).sign.is_told:
             continue
         for window in KNEE_WINDOWS if joint.is_knee else ANKLE_WINDOWS:
             if not np.isfinite(gait.parameters[f"{window.name}_rad"][is_known]).any():
-                yield Finding("no_peak", Severity.INFO, f"{walk}, {joint}", {"peak": window.name})
+                yield Finding("no_peak", Severity.INFO, f"{walk.name}, {joint}", {"peak": window.name})

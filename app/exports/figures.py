@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from app.reports.csv_report import DECIMALS
-from app.reports.gait_csv import PARAMETERS
 from app.reports.summary import summarise
 from core.body import Side
 from core.results import Analysis
 from core.samples import FloatArray
+from core.verdicts.quantities import PARAMETERS
 
 RESEARCH = "Research use. Not a medical device."
 SIMULATED = "SIMULATED: nobody was measured."

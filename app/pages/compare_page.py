@@ -379,9 +379,9 @@ class ComparePage(QWidget):
                 (
                     DifferenceRow(
                         None,
-                        change_in_words(row.difference.difference_deg, row.measure) if row.is_told else tr("no value"),
-                        (Dot(one, row.difference.difference_deg, row.exceeds),) if row.is_told else (),
-                        row.difference.error_deg,
+                        change_in_words(row.difference.difference, row.measure) if row.is_told else tr("no value"),
+                        (Dot(one, row.difference.difference, row.exceeds),) if row.is_told else (),
+                        row.difference.error,
                     ),
                 ),
             )

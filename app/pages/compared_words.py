@@ -11,7 +11,7 @@ from app.widgets.difference_table import Cell, DifferenceTableRow
 from app.wording import capitalised, side_name, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.norms import Verdict
+from core.verdicts.measurement_error import Judgement
 
 MINUS = "\N{MINUS SIGN}"
 DASH = "\N{EN DASH}"
@@ -33,13 +33,13 @@ def change_in_words(value: float, measure: Measure) -> str:
 def plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
     """One measure of one leg, a dot for each part."""
     told = [row for row in rows if row.is_told]
-    dots = tuple(Dot(row.part.letter, row.difference.difference_deg, row.exceeds) for row in told)
+    dots = tuple(Dot(row.part.letter, row.difference.difference, row.exceeds) for row in told)
     if not told:
         is_height = any(row.reservation is Reservation.OTHER_ZERO for row in rows)
         return DifferenceRow(side, tr("no zero") if is_height else tr("no value"), (), math.nan)
     last = told[-1]
-    words = f"{last.part.letter} {change_in_words(last.difference.difference_deg, last.measure)}"
-    return DifferenceRow(side, words, dots, last.difference.error_deg)
+    words = f"{last.part.letter} {change_in_words(last.difference.difference, last.measure)}"
+    return DifferenceRow(side, words, dots, last.difference.error)
 
 
 def table_rows(found: Comparison) -> list[DifferenceTableRow]:
@@ -75,19 +75,19 @@ def _value(value: MeanAndSd) -> Cell:
 def _changed(row: Compared | SideRow) -> Cell:
     if not row.is_told:
         return Cell(DASH, is_grey=True)
-    words = change_in_words(row.difference.difference_deg, row.measure)
-    return Cell(words, _doubt(row.difference.verdict), row.exceeds)
+    words = change_in_words(row.difference.difference, row.measure)
+    return Cell(words, _doubt(row.difference.judgement), row.exceeds)
 
 
-def _doubt(verdict: Verdict) -> str:
-    if verdict is Verdict.TOO_FEW_STRIDES:
+def _doubt(verdict: Judgement) -> str:
+    if verdict is Judgement.TOO_FEW_STRIDES:
         return tr("few strides")
-    return tr("not judged") if verdict is Verdict.NO_PUBLISHED_FIGURE else ""
+    return tr("not judged") if verdict is Judgement.NO_PUBLISHED_FIGURE else ""
 
 
 def weight(row: Compared) -> tuple[int, float]:
     """What is said first: of the latest part what lies furthest beyond the error."""
-    return -ord(row.part.letter), -abs(row.difference.difference_deg) / row.difference.error_deg
+    return -ord(row.part.letter), -abs(row.difference.difference) / row.difference.error
 
 
 def sentence(row: Compared) -> str:
@@ -97,10 +97,10 @@ def sentence(row: Compared) -> str:
     return pattern.format(
         side=capitalised(side_name(row.side)),
         measure=measure[0].lower() + measure[1:],
-        change=change_in_words(row.difference.difference_deg, row.measure),
+        change=change_in_words(row.difference.difference, row.measure),
         first=row.against.letter,
         last=row.part.letter,
-        error=_error(row.difference.error_deg, row.measure),
+        error=_error(row.difference.error, row.measure),
     )
 
 
@@ -109,10 +109,10 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
     pattern = tr("{measure} {change}, {first} against {second}: beyond measurement error ({error}).")
     return pattern.format(
         measure=tr(row.measure.name),
-        change=change_in_words(row.difference.difference_deg, row.measure),
+        change=change_in_words(row.difference.difference, row.measure),
         first=LETTERS[first],
         second=LETTERS[second],
-        error=_error(row.difference.error_deg, row.measure),
+        error=_error(row.difference.error, row.measure),
     )
 
 

@@ -9,7 +9,6 @@ from app.plots.cycle_chart import CycleCharts
 from app.reports.reference_bands import reference_curves, time_distance_classes
 from app.reports.walk_figures import (
     Figure,
-    both_sides,
     by_hand_in_words,
     doubt_of,
     few_strides_in_words,
@@ -25,9 +24,10 @@ from app.widgets.figures_table import FiguresTable
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import later, tr
-from core.body import Joint, Side
+from core.body import Side
 from core.norms import ReferenceCurves, ReferenceValues
-from core.results import JointCalibration, RecordingAnalysis
+from core.results import RecordingAnalysis
+from core.verdicts.quantities import both_sides
 
 # whose bands the program brings along, as the core names them
 GROUPS = (
@@ -79,17 +79,15 @@ class CyclePage(QWidget):
         self.note.setVisible(is_shown and self._is_tight)
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
-    def show_walk(
-        self, recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], is_simulated: bool
-    ) -> None:
+    def show_walk(self, recording: RecordingAnalysis, is_simulated: bool) -> None:
         """Show the strides of `recording`, each side on its own stride; nothing where it has none."""
         joints = [joint for gait in recording.gait.values() for joint in gait.cycles]
-        doubts = {joint: why for joint in joints if (why := doubt_of(recording, joint, calibrated))}
-        cycles = {joint: side_cycle(recording.gait[joint.side], joint) for joint in joints}
+        doubts = {joint: why for joint in joints if (why := doubt_of(recording, joint))}
+        cycles = {joint: side_cycle(recording, joint) for joint in joints}
         self.charts.show_cycles(cycles, doubts, is_simulated)
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
         rows: list[str | Figure] = []
-        for kind, figures in peak_figures(recording, calibrated, self._reference).items():
+        for kind, figures in peak_figures(recording, self._reference).items():
             rows += [tr(KIND_WORDS[kind]), *figures]
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
         self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))

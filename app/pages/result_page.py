@@ -13,7 +13,7 @@ from app.pages.cycle_page import CyclePage
 from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
-from app.reports.comparison import calibrated_for, conditions_of
+from app.reports.comparison import conditions_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -388,9 +388,9 @@ class ResultPage(QWidget):
             return
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
-        calibrated, is_simulated = calibrated_for(self._analysis, recording), self._analysis.is_simulated
+        calibrated, is_simulated = self._analysis.calibrated_for(recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
-        self.cycles.show_walk(recording, calibrated, is_simulated)
+        self.cycles.show_walk(recording, is_simulated)
         self.strides.show_walk(recording, self._can_choose)
         self.facts.show_joints(calibrated)
         self._on_method_chosen()

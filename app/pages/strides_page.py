@@ -6,7 +6,6 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
-from app.reports.gait_csv import parameter
 from app.reports.walk_figures import by_hand_in_words
 from app.theme import Look
 from app.widgets.button import Button, Kind
@@ -19,6 +18,7 @@ from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.strides import Reason
 from core.results import RecordingAnalysis
 from core.samples import FloatArray
+from core.verdicts.quantities import values_of
 
 
 class StridesPage(Card):
@@ -121,7 +121,7 @@ def stride_lines(recording: RecordingAnalysis) -> tuple[StrideLine, ...]:
         if side not in recording.gait:
             continue
         gait = recording.gait[side]
-        knee, ankle = parameter(gait, "knee_range_deg"), parameter(gait, "ankle_range_deg")
+        knee, ankle = (values_of(recording, side, name) for name in ("knee_range_deg", "ankle_range_deg"))
         curves = {KNEE_SHAPE: gait.cycles.get(knee_of(side)), ANKLE_SHAPE: gait.cycles.get(ankle_of(side))}
         for k, reason in enumerate(gait.strides.reason):
             known = {shape: np.rad2deg(found[k]) for shape, found in curves.items() if found is not None}

@@ -24,7 +24,15 @@ from app.plots.axes import (
     sign_in_words,
     title_in_words,
 )
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_ZERO, SideCycle, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import (
+    MAY_BE_MIRRORED,
+    NO_HEIGHT,
+    NO_ZERO,
+    WITHHELD,
+    SideCycle,
+    is_mean_enough,
+    is_spread_enough,
+)
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
@@ -47,6 +55,8 @@ MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 1.0, 1.5
 STRIDE_ALPHA = 0.7
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
+    NO_HEIGHT: later("{sides}: the height cannot be read. Range and shape hold."),
+    WITHHELD: later("{sides}: withheld. The curve is shown as evidence, not to be read."),
     MAY_BE_MIRRORED: later("{sides}: sign unsure. The curve may be upside down."),
 }
 SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long

@@ -5,7 +5,7 @@ Screen, report and files take their figures from here, so that no number is draw
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
 from itertools import accumulate
@@ -13,26 +13,37 @@ from statistics import fmean
 
 import numpy as np
 
-from app.reports.gait_csv import WINDOWS, parameter, used_cycles
-from app.reports.walk_figures import both_sides, by_hand_in_words
+from app.reports.walk_figures import by_hand_in_words
 from app.wording import later
-from core.body import Joint, Side, ankle_of, knee_of
+from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.symmetry import symmetry_index_percent
-from core.norms import (
-    MIN_STRIDES_FOR_MEAN,
-    MIN_STRIDES_FOR_SD,
-    Difference,
-    Verdict,
-    compare_new_attachment,
-    compare_same_attachment,
-)
+from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
-from core.samples import Recording, RecordingKind
+from core.samples import FloatArray, Recording, RecordingKind
+from core.verdicts.measurement_error import (
+    ANGLE_PER_LAG_DEG_S,
+    ComparisonKind,
+    Difference,
+    Judgement,
+    MeanOfStrides,
+    compare,
+    mean_of_strides,
+)
+from core.verdicts.model import Assessment, Verdicts, pooled, together
+from core.verdicts.quantities import (
+    QUANTITIES,
+    WINDOWS,
+    QuantityClass,
+    assessment_of,
+    both_sides,
+    joint_of,
+    raw_values,
+    used_cycles,
+)
 
-STANCE_SAME_ATTACHMENT_PERCENT = 1.0  # a placeholder until repeat trials exist; no published figure is known
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -53,12 +64,12 @@ class Measure:
 
     def joint(self, side: Side) -> Joint | None:
         """Whose figure it is; None where it is no joint's."""
-        return {"knee": knee_of, "ankle": ankle_of}[self.kind](side) if self.kind else None
+        return joint_of(self.column, side)
 
     @property
     def needs_height(self) -> bool:
         """Whether it says something only with a zero of the same kind."""
-        return bool(self.kind) and not self.column.endswith("_range_deg")
+        return QUANTITIES[self.column] is QuantityClass.HEIGHT
 
 
 MEASURES = (
@@ -86,6 +97,7 @@ class Reservation(StrEnum):
     NONE = ""
     NOT_MEASURED = "not_measured"
     OTHER_ZERO = "other_zero"
+    WITHHELD = "withheld"
 
 
 @dataclass(frozen=True)
@@ -111,34 +123,56 @@ class Part:
         has = {joint for walk in self.walks for gait in walk.gait.values() for joint in gait.cycles}
         return tuple(joint for joint in Joint if joint in has)
 
-    def value(self, side: Side, column: str) -> MeanAndSd:
-        """Over the strides used of all walks; degrees or percent."""
+    @cached_property
+    def verdicts(self) -> Verdicts:
+        """Of every quantity the worst that one of its walks has."""
+        return pooled(walk.verdicts for walk in self.walks)
+
+    def assessment(self, side: Side, column: str) -> Assessment:
+        return assessment_of(self.verdicts, side, column)
+
+    def values(self, side: Side, column: str) -> FloatArray:
+        """Of the strides used of all walks (k,), degrees, percent, metres or seconds; none where withheld."""
         found = [
-            parameter(walk.gait[side], column)[walk.gait[side].strides.is_used]
+            raw_values(walk.gait[side], column)[walk.gait[side].strides.is_used]
             for walk in self.walks
             if side in walk.gait
         ]
-        return mean_and_sd(np.concatenate(found) if found else np.empty(0))
+        return np.concatenate(found) if found and self.assessment(side, column).is_told else np.empty(0)
+
+    def value(self, side: Side, column: str) -> MeanAndSd:
+        """Over the strides used of all walks."""
+        return mean_and_sd(self.values(side, column))
+
+    def mean(self, side: Side, column: str, kind: ComparisonKind) -> MeanOfStrides:
+        """The same with its uncertainty in a comparison of a kind; walks of one strapping share their lags."""
+        joint = joint_of(column, side)
+        lag_sd_s = (self.calibrated[joint].lag_sd_s or 0.0) if joint and joint in self.calibrated else 0.0
+        is_shared = kind in (ComparisonKind.HALVES, ComparisonKind.ATTACHED)
+        return mean_of_strides(self.values(side, column), 0.0 if is_shared else ANGLE_PER_LAG_DEG_S * lag_sd_s)
 
     def cycle(self, joint: Joint) -> MeanCycle:
-        """Mean over the strides used of all walks, degrees; NaN throughout where the sign of one is in doubt."""
-        gaits = [walk.gait[joint.side] for walk in self.walks if joint.side in walk.gait]
-        known = [used_cycles(gait, joint) for gait in gaits if joint in gait.cycles]
-        if not known or any(joint in gait.sign_in_doubt for gait in gaits):
+        """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is withheld."""
+        found = self.verdicts.joint(joint)
+        if not together((found.shape, found.sign)).is_told:
             return mean_cycle(np.empty((0, POINTS)))
-        return mean_cycle(np.rad2deg(np.concatenate(known)))
+        walks = [walk for walk in self.walks if joint.side in walk.gait]
+        return mean_cycle(np.rad2deg(np.concatenate([used_cycles(walk, joint) for walk in walks])))
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
         joint = Measure.of(column).joint(side)
-        if joint is None or column not in WINDOWS or self.zero(joint) is ZeroKind.NONE:
+        if joint is None or column not in WINDOWS or not self.assessment(side, column).is_told:
             return False
         return self.cycle(joint).n >= MIN_STRIDES_FOR_MEAN and not math.isfinite(self.value(side, column).mean)
 
     def of_both(self, name: str) -> float:
-        """Cadence, double support or speed (the names of `BothFeet`), the mean of the walks in which it is known."""
+        """Cadence, double support or speed (the names of `BothFeet`), the mean of the walks in which it is told."""
         known = [value for walk in self.walks if math.isfinite(value := getattr(both_sides(walk), name))]
         return fmean(known) if known else math.nan
+
+    def is_toe_off_biased(self, side: Side) -> bool:
+        return any(walk.gait[side].is_toe_off_biased for walk in self.walks if side in walk.gait)
 
     def stance_percent(self, side: Side) -> float:
         return self.value(side, "stance_percent").mean
@@ -176,11 +210,11 @@ class Compared:
 
     @property
     def is_told(self) -> bool:
-        return self.reservation is Reservation.NONE and math.isfinite(self.difference.difference_deg)
+        return self.reservation is Reservation.NONE and self.difference.is_told
 
     @property
     def exceeds(self) -> bool:
-        return self.is_told and self.difference.verdict is Verdict.EXCEEDS_ERROR
+        return self.is_told and self.difference.exceeds
 
 
 @dataclass(frozen=True)
@@ -233,24 +267,38 @@ class Comparison:
         kinds = {part.zero(joint) for part in self.parts if joint in part.joints}
         return len(kinds) == 1 and ZeroKind.NONE not in kinds
 
+    def error_kind(self, part: Part) -> ComparisonKind:
+        """What lies between a part and the one it is told against."""
+        if self.kind is Kind.VISITS:
+            return ComparisonKind.VISITS
+        return ComparisonKind.ATTACHED if self.is_same_attachment(part) else ComparisonKind.STRAPPINGS
+
     def compare(self, measure: Measure, side: Side, part: Part) -> Compared:
-        value, other = part.value(side, measure.column), self.against.value(side, measure.column)
+        kind, column, pair = self.error_kind(part), measure.column, (part, self.against)
+        means = [one.mean(side, column, kind) for one in pair]
+        assessments = tuple(one.assessment(side, column) for one in pair)
         return Compared(
             measure,
             side,
             part,
             self.against,
-            value,
-            other,
-            _difference(measure, side, value, other, is_same=self.is_same_attachment(part)),
-            self._reservation(measure, side, value, other),
+            part.value(side, column),
+            self.against.value(side, column),
+            compare(column, kind, means[0], means[1], assessments),
+            self._reservation(measure, side, part, assessments),
         )
 
-    def _reservation(self, measure: Measure, side: Side, value: MeanAndSd, other: MeanAndSd) -> Reservation:
-        joint = measure.joint(side)
+    def _reservation(
+        self, measure: Measure, side: Side, part: Part, assessments: tuple[Assessment, ...]
+    ) -> Reservation:
+        joint, pair = measure.joint(side), (part, self.against)
+        if not all(side in one.sides and (joint is None or joint in one.joints) for one in pair):
+            return Reservation.NOT_MEASURED
         if joint is not None and measure.needs_height and not self.has_one_zero(joint):
             return Reservation.OTHER_ZERO
-        return Reservation.NOT_MEASURED if not (value.n and other.n) else Reservation.NONE
+        if not all(found.is_told for found in assessments):
+            return Reservation.WITHHELD
+        return Reservation.NONE if all(one.value(side, measure.column).n for one in pair) else Reservation.NOT_MEASURED
 
 
 @dataclass(frozen=True, slots=True)
@@ -265,11 +313,11 @@ class SideRow:
 
     @property
     def is_told(self) -> bool:
-        return math.isfinite(self.difference.difference_deg)
+        return self.difference.is_told
 
     @property
     def exceeds(self) -> bool:
-        return self.is_told and self.difference.verdict is Verdict.EXCEEDS_ERROR
+        return self.is_told and self.difference.exceeds
 
 
 def first_and_second(affected: Side | None) -> tuple[Side, Side]:
@@ -285,22 +333,20 @@ def compare_sides(part: Part, sides: tuple[Side, Side]) -> tuple[SideRow, ...]:
         one, other = part.value(first, measure.column), part.value(second, measure.column)
         if not (one.n and other.n):
             continue
-        difference = _difference(measure, first, one, other, is_same=False)
         has_index = not measure.needs_height and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
         symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
-        rows.append(SideRow(measure, one, other, difference, symmetry))
+        rows.append(SideRow(measure, one, other, compare_legs(part, measure.column, sides), symmetry))
     return tuple(rows)
 
 
-def calibrated_for(analysis: Analysis, recording: RecordingAnalysis) -> Mapping[Joint, JointCalibration]:
-    """The calibrations that `recording` was measured with."""
-    for calibration in analysis.calibrations:
-        if recording.name in calibration.walks:
-            return calibration.joints
-    for calibration in analysis.calibrations:  # a free motion is measured with what it gave
-        if any(found.free_motion_from == recording.name for found in calibration.joints.values()):
-            return calibration.joints
-    return analysis.calibrations[-1].joints if analysis.calibrations else {}
+def compare_legs(part: Part, column: str, sides: tuple[Side, Side]) -> Difference:
+    """A column of the first leg less that of the second."""
+    one, other = (part.mean(side, column, ComparisonKind.LEGS) for side in sides)
+    assessments = tuple(part.assessment(side, column) for side in sides)
+    found = compare(column, ComparisonKind.LEGS, one, other, assessments)
+    if column in ("stance_percent", "swing_percent") and any(map(part.is_toe_off_biased, sides)):
+        return replace(found, error=math.nan, judgement=Judgement.NO_PUBLISHED_FIGURE, is_worth_a_sentence=False)
+    return found
 
 
 def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> tuple[Part, ...]:
@@ -326,7 +372,7 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
         condition, at = told.get(walk.name, ("", 0))
         found.setdefault((condition or walk.name, at), []).append(walk)
     return tuple(
-        Part(prefix + letter, name, tuple(walks), calibrated_for(analysis, walks[0]), at)
+        Part(prefix + letter, name, tuple(walks), analysis.calibrated_for(walks[0]), at)
         for letter, ((name, at), walks) in zip(LETTERS, found.items(), strict=False)
     )
 
@@ -334,7 +380,7 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
 def visit_of(letter: str, name: str, analysis: Analysis) -> Part | None:
     """All walks of one visit that have strides; None without any."""
     walks = tuple(_walks(analysis))
-    return Part(letter, name, walks, calibrated_for(analysis, walks[0])) if walks else None
+    return Part(letter, name, walks, analysis.calibrated_for(walks[0])) if walks else None
 
 
 def _walks(analysis: Analysis) -> list[RecordingAnalysis]:
@@ -344,23 +390,3 @@ def _walks(analysis: Analysis) -> list[RecordingAnalysis]:
         if recording.kind is RecordingKind.WALKING
         and any(gait.strides.is_used.any() for gait in recording.gait.values())
     ]
-
-
-def _difference(measure: Measure, side: Side, one: MeanAndSd, other: MeanAndSd, *, is_same: bool) -> Difference:
-    joint = measure.joint(side)
-    if joint is None:
-        is_same_stance = is_same and measure.column == "stance_percent"  # of other figures no error is known
-        return _stance_difference(one, other, is_same=is_same_stance)
-    return compare_same_attachment(one, other) if is_same else compare_new_attachment(joint, one, other)
-
-
-def _stance_difference(one: MeanAndSd, other: MeanAndSd, *, is_same: bool) -> Difference:
-    has_means = min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
-    difference = one.mean - other.mean if has_means else math.nan
-    if not has_means or (is_same and min(one.n, other.n) < MIN_STRIDES_FOR_SD):
-        return Difference(difference, math.nan, Verdict.TOO_FEW_STRIDES)
-    if not is_same:
-        return Difference(difference, math.nan, Verdict.NO_PUBLISHED_FIGURE)
-    error = max(STANCE_SAME_ATTACHMENT_PERCENT, 1.96 * math.sqrt(one.sd**2 / one.n + other.sd**2 / other.n))
-    verdict = Verdict.EXCEEDS_ERROR if abs(difference) > error else Verdict.INSIDE_ERROR
-    return Difference(difference, error, verdict)

@@ -9,24 +9,24 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_sides, conditions_of
+from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_legs, conditions_of
 from app.reports.csv_report import typed_cell, write_table
-from app.reports.gait_csv import PARAMETERS
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
-from core.gait.symmetry import curve_difference
-from core.norms import MIN_STRIDES_FOR_MEAN, Difference, Verdict
+from core.gait.symmetry import curve_difference, symmetry_index_percent
+from core.norms import MIN_STRIDES_FOR_MEAN
 from core.results import Analysis
 from core.samples import Session
+from core.verdicts.measurement_error import Difference, Judgement
+from core.verdicts.model import Verdict, together
+from core.verdicts.quantities import OF_BOTH, PARAMETERS, QUANTITIES, QuantityClass, assessment_of_both, joint_of
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"
 SIDES = "sides.csv"
-NO_COMMON_ZERO = "no_common_zero"  # heights of the curves say nothing, so only their ranges are compared
-OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 OF_PART = ("part", "name", "walks")
-JUDGED = ("difference", "error", "verdict")
+JUDGED = ("difference", "error", "error_sources", "status", "verdict")
 HEADER = (
     *OF_PART,
     *(f"against_{what}" for what in OF_PART),
@@ -36,9 +36,15 @@ HEADER = (
 )
 
 
+WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
+
+
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One figure of `part` and of the one it is told against. `side` None: of both. NaN where it is not known."""
+    """One figure of `part` and of the one it is told against. `side` None: of both. NaN where it is not known.
+
+    `status` is the worse of what may be said of the two.
+    """
 
     part: Part
     against: Part
@@ -46,9 +52,8 @@ class Row:
     parameter: str
     value: MeanAndSd
     other: MeanAndSd
-    difference: float
-    error: float
-    verdict: str
+    difference: Difference
+    status: Verdict
 
 
 def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
@@ -77,19 +82,19 @@ def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Compariso
 
 
 def rows_of(comparison: Comparison) -> Iterator[Row]:
-    """Every figure that a part and the one it is told against both have."""
+    """Every figure that a part and the one it is told against both measured; those withheld without figures."""
     against = comparison.against
     for part in comparison.others:
         for side in Side:
             for column in PARAMETERS:
                 found = comparison.compare(Measure.of(column), side, part)
-                if found.reservation is Reservation.NOT_MEASURED or not (found.value.n and found.other.n):
+                if found.reservation is Reservation.NOT_MEASURED:
                     continue
-                told: tuple[float, float, str] = (math.nan, math.nan, NO_COMMON_ZERO)
+                status = together(one.assessment(side, column) for one in (part, against)).verdict
                 if found.reservation is Reservation.NONE:
-                    judged = found.difference
-                    told = judged.difference_deg, judged.error_deg, str(judged.verdict)
-                yield Row(part, against, side, column, found.value, found.other, *told)
+                    yield Row(part, against, side, column, found.value, found.other, found.difference, status)
+                else:
+                    yield Row(part, against, side, column, found.value, found.other, WITHHELD, Verdict.WITHHELD)
             yield from _curves(comparison, part, side)
         yield from _of_both(part, against)
 
@@ -136,9 +141,16 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
     lines = []
     for part in parts:
         left_out = [str(part.left_out_by_hand(side)) for side in sides]
-        for row in compare_sides(part, sides):
-            cells = [*_named(part), row.measure.column, *_mean(row.first), *_mean(row.second)]
-            lines.append([*cells, *_judged(row.difference), _cell(row.symmetry_percent), *left_out])
+        for column in PARAMETERS:
+            one, other = (part.value(side, column) for side in sides)
+            if not all(_is_measured(part, side, column) for side in sides):
+                continue
+            status = together(part.assessment(side, column) for side in sides).verdict
+            has_index = QUANTITIES[column] is not QuantityClass.HEIGHT and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+            symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
+            cells = [*_named(part), column, *_mean(one), *_mean(other)]
+            judged = _judged(compare_legs(part, column, sides), status)
+            lines.append([*cells, *judged, _cell(symmetry), *left_out])
     if lines:
         write_table([*OF_PART, "parameter", *each, *JUDGED, "symmetry_index_percent", *by_hand], lines, path)
 
@@ -153,22 +165,29 @@ def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
         difference = curve_difference(cycles[0].mean, cycles[1].mean)
         if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
             name = f"{'knee' if joint.is_knee else 'ankle'}_curve_difference_deg"
-            verdict = str(Verdict.NO_PUBLISHED_FIGURE)
-            yield Row(part, comparison.against, side, name, nothing, nothing, difference, math.nan, verdict)
+            found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+            status = together(of.verdicts.joint(joint).shape for of in (part, comparison.against)).verdict
+            yield Row(part, comparison.against, side, name, nothing, nothing, found, status)
 
 
 def _of_both(part: Part, against: Part) -> Iterator[Row]:
     for name in OF_BOTH:
         value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
         if math.isfinite(difference := value.mean - other.mean):
-            verdict = str(Verdict.NO_PUBLISHED_FIGURE)
-            yield Row(part, against, None, name, value, other, difference, math.nan, verdict)
+            status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
+            found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+            yield Row(part, against, None, name, value, other, found, status)
+
+
+def _is_measured(part: Part, side: Side, column: str) -> bool:
+    joint = joint_of(column, side)
+    return side in part.sides and (joint is None or joint in part.joints)
 
 
 def _cells(row: Row) -> list[str]:
     parts = [*_named(row.part), *_named(row.against)]
     side = "both" if row.side is None else str(row.side)
-    judged = [_cell(row.difference), _cell(row.error), row.verdict]
+    judged = _judged(row.difference, row.status)
     by_hand = [str(part.left_out_by_hand(row.side)) for part in (row.part, row.against)]
     return [*parts, side, row.parameter, *_mean(row.value), *_mean(row.other), *judged, *by_hand]
 
@@ -181,8 +200,9 @@ def _mean(value: MeanAndSd) -> list[str]:
     return [str(value.n) if value.n else "", _cell(value.mean), _cell(value.sd)]
 
 
-def _judged(difference: Difference) -> list[str]:
-    return [_cell(difference.difference_deg), _cell(difference.error_deg), str(difference.verdict)]
+def _judged(found: Difference, status: Verdict) -> list[str]:
+    sources = " ".join(found.sources)
+    return [_cell(found.difference), _cell(found.error), sources, str(status), str(found.judgement)]
 
 
 def _cell(value: float) -> str:

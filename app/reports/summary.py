@@ -8,28 +8,30 @@ from typing import Any
 
 import numpy as np
 
-from app.reports.gait_csv import PARAMETERS, mean_of_used, parameter
+from app.gates_in_words import gate_sentence
+from app.reports.comparison import Part, compare_legs, first_and_second
 from app.reports.reference_bands import reference_curves
-from app.reports.walk_figures import both_sides
 from app.wording import sentence
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.findings import Finding
-from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
-from core.norms import compare_new_attachment
-from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
+from core.results import Analysis, JointCalibration, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
+from core.verdicts.measurement_error import ComparisonKind, mean_of_strides, whisker
+from core.verdicts.model import Assessment, JointVerdicts, LegVerdicts, Verdicts
+from core.verdicts.quantities import (
+    OF_BOTH,
+    PARAMETERS,
+    assessment_of_both,
+    both_sides,
+    mean_curve,
+    side_mean,
+    values_of,
+)
 
 FORMAT = "gaitwright-analysis/1"
-BOTH = (
-    "cadence_steps_min",
-    "double_support_percent",
-    "speed_m_s",
-    "symmetry_index_percent",
-    "curve_difference_deg",
-    "side_difference",
-)
+BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
 # positive figures only: the index means nothing for signed angles
 SYMMETRIC = (
@@ -76,7 +78,7 @@ def summarise(analysis: Analysis) -> dict[str, Any]:
         "simulated": analysis.is_simulated,
         "joints": _joints(last),
         "calibrations": calibrations,
-        "walks": {walk.name: _walk(walk, _calibrated(analysis, walk), analysis.affected_side) for walk in walks},
+        "walks": {walk.name: _walk(analysis, walk) for walk in walks},
         "reference_group": _reference_group(),
         "findings": [_finding(finding) for finding in analysis.findings],
     }
@@ -88,41 +90,34 @@ def _reference_group() -> dict[str, Any]:
     return {"group": group.group, "n": group.n, "speed_m_s": group.speed_m_s, "source": group.source}
 
 
-def _calibrated(analysis: Analysis, walk: RecordingAnalysis) -> dict[Joint, JointCalibration]:
-    """Give the calibrations that one walk was measured with."""
-    return {j: found for span in analysis.calibrations if walk.name in span.walks for j, found in span.joints.items()}
-
-
-def _walk(
-    recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], affected: Side | None
-) -> dict[str, Any]:
-    """Give each side's averages over the strides used, and what compares both sides."""
-    has_zero = {joint for joint, found in calibrated.items() if found.zero is not ZeroKind.NONE}
-    sides = {str(side): _side(side, recording.gait[side], has_zero) if side in recording.gait else {} for side in Side}
+def _walk(analysis: Analysis, recording: RecordingAnalysis) -> dict[str, Any]:
+    """Give each side's averages over the strides used, what compares both sides, and what may be said of each."""
+    sides = {str(side): _side(side, recording) if side in recording.gait else {} for side in Side}
     feet = both_sides(recording)
-    both: dict[str, Any] = {
-        **dict.fromkeys(BOTH),
-        "cadence_steps_min": _number(feet.cadence_steps_min),
-        "double_support_percent": _number(feet.double_support_percent),
-        "speed_m_s": _number(feet.speed_m_s),
-    }
+    both: dict[str, Any] = dict.fromkeys(BOTH)
+    for name in OF_BOTH:
+        both[name] = _number(getattr(feet, name))
+        both[f"{name}_status"] = str(assessment_of_both(recording.verdicts, name).verdict)
+    walk = {**sides, "both": both, "verdicts": _verdicts(recording.verdicts)}
     if len(recording.gait) < len(Side):
-        return {**sides, "both": both}
-    left, right = recording.gait[Side.LEFT], recording.gait[Side.RIGHT]
-    one, other = (right, left) if affected is Side.RIGHT else (left, right)
+        return walk
+    one, other = pair = first_and_second(analysis.affected_side)
+    part = Part("", recording.name, (recording,), analysis.calibrated_for(recording))
     both |= {
         "symmetry_index_percent": {
-            name: _number(symmetry_index_percent(_mean(one, name).mean, _mean(other, name).mean)) for name in SYMMETRIC
+            name: _number(
+                symmetry_index_percent(*(side_mean(recording, side, name).found.mean for side in (one, other)))
+            )
+            for name in SYMMETRIC
         },
-        "curve_difference_deg": {kind: _number(_difference_deg(left, right, kind, has_zero)) for kind in KINDS},
-        "side_difference": {
-            name: _side_difference(one, other, name, has_zero) for name in PARAMETERS if name.endswith("_deg")
-        },
+        "curve_difference_deg": {kind: _number(_difference_deg(recording, kind)) for kind in KINDS},
+        "side_difference": {name: _side_difference(part, name, pair) for name in PARAMETERS if name.endswith("_deg")},
     }
-    return {**sides, "both": both}
+    return walk
 
 
-def _side(side: Side, gait: SideGait, has_zero: set[Joint]) -> dict[str, Any]:
+def _side(side: Side, recording: RecordingAnalysis) -> dict[str, Any]:
+    gait = recording.gait[side]
     used = int(np.count_nonzero(gait.strides.is_used))
     figures: dict[str, Any] = {
         "strides_used": used,
@@ -130,49 +125,72 @@ def _side(side: Side, gait: SideGait, has_zero: set[Joint]) -> dict[str, Any]:
         "strides_left_out_by_hand": left_out_by_hand(gait),
     }
     for name in PARAMETERS:
-        found = _mean(gait, name)
-        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.mean), _number(found.sd)
+        found = side_mean(recording, side, name)
+        strides = mean_of_strides(values_of(recording, side, name)[gait.strides.is_used])
+        error = whisker(name, ComparisonKind.ATTACHED, strides)
+        figures[f"{name}_mean"], figures[f"{name}_sd"] = _number(found.found.mean), _number(found.found.sd)
+        figures[f"{name}_error"], figures[f"{name}_status"] = _number(error), str(found.assessment.verdict)
     joints = {kind: Joint(f"{side}_{kind}") for kind in KINDS}
-    scores = {kind: _number(_score_deg(gait, j)) if j in has_zero else None for kind, j in joints.items()}
+    scores = {kind: _number(_score_deg(recording, joint)) for kind, joint in joints.items()}
     return {**figures, "gait_variable_score_deg": scores}
 
 
-def _score_deg(gait: SideGait, joint: Joint) -> float:
+def _score_deg(recording: RecordingAnalysis, joint: Joint) -> float:
     """Give the distance from the mean curve of a group that walked at one speed, so another speed counts as well."""
+    if not recording.verdicts.joint(joint).height.is_told:
+        return math.nan
     group = reference_curves()
     group_deg = group.knee_mean_deg if joint.is_knee else group.ankle_mean_deg
-    return gait_variable_score(np.rad2deg(mean_of_used(gait, joint).mean), group_deg)
+    return gait_variable_score(np.rad2deg(mean_curve(recording, joint).mean), group_deg)
 
 
-def _mean(gait: SideGait, name: str) -> MeanAndSd:
-    return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
-
-
-def _difference_deg(left: SideGait, right: SideGait, kind: str, has_zero: set[Joint]) -> float:
+def _difference_deg(recording: RecordingAnalysis, kind: str) -> float:
     joints = [Joint(f"{side}_{kind}") for side in Side]
-    if not has_zero.issuperset(joints):  # each would be told from a zero of its own
-        return math.nan
-    means = [mean_of_used(gait, joint).mean for gait, joint in zip((left, right), joints, strict=True)]
+    if not all(recording.verdicts.joint(joint).height.is_told for joint in joints):
+        return math.nan  # each would be told from a zero of its own
+    means = [mean_curve(recording, joint).mean for joint in joints]
     return math.degrees(curve_difference(means[0], means[1]))
 
 
-def _side_difference(one: SideGait, other: SideGait, name: str, has_zero: set[Joint]) -> dict[str, Any] | None:
+def _side_difference(part: Part, name: str, sides: tuple[Side, Side]) -> dict[str, Any] | None:
     """Give by how much an angle differs between the sides, and whether that exceeds the measurement error.
 
-    None where either side has no such angle, or no zero to tell it from.
+    None where either side has no such angle, or it is withheld.
     """
-    joints = [Joint(f"{side}_{name.split('_')[0]}") for side in Side]
-    if not name.endswith("_range_deg") and not has_zero.issuperset(joints):
+    if not all(part.value(side, name).n for side in sides):
         return None
-    means = _mean(one, name), _mean(other, name)
-    if not all(mean.n for mean in means):
-        return None
-    found = compare_new_attachment(joints[0], *means)
+    found = compare_legs(part, name, sides)
     return {
-        "difference_deg": _number(found.difference_deg),
-        "error_deg": _number(found.error_deg),
-        "verdict": str(found.verdict),
+        "difference_deg": _number(found.difference),
+        "error_deg": _number(found.error),
+        "verdict": str(found.judgement),
+        "error_sources": [str(source) for source in found.sources],
     }
+
+
+def _verdicts(found: Verdicts) -> dict[str, Any]:
+    """Give every verdict of a walk with its reasons in words; a joint or leg that was not worn says so."""
+    joints = {str(joint): _parts(found.joint(joint), ("shape", "height", "sign")) for joint in Joint}
+    legs = {str(side): _parts(found.leg(side), ("timing", "distance")) for side in Side}
+    return {**joints, **legs, "between": _assessment(found.between)}
+
+
+def _parts(found: JointVerdicts | LegVerdicts, names: tuple[str, ...]) -> dict[str, Any]:
+    return {name: _assessment(getattr(found, name)) for name in names}
+
+
+def _assessment(found: Assessment) -> dict[str, Any]:
+    reasons = [
+        {
+            "gate": reason.gate,
+            "value": _number(reason.value),
+            "limit": _number(reason.limit),
+            "unit": reason.unit,
+            "text": gate_sentence(reason),
+        }
+        for reason in found.reasons
+    ]
+    return {"verdict": str(found.verdict), "reasons": reasons}
 
 
 def _joints(joints: Mapping[Joint, JointCalibration]) -> dict[str, Any]:

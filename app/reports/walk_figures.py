@@ -9,16 +9,17 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.reports.gait_csv import parameter, used_cycles
 from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
-from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
-from core.gait.strides import Reason, strides_of
+from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
+from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues, nearest_class
-from core.results import JointCalibration, RecordingAnalysis, SideGait, ZeroKind
+from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
+from core.verdicts.model import Verdict
+from core.verdicts.quantities import side_mean, used_cycles
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +59,8 @@ PEAKS = (  # name of the column in strides.csv, name for the reader, window of t
     ("swing_dorsiflexion_deg", later("Swing dorsiflexion"), "ankle_swing_dorsiflexion"),
 )
 KNEE_ROWS, ANKLE_ROWS = PEAKS[:6], (PEAKS[0], *PEAKS[6:], PEAKS[5])
-NO_ZERO, MAY_BE_MIRRORED = later("no zero"), later("sign unsure")
-HOLD_FOR = {NO_ZERO: ("swing_peak_percent", "range_deg"), MAY_BE_MIRRORED: ("range_deg",)}  # what holds all the same
+WITHHELD, MAY_BE_MIRRORED = later("withheld"), later("sign unsure")
+NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
 
 
 def strides_used(gait: SideGait) -> int:
@@ -115,37 +116,28 @@ def few_strides_in_words(recording: RecordingAnalysis) -> str:
     return " ".join(said)
 
 
-def side_cycle(gait: SideGait, joint: Joint) -> SideCycle:
+def side_cycle(recording: RecordingAnalysis, joint: Joint) -> SideCycle:
     """The joint's strides that are used and known over all of the stride."""
-    strides_deg = np.rad2deg(used_cycles(gait, joint))
+    strides = recording.gait[joint.side].strides
+    strides_deg = np.rad2deg(used_cycles(recording, joint))
     strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
-    toe_off = mean_and_sd(gait.strides.stance_percent[gait.strides.is_used])
+    toe_off = mean_and_sd(strides.stance_percent[strides.is_used])
     return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off.mean)
 
 
-def both_sides(recording: RecordingAnalysis) -> BothFeet:
-    """Cadence, double support and speed, also where only one side was measured."""
-    nothing = strides_of(())
-    left, right = (recording.gait[side].strides if side in recording.gait else nothing for side in Side)
-    return both_feet(left, right)
-
-
-def peak_figures(
-    recording: RecordingAnalysis,
-    calibrated: Mapping[Joint, JointCalibration],
-    reference: ReferenceCurves,
-) -> dict[str, tuple[Figure, ...]]:
+def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves) -> dict[str, tuple[Figure, ...]]:
     """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve."""
     found = {}
     for kind, joint_of, rows in (("knee", knee_of, KNEE_ROWS), ("ankle", ankle_of, ANKLE_ROWS)):
         joints = {side: joint_of(side) for side, gait in recording.gait.items() if joint_of(side) in gait.cycles}
         if not joints:
             continue
-        doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint, calibrated))}
+        doubts = {side: why for side, joint in joints.items() if (why := doubt_of(recording, joint))}
         figures = []
         for column, name, window in rows:
-            unknown = {side: why for side, why in doubts.items() if column not in HOLD_FOR[why]}
-            sides = {side: _mean(recording.gait[side], f"{kind}_{column}") for side in joints if side not in unknown}
+            means = {side: side_mean(recording, side, f"{kind}_{column}") for side in joints}
+            unknown = {side: doubts[side] for side, mean in means.items() if not mean.assessment.is_told}
+            sides = {side: mean.found for side, mean in means.items() if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
             band = band_of_peak(reference, kind, column, window)
             figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown))
@@ -161,12 +153,15 @@ def time_distance_figures(
     Parameters
     ----------
     feet
-        As `both_sides` gives it.
+        As `core.verdicts.quantities.both_sides` gives it.
     """
     group = nearest_class(classes, feet.speed_m_s) if np.isfinite(feet.speed_m_s) else None
 
-    def each(name: str) -> dict[Side, MeanAndSd]:
-        return {side: _mean(gait, name) for side, gait in recording.gait.items()}
+    def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
+        means = {side: side_mean(recording, side, name) for side in recording.gait}
+        told = {side: mean.found for side, mean in means.items() if mean.assessment.is_told}
+        withheld = [side for side, mean in means.items() if mean.assessment.verdict is Verdict.WITHHELD]
+        return Figure(label, unit, decimals, told, band=band, unknown=dict.fromkeys(withheld, WITHHELD))
 
     def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
         if group is None:
@@ -178,23 +173,24 @@ def time_distance_figures(
         # the class is chosen by speed, so its speed would be no comparison
         Figure(tr("Walking speed"), "m/s", 2, {}, both=feet.speed_m_s),
         Figure(tr("Cadence"), tr("steps/min"), 0, {}, both=feet.cadence_steps_min, band=band("cadence")),
-        Figure(tr("Stride time"), "s", 2, each("stride_time_s")),
+        row(tr("Stride time"), "stride_time_s", "s", 2),
         # a subject's stride is the two steps of which the group's step length is the mean
-        Figure(tr("Stride length"), "m", 2, each("stride_length_m"), band=band("step_length", 2.0)),
-        Figure(tr("Stance"), "%", 1, each("stance_percent"), band=band("stance")),
+        row(tr("Stride length"), "stride_length_m", "m", 2, band("step_length", 2.0)),
+        row(tr("Stance"), "stance_percent", "%", 1, band("stance")),
         Figure(tr("Double support"), "%", 1, {}, both=feet.double_support_percent, band=band("double_support_total")),
     ), group
 
 
-def doubt_of(recording: RecordingAnalysis, joint: Joint, calibrated: Mapping[Joint, JointCalibration]) -> str | None:
-    """Why the height of a joint's curve says nothing; None where it does."""
-    if joint in recording.gait[joint.side].sign_in_doubt:
+def doubt_of(recording: RecordingAnalysis, joint: Joint) -> str | None:
+    """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
+    found = recording.verdicts.joint(joint)
+    if not found.shape.is_told:
+        return WITHHELD
+    if not found.sign.is_told:
         return MAY_BE_MIRRORED
-    return NO_ZERO if joint not in calibrated or calibrated[joint].zero is ZeroKind.NONE else None
-
-
-def _mean(gait: SideGait, name: str) -> MeanAndSd:
-    return mean_and_sd(parameter(gait, name)[gait.strides.is_used])
+    if found.height.is_told:
+        return None
+    return NO_ZERO if any(reason.gate == "zero" for reason in found.height.reasons) else NO_HEIGHT
 
 
 def band_of_peak(

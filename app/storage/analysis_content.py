@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from core.body import Joint, Side
+from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
@@ -29,8 +29,9 @@ from core.results import (
     ZeroKind,
 )
 from core.samples import RecordingKind
+from core.verdicts.model import Assessment, GateReason, JointVerdicts, LegVerdicts, Verdict, Verdicts
 
-FORMAT = "gaitwright-kept-analysis/1"
+FORMAT = "gaitwright-kept-analysis/2"
 DIGEST, LENGTH = 32, 8
 KINDS = "biuf"  # of arrays: truth and figures
 VALUES: Mapping[str, type] = {
@@ -38,10 +39,12 @@ VALUES: Mapping[str, type] = {
     for kind in (
         *(Analysis, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
         *(RecordingAnalysis, SideGait, Strides),
+        *(Assessment, GateReason, JointVerdicts, LegVerdicts, Verdicts),
     )
 }
 WORDS: Mapping[str, type[StrEnum]] = {
-    kind.__name__: kind for kind in (AxisSource, Joint, Method, Reason, RecordingKind, Severity, Side, ZeroKind)
+    kind.__name__: kind
+    for kind in (AxisSource, Joint, Method, Reason, RecordingKind, Severity, Side, Site, Verdict, ZeroKind)
 }
 
 

@@ -10,7 +10,6 @@ from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
-from app.reports.comparison import calibrated_for
 from app.reports.how_found import write_how_found
 from app.wording import tr
 from app.workers.background import Background, Report, Work
@@ -61,7 +60,7 @@ class HowFoundDesk(QObject):
     def show(self, session: "Session", analysis: Analysis, recording: RecordingAnalysis) -> None:
         """Answer for a recording of a session: for the joint that was looked at last, else the first it holds."""
         self._session, self._analysis, self._recording = session, analysis, recording
-        calibrated = calibrated_for(analysis, recording)
+        calibrated = analysis.calibrated_for(recording)
         self._calibrated = {joint: calibrated[joint] for joint in recording.joints if joint in calibrated}
         if self._joint not in self._calibrated:
             self._joint = next(iter(self._calibrated), self._joint)

@@ -54,14 +54,17 @@ def mean_and_sd(values: FloatArray) -> MeanAndSd:
 
 
 def both_feet(left: Strides, right: Strides) -> BothFeet:
-    """Over the strides used of both feet; of one foot where the other has none."""
+    """Over the strides used of both feet; of one foot where the other has none.
+
+    Double support is both feet's stance less a whole stride, which needs no common clock of the feet.
+    """
     used = [(strides, strides.is_used) for strides in (left, right)]
     times = [float(np.mean(s.time_s[is_used])) for s, is_used in used if is_used.any()]
     speeds = np.array([mean_and_sd(s.speed_m_s[is_used]).mean for s, is_used in used])  # a shank tells none
-    double = np.concatenate([_double_support_percent(a, b)[a.is_used] for a, b in ((left, right), (right, left))])
+    stances = [mean_and_sd(s.stance_percent[is_used]).mean for s, is_used in used]
     return BothFeet(
         cadence_steps_min=120.0 / float(np.mean(times)) if times else float("nan"),
-        double_support_percent=mean_and_sd(double).mean,
+        double_support_percent=sum(stances) - 100.0,
         speed_m_s=mean_and_sd(speeds).mean,
     )
 
@@ -73,14 +76,3 @@ def _step_times(strides: Strides, other: Strides | None) -> FloatArray:
     last = np.searchsorted(contacts, strides.end_s) - 1
     contact = np.where(last >= 0, contacts[np.maximum(last, 0)], np.nan)
     return np.where(contact > strides.start_s, strides.end_s - contact, np.nan)
-
-
-def _double_support_percent(strides: Strides, other: Strides) -> FloatArray:
-    """Share (k,) of each stride during which both feet stand: this foot's stance less the other's swing within it."""
-    share = np.full(len(strides), np.nan)
-    for k, (start, off) in enumerate(zip(strides.start_s, strides.toe_off_s, strict=True)):
-        inside = (other.toe_off_s > start) & (other.end_s < off)
-        if np.count_nonzero(inside) == 1:
-            swing = float((other.end_s - other.toe_off_s)[inside][0])
-            share[k] = 100.0 * (off - start - swing) / strides.time_s[k]
-    return share

@@ -8,11 +8,12 @@ import numpy as np
 
 from app.reports.comparison import (
     MEASURES,
-    STANCE_SAME_ATTACHMENT_PERCENT,
+    Compared,
     Comparison,
     Kind,
     Measure,
     Part,
+    Reservation,
     conditions_of,
     left_out_of_parts,
 )
@@ -22,14 +23,22 @@ from app.reports.patient_report.cycle_chart import Chart, Line, draw
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.drawing import DASHES, MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
-from app.reports.patient_report.numbers_in_words import NOTHING, fixed, in_words, signed, spread
+from app.reports.patient_report.numbers_in_words import (
+    NOTHING,
+    dagger_note,
+    fixed,
+    judged_in_words,
+    signed,
+    signed_error,
+    spread,
+)
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import capitalised, joined, tr
 from core.body import Side
-from core.norms import Verdict
 from core.samples import FloatArray
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
 
 PLOT_WIDTH = 67 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
@@ -182,9 +191,9 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
     for part in comparison.others:
         compared = comparison.compare(measure, side, part)
         found, is_told = compared.difference, compared.is_told
-        words = Cell(in_words(found.verdict), is_bold=found.verdict is Verdict.EXCEEDS_ERROR) if is_told else NOTHING
-        error = [fixed(found.error_deg, 1) if is_told else NOTHING] if comparison.kind is Kind.VISITS else []
-        cells += [signed(found.difference_deg, 1) if is_told else NOTHING, *error, words]
+        words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
+        error = [fixed(found.error, 1) if is_told else NOTHING] if comparison.kind is Kind.VISITS else []
+        cells += [signed(found.difference, 1) if is_told else NOTHING, *error, words]
     return cells
 
 
@@ -217,15 +226,33 @@ def _what_else_changed(comparison: Comparison) -> str:
     return " ".join(said)
 
 
+def _why_not(compared: Compared) -> Cell | str:
+    return tr("withheld") if compared.reservation in (Reservation.WITHHELD, Reservation.OTHER_ZERO) else NOTHING
+
+
 def _how_judged(comparison: Comparison) -> str:
-    if comparison.is_one_attachment:
-        said = tr(
-            "Measurement error here: 1.96 × standard error of the difference, plus 1°; for stance the larger of "
-            "that standard error's part and {stance} %, a placeholder until repeat trials exist."
-        ).format(stance=fixed(STANCE_SAME_ATTACHMENT_PERCENT, 1))
-    else:
-        said = tr(
-            "Measurement error with sensors put on anew: 9.2° for the knee; not known, so not judged, for the rest."
+    """What the error contains, with what was added for what lies between the walks."""
+    kinds = {comparison.error_kind(part) for part in comparison.others}
+    kind = max(kinds, key=list(ComparisonKind).index)
+    sigmas = [sigma_of(name, kind) for name in ("knee_range_deg", "stance_percent")]
+    knee, stance = (signed_error(sigma) for sigma in sigmas)
+    said = (
+        tr(
+            "Measurement error: 1.96 times the standard deviation of the difference. It holds chance between strides, "
+            "the drift within each walk, and what walks of one strapping differ by: {knee}° of knee range and {stance} "
+            "points of stance for a difference."
         )
+        if kind is ComparisonKind.ATTACHED
+        else tr(
+            "Measurement error: 1.96 times the standard deviation of the difference. It holds chance between strides, "
+            "the drift within each walk, and what putting sensors on anew differs by: {knee}° of knee range and "
+            "{stance} points of stance for a difference."
+        )
+    )
     lines = tr("Vertical lines: toe\u2011off of each. {letters} sit on the lines; the first is thin and pale.")
-    return f"{said} {lines.format(letters=joined([part.letter for part in comparison.parts]))}"
+    parts = [
+        said.format(knee=knee, stance=stance),
+        dagger_note(),
+        lines.format(letters=joined([p.letter for p in comparison.parts])),
+    ]
+    return " ".join(parts)

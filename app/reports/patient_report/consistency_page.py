@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.reports.gait_csv import parameter
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
@@ -16,6 +15,7 @@ from app.reports.patient_report.small_charts import StrideValues, stride_strip
 from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
+from core.verdicts.quantities import values_of
 
 PLOT_WIDTH = 70 * MM
 
@@ -73,7 +73,7 @@ def _strip(facts: Facts) -> Picture:
     for side, gait in facts.gait.items():
         found = facts.value(side, column)
         mean = found.mean if is_mean_enough(found.n) else math.nan
-        values = parameter(gait, column)
+        values = values_of(facts.walk, side, column)
         sides[side] = StrideValues(values.tolist(), gait.strides.is_used.tolist(), mean)
         used = values[gait.strides.is_used]
         if np.isfinite(used).any():

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from app.reports.comparison import Part, first_and_second
-from app.reports.gait_csv import WINDOWS, mean_of_used, peak_percent
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import Visit
 from app.reports.reference_bands import reference_curves, time_distance_classes
@@ -17,7 +16,6 @@ from app.reports.summary import summarise
 from app.reports.walk_figures import (
     Figure,
     band_of_peak,
-    both_sides,
     doubt_of,
     is_mean_enough,
     side_cycle,
@@ -29,8 +27,9 @@ from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.norms import MAX_SPEED_DIFFERENCE_M_S, ReferenceCurves, ReferenceValues
-from core.results import JointCalibration, RecordingAnalysis, SideGait, ZeroKind
+from core.results import JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray
+from core.verdicts.quantities import WINDOWS, both_sides, mean_curve, peak_percent
 
 KINDS = ("knee", "ankle")
 ADULT_FROM_YEARS = 18  # every band there is was measured on adults
@@ -136,15 +135,13 @@ class Facts:
 
     def doubt(self, joint: Joint) -> str | None:
         """Why no angle of this joint may be told; None where it may."""
-        return doubt_of(self.walk, joint, self.calibrated) if self.is_measured(joint) else None
+        return doubt_of(self.walk, joint) if self.is_measured(joint) else None
 
     def has_no_zero(self, kind: str) -> bool:
         """Whether a height of either leg's joint says nothing: both curves are then drawn about their own mean."""
         joints = [joint_of(kind, side) for side in Side]
-        known = [
-            self.calibrated[joint].zero for joint in joints if self.is_measured(joint) and joint in self.calibrated
-        ]
-        return ZeroKind.NONE in known
+        told = [self.walk.verdicts.joint(joint) for joint in joints if self.is_measured(joint)]
+        return any(found.shape.is_told and not found.height.is_told for found in told)
 
     def value(self, side: Side, column: str) -> MeanAndSd:
         """Mean and SD of one column of strides.csv over the strides used."""
@@ -158,14 +155,14 @@ class Facts:
         """When in the stride a peak comes, as each stride of peaks.csv has it."""
         if column not in WINDOWS or side not in self.gait:
             return MeanAndSd(math.nan, math.nan, 0)
-        return mean_and_sd(peak_percent(self.gait[side], column)[self.gait[side].strides.is_used])
+        return mean_and_sd(peak_percent(self.walk, side, column)[self.gait[side].strides.is_used])
 
     def mean_curve_deg(self, side: Side, kind: str) -> FloatArray:
         """The mean over the strides used (101,), about its own mean where there is no zero; NaN from too few."""
         joint = joint_of(kind, side)
         if not self.is_measured(joint):
             return np.full(POINTS, np.nan)
-        found = mean_of_used(self.gait[side], joint)
+        found = mean_curve(self.walk, joint)
         if not is_mean_enough(found.n):
             return np.full(POINTS, np.nan)
         curve_deg = np.rad2deg(found.mean)
@@ -174,9 +171,10 @@ class Facts:
     def strides_deg(self, side: Side, kind: str) -> FloatArray:
         """Every stride used that is known, (k, 101), as `mean_curve_deg` has their mean."""
         joint = joint_of(kind, side)
-        if not self.is_measured(joint) or joint in self.gait[side].sign_in_doubt:
+        found = self.walk.verdicts.joint(joint)
+        if not self.is_measured(joint) or not (found.shape.is_told and found.sign.is_told):
             return np.empty((0, POINTS))
-        strides_deg = side_cycle(self.gait[side], joint).strides_deg
+        strides_deg = side_cycle(self.walk, joint).strides_deg
         if self.has_no_zero(kind) and len(strides_deg):
             strides_deg = strides_deg - np.mean(strides_deg)
         return strides_deg
@@ -186,7 +184,7 @@ class Facts:
         joint = joint_of(kind, side)
         if not self.is_measured(joint):
             return MeanAndSd(math.nan, math.nan, 0)
-        found = mean_of_used(self.gait[side], joint)
+        found = mean_curve(self.walk, joint)
         return MeanAndSd(math.degrees(float(np.mean(found.sd))), math.nan, found.n)
 
     def band(self, column: str) -> Band | None:

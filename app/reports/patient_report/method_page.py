@@ -5,18 +5,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from datetime import datetime
 
-from app.reports.comparison import STANCE_SAME_ATTACHMENT_PERCENT
 from app.reports.patient_report.blocks import Block, bullets, heading, note
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.numbers_in_words import fixed, signed_error
 from app.reports.patient_report.plain_text import plain, plain_lines
 from app.reports.patient_report.quality import MAX_BEYOND_FLOOR_RAD
 from app.reports.patient_report.request import ReportRequest
 from app.wording import sentence, tr
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding, Severity
-from core.norms import KNEE_NEW_ATTACHMENT_DEG, SAME_ATTACHMENT_DEG
 from core.results import AxisSource
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
 
 # what was corrected by hand, and what changes how a number is read: told, however mild
 TOLD = {
@@ -70,9 +69,9 @@ def _joined(findings: Sequence[Finding]) -> list[Finding]:
 
 def _texts(parts: Sequence[tuple[str, str]]) -> list[list[str]]:
     figures = {
-        "knee_error": fixed(KNEE_NEW_ATTACHMENT_DEG, 1),
-        "degree": fixed(SAME_ATTACHMENT_DEG, 0),
-        "stance": fixed(STANCE_SAME_ATTACHMENT_PERCENT, 1),
+        "knee_error": signed_error(sigma_of("knee_range_deg", ComparisonKind.VISITS)),
+        "degree": signed_error(sigma_of("knee_range_deg", ComparisonKind.ATTACHED)),
+        "stance": signed_error(sigma_of("stance_percent", ComparisonKind.ATTACHED)),
         "floor": fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
         "walking": fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
         "beyond": fixed(math.degrees(MAX_BEYOND_FLOOR_RAD), 0),
@@ -168,12 +167,12 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
         (
             tr("Measurement error used for the words"),
             tr(
-                "Between visits and between legs the sensors are put on separately: a difference of the knee below "
-                "{knee_error}° is called “inside measurement error” (upper end of the minimal detectable change "
-                "published for the knee, 3.4–9.2°, 15 volunteers; for the ankle no value is known, and “not judged” "
-                "is printed). Between conditions of one session the sensors stay on: the limit is 1.96 times the "
-                "standard error of the difference, plus {degree}°; for stance at least {stance} %. The words say how "
-                "large a difference is. They do not say whether it is good."
+                "The error of a difference is 1.96 times its standard deviation: chance between strides, the drift "
+                "within each walk, the sensors' clocks, and what lies between the two. Between walks with the sensors "
+                "left on this is at least {degree}° of range and {stance} points of stance; between visits and legs, "
+                "where the sensors are put on separately, {knee_error}° of the knee (upper end of the minimal "
+                "detectable change published, 3.4–9.2°, 15 volunteers; for the ankle the same is borrowed, †). The "
+                "words say how large a difference is. They do not say whether it is good."
             ),
         ),
         (

@@ -6,10 +6,12 @@ from collections.abc import Mapping
 from app.wording import tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, Verdict
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+from core.verdicts.measurement_error import Z95, Difference, Judgement, Sigma
 
 MINUS = "\u2212"
 NOTHING = "–"
+DAGGER = "\u2020"
 Band = tuple[float, float]
 """Mean less and plus 1 SD of the group."""
 
@@ -63,21 +65,41 @@ def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> s
     return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
 
 
-def in_words(verdict: Verdict) -> str:
+def in_words(verdict: Judgement) -> str:
     """Say in a table whether a difference is larger than the measurement error."""
     return {
-        Verdict.EXCEEDS_ERROR: tr("exceeds error"),
-        Verdict.INSIDE_ERROR: tr("inside error"),
-        Verdict.TOO_FEW_STRIDES: tr("too few strides"),
-        Verdict.NO_PUBLISHED_FIGURE: tr("not judged"),
+        Judgement.EXCEEDS_ERROR: tr("exceeds error"),
+        Judgement.INSIDE_ERROR: tr("inside error"),
+        Judgement.WITHHELD: tr("withheld"),
+        Judgement.TOO_FEW_STRIDES: tr("too few strides"),
+        Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
     }[verdict]
 
 
-def in_a_sentence(verdict: Verdict) -> str:
+def judged_in_words(found: Difference) -> str:
+    """The same with a mark where the error rests on a figure whose source could not be read."""
+    return (
+        f"{in_words(found.judgement)}\u00a0{DAGGER}"
+        if found.is_unverified and found.error > 0
+        else in_words(found.judgement)
+    )
+
+
+def dagger_note() -> str:
+    return tr("{dagger}: the error rests on a figure whose source could not be verified.").format(dagger=DAGGER)
+
+
+def signed_error(sigma: Sigma | None) -> str:
+    """What a spread between walks or strappings alone makes of the error of a difference."""
+    return NOTHING if sigma is None else fixed(Z95 * math.sqrt(2) * sigma.value, 1)
+
+
+def in_a_sentence(verdict: Judgement) -> str:
     """Say the same within a sentence."""
     return {
-        Verdict.EXCEEDS_ERROR: tr("larger than measurement error"),
-        Verdict.INSIDE_ERROR: tr("inside measurement error"),
-        Verdict.TOO_FEW_STRIDES: tr("from too few strides to judge"),
-        Verdict.NO_PUBLISHED_FIGURE: tr("not judged"),
+        Judgement.EXCEEDS_ERROR: tr("larger than measurement error"),
+        Judgement.INSIDE_ERROR: tr("inside measurement error"),
+        Judgement.WITHHELD: tr("withheld"),
+        Judgement.TOO_FEW_STRIDES: tr("from too few strides to judge"),
+        Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
     }[verdict]

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.reports.gait_csv import WINDOWS
 from app.reports.patient_report.cycle_chart import Axis, Line, Mark, Span
 from app.reports.patient_report.drawing import (
     BAND_MEAN,
@@ -31,6 +30,7 @@ from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
 from core.samples import FloatArray
+from core.verdicts.quantities import WINDOWS
 
 SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
 PEAK_COLUMNS = {

@@ -2,7 +2,6 @@
 
 import math
 
-from app.reports.gait_csv import WINDOWS
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, if_room, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
@@ -11,10 +10,12 @@ from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
     band_in_figures,
+    dagger_note,
     fixed,
     in_words,
     sides_against_band,
     signed,
+    signed_error,
     spread,
 )
 from app.reports.patient_report.panels import peak_name
@@ -22,7 +23,8 @@ from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread
 from app.wording import capitalised, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.norms import KNEE_NEW_ATTACHMENT_DEG, Verdict
+from core.verdicts.measurement_error import ComparisonKind, Judgement, sigma_of
+from core.verdicts.quantities import WINDOWS
 
 COLUMNS = {
     "knee": (
@@ -71,10 +73,11 @@ def peaks_page(facts: Facts) -> list[Block]:
     said = []
     if len(facts.gait) == len(Side):
         judged = tr(
-            "Differences are formed before rounding; in words: against the measurement error between legs, {error}°."
+            "Differences are formed before rounding; in words: against the measurement error between legs, at least "
+            "{error}°."
         )
-        said.append(judged.format(error=fixed(KNEE_NEW_ATTACHMENT_DEG, 1)))
-        said.append(tr("For the ankle no such figure is known, so it is not judged."))
+        said.append(judged.format(error=signed_error(sigma_of("knee_range_deg", ComparisonKind.LEGS))))
+        said.append(tr("For the ankle the knee's figure is borrowed.") + " " + dagger_note())
     if has_score:
         said.append(
             tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero.")
@@ -192,8 +195,8 @@ def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
     found = (facts.summary["both"].get("side_difference") or {}).get(column)
     if found is None or found["difference_deg"] is None:
         return [NOTHING, NOTHING]
-    verdict = Verdict(found["verdict"])
-    return [signed(found["difference_deg"], 1), Cell(in_words(verdict), is_bold=verdict is Verdict.EXCEEDS_ERROR)]
+    verdict = Judgement(found["verdict"])
+    return [signed(found["difference_deg"], 1), Cell(in_words(verdict), is_bold=verdict is Judgement.EXCEEDS_ERROR)]
 
 
 def _score_row(facts: Facts, kind: str) -> list[Cell | str]:

@@ -22,7 +22,7 @@ from app.reports.patient_report.plain_text import CONDITION_LENGTH, plain, typed
 from app.reports.walk_figures import is_mean_enough
 from app.wording import capitalised, name_of, sentence, tr, tr_n
 from core.body import Side
-from core.norms import Verdict
+from core.verdicts.measurement_error import Judgement
 
 MAX_SENTENCES = 4
 MAX_BEYOND = 2  # peaks told with their numbers; the table has all
@@ -67,7 +67,7 @@ def _comparison_sentences(facts: Facts, comparison: Comparison) -> list[str]:
     ]
     swing, span = next((pair for pair in pairs if any(row.is_told for row in pair)), pairs[0])
     beyond = [row for row in comparison.rows if row.exceeds and not _is_of(row, swing)]
-    most = max(beyond, key=lambda row: abs(row.difference.difference_deg) / row.difference.error_deg, default=span)
+    most = max(beyond, key=lambda row: abs(row.difference.difference) / row.difference.error, default=span)
     return [_compared(facts, comparison, row) for row in (swing, most) if row.is_told]
 
 
@@ -95,12 +95,12 @@ def _compared(facts: Facts, comparison: Comparison, row: Compared) -> str:
         else tr("{measure} at {this} {value}; against {first} {change}: {verdict}{error}.")
     )
     named = {key: typed(part.name, CONDITION_LENGTH) for key, part in (("this", row.part), ("first", row.against))}
-    error = f" ({fixed(row.difference.error_deg, 1)}{unit})" if math.isfinite(row.difference.error_deg) else ""
+    error = f" ({fixed(row.difference.error, 1)}{unit})" if math.isfinite(row.difference.error) else ""
     return pattern.format(
         measure=names[row.measure.column].format(side=capitalised(role(facts, row.side))),
         value=fixed(row.value.mean, 0 if is_angle else 1) + unit,
-        change=signed(row.difference.difference_deg, 1) + unit,
-        verdict=in_a_sentence(row.difference.verdict),
+        change=signed(row.difference.difference, 1) + unit,
+        verdict=in_a_sentence(row.difference.judgement),
         error=error,
         **named,
     )
@@ -180,7 +180,7 @@ def _difference_sentence(facts: Facts) -> list[str]:
     real = {
         column: found
         for column in names
-        if (found := differences.get(column)) is not None and found["verdict"] == Verdict.EXCEEDS_ERROR
+        if (found := differences.get(column)) is not None and found["verdict"] == Judgement.EXCEEDS_ERROR
     }
     if not real:
         return []
@@ -193,7 +193,7 @@ def _difference_sentence(facts: Facts) -> list[str]:
             left=fixed(values[Side.LEFT], 0),
             right=fixed(values[Side.RIGHT], 0),
             difference=fixed(abs(real[column]["difference_deg"]), 1),
-            verdict=in_a_sentence(Verdict.EXCEEDS_ERROR),
+            verdict=in_a_sentence(Judgement.EXCEEDS_ERROR),
         )
     ]
 

@@ -1,0 +1,300 @@
+"""Which gates does a recording pass? From what was measured to a verdict per joint, leg and kind of quantity.
+
+Every limit stands in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
+"""
+
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from core.body import Joint, Segment, Side, Site, ankle_of
+from core.calibration.clinical_sign import MIN_MARGIN
+from core.gait.cycles import mean_cycle, range_of_cycles
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
+from core.samples import FloatArray, RecordingKind
+from core.verdicts.model import (
+    NOT_MEASURED,
+    Assessment,
+    GateReason,
+    JointVerdicts,
+    LegVerdicts,
+    Verdict,
+    Verdicts,
+    assess,
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Where each gate closes. `care` and `withheld` of a pair are where reading with care begins, and where it ends."""
+
+    pairing_margin: float = 1.3  # of the best hypothesis over its best rival, in motion below 4 Hz
+    axis_sd_deg: tuple[float, float] = (6.5, 9.0)  # 15 deg of motion off the plane leak 15 sin sd: 1.7 and 2.3 deg
+    lag_sd_ms: tuple[float, float] = (2.0, 10.0)  # 400 deg/s for 10 ms are 4 deg
+    knee_range_deg: tuple[float, float] = (5.0, 90.0)  # walking knees 62 +- 4, stiff ones to 5
+    ankle_range_deg: tuple[float, float] = (3.0, 60.0)  # walking ankles 25 +- 5
+    knee_least_deg: float = -20.0
+    ankle_height_deg: tuple[float, float] = (-45.0, 40.0)
+    halves_deg: float = 2.0
+    halves_stance_points: float = 1.5
+    halves_time_percent: float = 4.0
+    thirds_deg: float = 3.0
+    odd_even_ratio: float = 3.0
+    lost_percent: tuple[float, float] = (1.0, 5.0)
+    stance_percent: tuple[float, float] = (40.0, 85.0)
+    stride_length_percent: float = 5.0
+    speed_m_s: tuple[float, float] = (0.1, 2.5)
+    clock_residual_ms: tuple[float, float] = (5.0, 20.0)
+
+
+LIMITS = Limits()
+MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say nothing of a walk's course
+
+
+def verdicts_of(
+    recording: RecordingAnalysis, calibrated: Mapping[Joint, JointCalibration], stiff_sides: Collection[Side]
+) -> Verdicts:
+    """The verdicts of one recording, from its angles, strides and calibration.
+
+    Parameters
+    ----------
+    calibrated
+        The calibrations that `recording` was measured with.
+    stiff_sides
+        Where a joint that hardly bends is no wonder.
+    """
+    joints = {
+        joint: _joint_verdicts(recording, joint, calibrated[joint], joint.side in stiff_sides)
+        for joint in recording.joints
+        if joint in calibrated
+    }
+    if recording.kind is not RecordingKind.WALKING:
+        return Verdicts(joints)
+    legs = {side: _leg_verdicts(recording, side, calibrated) for side in recording.gait}
+    return Verdicts(joints, legs, _between(recording))
+
+
+def judged(analysis: Analysis) -> Analysis:
+    """The same analysis with every recording's verdicts made anew."""
+    recordings = tuple(
+        replace(one, verdicts=verdicts_of(one, analysis.calibrated_for(one), analysis.stiff_sides))
+        for one in analysis.recordings
+    )
+    return replace(analysis, recordings=recordings)
+
+
+def _joint_verdicts(
+    recording: RecordingAnalysis, joint: Joint, calibration: JointCalibration, may_be_stiff: bool
+) -> JointVerdicts:
+    shape = [
+        *_pairing(calibration),
+        *_axis(calibration),
+        *_lag(calibration),
+        *_lost(recording, joint.proximal, joint.distal),
+    ]
+    height = [*shape, *_zero(calibration), *_sign(calibration)]
+    gait = recording.gait.get(joint.side)
+    if recording.kind is RecordingKind.WALKING and gait is not None and joint in gait.cycles:
+        cycles = np.rad2deg(gait.cycles[joint][gait.strides.is_used])
+        cycles = cycles[np.isfinite(cycles).all(axis=1)]
+        of_strides = [*_slip(recording, joint.side), *_strides(len(cycles))]
+        ranges = range_of_cycles(cycles)
+        of_strides += [*_plausible_range(joint, ranges, may_be_stiff), *_steady(ranges, LIMITS.halves_deg, "deg")]
+        shape += [*of_strides, *_drift(ranges)]
+        height += [*of_strides, *_drift(ranges), *_drift(cycles.mean(axis=1))]
+        height += _plausible_height(joint, cycles, calibration)
+    return JointVerdicts(assess(shape), assess(height), assess(_sign(calibration)))
+
+
+def _leg_verdicts(
+    recording: RecordingAnalysis, side: Side, calibrated: Mapping[Joint, JointCalibration]
+) -> LegVerdicts:
+    gait, strides = recording.gait[side], recording.gait[side].strides
+    used = strides.is_used
+    shared = [*_slip(recording, side), *_strides(int(np.count_nonzero(used)))]
+    ankle = calibrated.get(ankle_of(side))
+    if ankle is not None and ankle_of(side) in recording.joints:  # its foot sensor may not be on this foot
+        shared += [GateReason(r.gate, Verdict.CARE, r.value, r.limit, r.unit) for r in _pairing(ankle)]
+    shared += _events(gait)
+    timing = [*shared, *_steady_times(gait)]
+    if gait.is_toe_off_biased:
+        timing.append(GateReason("toe_off", Verdict.CARE))
+    distance = [*shared, *_lost(recording, Site(f"{side}_{Segment.FOOT}")), *_equal_lengths(recording), *_speed(gait)]
+    has_length = bool(np.isfinite(strides.length_m[used]).any())
+    return LegVerdicts(assess(timing), assess(distance) if has_length or not used.any() else NOT_MEASURED)
+
+
+# joints
+
+
+def _pairing(found: JointCalibration) -> Iterator[GateReason]:
+    margin = found.sign_margin
+    if not found.is_same_joint or (margin is not None and margin < LIMITS.pairing_margin):
+        yield GateReason("pairing", Verdict.WITHHELD, _known(margin), LIMITS.pairing_margin)
+
+
+def _axis(found: JointCalibration) -> Iterator[GateReason]:
+    sd_deg = None if found.axis_sd_rad is None else float(np.rad2deg(found.axis_sd_rad))
+    care, most = LIMITS.axis_sd_deg
+    if sd_deg is None or not sd_deg <= most:
+        yield GateReason("axis", Verdict.WITHHELD, _known(sd_deg), most, "deg")
+    elif sd_deg > care:
+        yield GateReason("axis", Verdict.CARE, sd_deg, care, "deg")
+
+
+def _lag(found: JointCalibration) -> Iterator[GateReason]:
+    care, most = LIMITS.lag_sd_ms
+    sd_ms = None if found.lag_sd_s is None else 1000.0 * found.lag_sd_s
+    if found.is_clock_shared:
+        return
+    if found.is_lag_at_border or sd_ms is None or not sd_ms <= most:
+        yield GateReason("lag", Verdict.WITHHELD, _known(sd_ms), most, "ms")
+    elif sd_ms > care:
+        yield GateReason("lag", Verdict.CARE, sd_ms, care, "ms")
+
+
+def _sign(found: JointCalibration) -> Iterator[GateReason]:
+    if not found.is_sign_certain:
+        yield GateReason("sign", Verdict.WITHHELD, _known(found.clinical_sign_margin), MIN_MARGIN)
+
+
+def _zero(found: JointCalibration) -> Iterator[GateReason]:
+    if found.zero is ZeroKind.NONE:
+        yield GateReason("zero", Verdict.WITHHELD)
+
+
+def _slip(recording: RecordingAnalysis, side: Side) -> Iterator[GateReason]:
+    """A slip that left strides is told by these strides; one that left none withholds all."""
+    from_s = recording.slipped_from_s.get(side)
+    if from_s is not None and not recording.gait[side].strides.is_used.any():
+        yield GateReason("strap", Verdict.WITHHELD)
+    elif from_s is not None:
+        yield GateReason("strap", Verdict.CARE, from_s, None, "s")
+
+
+def _lost(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
+    percent = max((recording.lost_percent.get(site, 0.0) for site in sites), default=0.0)
+    care, most = LIMITS.lost_percent
+    if percent > care:
+        is_most = percent > most
+        yield GateReason("loss", Verdict.WITHHELD if is_most else Verdict.CARE, percent, most if is_most else care, "%")
+
+
+def _strides(used: int) -> Iterator[GateReason]:
+    if used < MIN_STRIDES_FOR_MEAN:
+        yield GateReason("strides", Verdict.WITHHELD, used, MIN_STRIDES_FOR_MEAN)
+    elif used < MIN_STRIDES_FOR_SD:
+        yield GateReason("strides", Verdict.CARE, used, MIN_STRIDES_FOR_SD)
+
+
+def _plausible_range(joint: Joint, ranges_deg: FloatArray, may_be_stiff: bool) -> Iterator[GateReason]:
+    if not len(ranges_deg):
+        return
+    usual = float(np.median(ranges_deg))
+    least, most = LIMITS.knee_range_deg if joint.is_knee else LIMITS.ankle_range_deg
+    if usual < least:
+        yield GateReason("plausible", Verdict.CARE if may_be_stiff else Verdict.WITHHELD, usual, least, "deg")
+    elif usual > most:
+        yield GateReason("plausible", Verdict.WITHHELD, usual, most, "deg")
+
+
+def _plausible_height(joint: Joint, cycles_deg: FloatArray, found: JointCalibration) -> Iterator[GateReason]:
+    if not len(cycles_deg) or found.zero is ZeroKind.NONE or not found.is_sign_certain:
+        return
+    mean = mean_cycle(cycles_deg).mean
+    least, most = (LIMITS.knee_least_deg, np.inf) if joint.is_knee else LIMITS.ankle_height_deg
+    for value, limit, is_beyond in (
+        (float(mean.min()), least, mean.min() < least),
+        (float(mean.max()), float(most), mean.max() > most),
+    ):
+        if is_beyond:
+            yield GateReason("plausible_height", Verdict.WITHHELD, value, limit, "deg")
+            return
+
+
+def _drift(values_deg: FloatArray) -> Iterator[GateReason]:
+    """Whether the last third of a walk's strides (k,) is what the first was."""
+    if len(values_deg) < MIN_STRIDES_TO_SPLIT:
+        return
+    third = len(values_deg) // 3
+    apart = abs(float(values_deg[-third:].mean() - values_deg[:third].mean()))
+    if apart > LIMITS.thirds_deg:
+        yield GateReason("drift", Verdict.CARE, apart, LIMITS.thirds_deg, "deg")
+
+
+# legs
+
+
+def _events(gait: SideGait) -> Iterator[GateReason]:
+    stance = gait.strides.stance_percent[gait.strides.is_used]
+    stance = stance[np.isfinite(stance)]
+    least, most = LIMITS.stance_percent
+    if len(stance):
+        usual = float(np.median(stance))
+        if not least <= usual <= most:
+            yield GateReason("events", Verdict.WITHHELD, usual, least if usual < least else most, "%")
+
+
+def _steady_times(gait: SideGait) -> Iterator[GateReason]:
+    used = gait.strides.is_used
+    yield from _steady(gait.strides.stance_percent[used], LIMITS.halves_stance_points, "%")
+    time_s = gait.strides.time_s[used]
+    if len(time_s):
+        yield from _steady(100.0 * time_s / float(np.mean(time_s)), LIMITS.halves_time_percent, "%", gate="halves_time")
+
+
+def _equal_lengths(recording: RecordingAnalysis) -> Iterator[GateReason]:
+    """In walking straight on, both feet travel equally far."""
+    lengths = []
+    for gait in recording.gait.values():
+        known = gait.strides.length_m[gait.strides.is_used]
+        known = known[np.isfinite(known)]
+        if len(known) >= MIN_STRIDES_FOR_MEAN:
+            lengths.append(float(known.mean()))
+    if len(lengths) == len(Side):
+        apart = 100.0 * abs(lengths[0] - lengths[1]) / max(float(np.mean(lengths)), 1e-9)
+        if apart > LIMITS.stride_length_percent:
+            yield GateReason("distance", Verdict.CARE, float(apart), LIMITS.stride_length_percent, "%")
+
+
+def _speed(gait: SideGait) -> Iterator[GateReason]:
+    speed = gait.strides.speed_m_s[gait.strides.is_used]
+    speed = speed[np.isfinite(speed)]
+    least, most = LIMITS.speed_m_s
+    if len(speed) and not least <= float(np.mean(speed)) <= most:
+        value = float(np.mean(speed))
+        yield GateReason("speed", Verdict.WITHHELD, value, least if value < least else most, "m/s")
+
+
+# both legs
+
+
+def _between(recording: RecordingAnalysis) -> Assessment:
+    if len(recording.gait) < len(Side):
+        return NOT_MEASURED
+    return assess([GateReason("clocks", Verdict.WITHHELD)])
+
+
+# the course of a walk
+
+
+def _steady(values: FloatArray, limit: float, unit: str, gate: str = "halves") -> Iterator[GateReason]:
+    """Whether the halves of a walk agree, and whether every second stride differs as only a mistake does."""
+    values = values[np.isfinite(values)]
+    if len(values) < MIN_STRIDES_TO_SPLIT:
+        return
+    half = len(values) // 2
+    apart = abs(float(values[-half:].mean() - values[:half].mean()))
+    if apart > limit:
+        yield GateReason(gate, Verdict.CARE, apart, limit, unit)
+    odd, even = values[::2], values[1::2]
+    error = float(np.sqrt(odd.var(ddof=1) / len(odd) + even.var(ddof=1) / len(even)))
+    ratio = abs(float(odd.mean() - even.mean())) / max(error, 1e-9)
+    if ratio > LIMITS.odd_even_ratio:
+        yield GateReason("odd_even", Verdict.CARE, ratio, LIMITS.odd_even_ratio)
+
+
+def _known(value: float | None) -> float | None:
+    return float(value) if value is not None and np.isfinite(value) else None

@@ -1,0 +1,334 @@
+"""By how much do two means have to differ before anything differs but chance, drift, clocks and straps?
+
+Of one mean u^2 = se^2 + d^2 + c^2: its standard error with the strides' correlation, half of what the walk's halves
+differ by, and what the lag's uncertainty makes of it. Of a difference U^2 = u1^2 + u2^2 + 2 sigma^2 and the error is
+1.96 U, the minimal detectable change at 95 %; sigma adds what lies between the two means, by the kind of comparison.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
+
+import numpy as np
+
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
+from core.samples import FloatArray
+from core.verdicts.model import Assessment
+
+Z95 = 1.96
+MIN_CORRELATION = 0.3  # of neighbouring strides; 0 to 0.6 were seen in real walks, and short walks show too little
+MAX_CORRELATION = 0.9  # beyond, the walk drifts, which the halves tell
+ANGLE_PER_LAG_DEG_S = 400.0  # what a joint turns in swing: so much of its angle is at stake per second of lag
+SENTENCE_FACTOR = 1.5  # Bonferroni for some 16 judged measures: a sentence on page one needs so much more
+
+
+class ComparisonKind(StrEnum):
+    """What lies between two means."""
+
+    HALVES = "halves"
+    ATTACHED = "attached"
+    LEGS = "legs"
+    STRAPPINGS = "strappings"
+    VISITS = "visits"
+
+
+class ErrorSource(StrEnum):
+    """What an error contains; the words of differences.csv."""
+
+    CHANCE = "chance"
+    DRIFT = "drift"
+    CLOCK = "clock"
+    WALKS = "walk_to_walk"
+    STRAPS = "strapping"
+    DAYS = "day"
+    EVENTS = "event_bias"
+    ZERO = "zero"
+
+
+class QuantityKind(StrEnum):
+    """Quantities that share an error."""
+
+    KNEE_SHAPE = "knee_shape"
+    ANKLE_SHAPE = "ankle_shape"
+    KNEE_HEIGHT = "knee_height"
+    ANKLE_HEIGHT = "ankle_height"
+    STANCE = "stance"
+    TIME = "time"
+    SPEED = "speed"
+    LENGTH = "length"
+
+
+KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `both`; what is missing is not judged
+    "stride_time_s": QuantityKind.TIME,
+    "step_time_s": QuantityKind.TIME,
+    "cadence_steps_min": QuantityKind.TIME,
+    "stance_percent": QuantityKind.STANCE,
+    "swing_percent": QuantityKind.STANCE,
+    "stride_length_m": QuantityKind.LENGTH,
+    "speed_m_s": QuantityKind.SPEED,
+    "knee_at_initial_contact_deg": QuantityKind.KNEE_HEIGHT,
+    "knee_loading_peak_deg": QuantityKind.KNEE_HEIGHT,
+    "knee_stance_minimum_deg": QuantityKind.KNEE_HEIGHT,
+    "knee_swing_peak_deg": QuantityKind.KNEE_HEIGHT,
+    "knee_range_deg": QuantityKind.KNEE_SHAPE,
+    "ankle_at_initial_contact_deg": QuantityKind.ANKLE_HEIGHT,
+    "ankle_loading_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
+    "ankle_stance_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
+    "ankle_push_off_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
+    "ankle_swing_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
+    "ankle_range_deg": QuantityKind.ANKLE_SHAPE,
+}
+
+
+class Sigma(NamedTuple):
+    """What is added between two means.
+
+    `value` is a standard deviation of one mean in the quantity's unit, or, where `is_relative`, in percent of the mean.
+    `is_published_error`: it is E / (1.96 sqrt 2) of a published minimal detectable change, whose upper end was taken.
+    `is_verified`: the source was read, or it was measured here; where not, what rests on it prints a dagger.
+    """
+
+    value: float
+    source: str
+    is_relative: bool = False
+    is_published_error: bool = False
+    is_verified: bool = False
+    is_borrowed: bool = False
+
+
+def _of_error(error: float, source: str, *, is_borrowed: bool = False, is_published: bool = True) -> Sigma:
+    return Sigma(error / (Z95 * math.sqrt(2)), source, is_published_error=is_published, is_borrowed=is_borrowed)
+
+
+_NOTHING = Sigma(0.0, "one recording: nothing lies between", is_verified=True)
+_WALKS = "repeated walks of one strapping, our recordings"
+_VOLUNTEERS = (
+    "motion-sensor knees, two visits, three testers, 15 volunteers: minimal detectable change 3.37 to 9.21 deg"
+)
+_BORROWED = f"the knee's figure, for want of one of the ankle ({_VOLUNTEERS})"
+_POSTURE = "with 3 deg of posture in each zero"
+_BIAS = "events 10 ms early or late, alike in every stride of one leg"
+_GUESS = "an estimate"
+
+SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
+    ComparisonKind.HALVES: dict.fromkeys(QuantityKind, _NOTHING),
+    ComparisonKind.ATTACHED: {
+        QuantityKind.KNEE_SHAPE: Sigma(1.0, _WALKS),
+        QuantityKind.ANKLE_SHAPE: Sigma(1.0, _WALKS),
+        QuantityKind.KNEE_HEIGHT: Sigma(1.2, _WALKS),
+        QuantityKind.ANKLE_HEIGHT: Sigma(1.2, _WALKS),
+        QuantityKind.STANCE: Sigma(0.5, _WALKS, is_verified=True),
+        QuantityKind.TIME: Sigma(2.0, _WALKS, is_relative=True, is_verified=True),
+        QuantityKind.SPEED: Sigma(3.0, _WALKS, is_relative=True),
+        QuantityKind.LENGTH: Sigma(2.5, _WALKS, is_relative=True, is_verified=True),
+    },
+    ComparisonKind.LEGS: {
+        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
+        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
+        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
+        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+        QuantityKind.STANCE: _of_error(2.5, _BIAS, is_published=False),
+        QuantityKind.TIME: _of_error(0.05, _BIAS, is_published=False),
+        QuantityKind.LENGTH: _of_error(0.03, _GUESS, is_published=False),
+    },
+    ComparisonKind.STRAPPINGS: {
+        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
+        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
+        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
+        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+        QuantityKind.STANCE: Sigma(3.0, _GUESS),
+        QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
+        QuantityKind.SPEED: Sigma(4.0, _GUESS, is_relative=True),
+        QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
+    },
+    ComparisonKind.VISITS: {
+        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
+        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
+        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
+        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+        QuantityKind.STANCE: Sigma(3.0, _GUESS),
+        QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
+        QuantityKind.SPEED: _of_error(0.20, _GUESS, is_published=False),
+        QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
+    },
+}
+
+_BETWEEN: Mapping[ComparisonKind, tuple[ErrorSource, ...]] = {
+    ComparisonKind.HALVES: (),
+    ComparisonKind.ATTACHED: (ErrorSource.WALKS,),
+    ComparisonKind.LEGS: (ErrorSource.STRAPS,),
+    ComparisonKind.STRAPPINGS: (ErrorSource.WALKS, ErrorSource.STRAPS),
+    ComparisonKind.VISITS: (ErrorSource.WALKS, ErrorSource.STRAPS, ErrorSource.DAYS),
+}
+_HEIGHTS = (QuantityKind.KNEE_HEIGHT, QuantityKind.ANKLE_HEIGHT)
+_OWN_LEG = (QuantityKind.STANCE, QuantityKind.TIME, QuantityKind.LENGTH)  # between legs the events' bias counts
+
+
+@dataclass(frozen=True, slots=True)
+class MeanOfStrides:
+    """A mean over strides and what is known of its uncertainty; NaN where it is not known.
+
+    Attributes
+    ----------
+    standard_error
+        With the correlation of neighbouring strides.
+    half_difference
+        Half of what the second half of the strides lies from the first.
+    clock_error
+        What the uncertainty of the lag between the joint's sensors makes of it.
+    """
+
+    mean: float
+    sd: float
+    n: int
+    standard_error: float
+    half_difference: float
+    clock_error: float = 0.0
+
+    @property
+    def uncertainty(self) -> float:
+        """One standard deviation of the mean, u."""
+        return math.sqrt(self.standard_error**2 + self.half_difference**2 + self.clock_error**2)
+
+
+class Judgement(StrEnum):
+    """Is a difference real? The first two are judgements, the others say why there is none."""
+
+    EXCEEDS_ERROR = "exceeds_error"
+    INSIDE_ERROR = "inside_error"
+    WITHHELD = "withheld"
+    TOO_FEW_STRIDES = "too_few_strides"
+    NO_PUBLISHED_FIGURE = "no_published_figure"
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """One mean less another, the error it has to exceed to be real, and what that error contains.
+
+    `difference` and `error` are NaN where withheld or not known. `is_worth_a_sentence`: it exceeds what a sentence on
+    page one needs. `is_unverified`: the error rests on a figure whose source could not be read.
+    """
+
+    difference: float
+    error: float
+    judgement: Judgement
+    sources: tuple[ErrorSource, ...] = ()
+    is_worth_a_sentence: bool = False
+    is_unverified: bool = False
+
+    @property
+    def exceeds(self) -> bool:
+        return self.judgement is Judgement.EXCEEDS_ERROR
+
+    @property
+    def is_told(self) -> bool:
+        return math.isfinite(self.difference)
+
+    @property
+    def ratio(self) -> float:
+        """How many errors it is large; 0 where it is not judged."""
+        return abs(self.difference) / self.error if self.error > 0 and self.is_told else 0.0
+
+
+def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrides:
+    """The mean of the finite values among (k,), in order of time, and its uncertainty."""
+    known = values[np.isfinite(values)]
+    n = len(known)
+    mean = float(np.mean(known)) if n else math.nan
+    if n < 2:
+        return MeanOfStrides(mean, math.nan, n, math.nan, math.nan)
+    sd = float(np.std(known, ddof=1))
+    r = min(max(MIN_CORRELATION, _lag_one_correlation(known)), MAX_CORRELATION)
+    half = n // 2
+    apart = float(known[-half:].mean() - known[:half].mean())
+    return MeanOfStrides(
+        mean=mean,
+        sd=sd,
+        n=n,
+        standard_error=sd / math.sqrt(n) * math.sqrt((1 + r) / (1 - r)),
+        half_difference=abs(apart) / 2,
+        clock_error=clock_error,
+    )
+
+
+def _lag_one_correlation(values: FloatArray) -> float:
+    apart = values - values.mean()
+    total = float(apart @ apart)
+    return float(apart[1:] @ apart[:-1]) / total if total > 0 else 0.0
+
+
+def sigma_of(name: str, kind: ComparisonKind) -> Sigma | None:
+    """What lies between two means of a column in a comparison of a kind; None where no figure is known."""
+    quantity = KINDS.get(name)
+    if quantity is QuantityKind.TIME and kind is ComparisonKind.LEGS and name != "step_time_s":
+        return None  # both feet make equally many strides
+    return SIGMAS[kind].get(quantity) if quantity is not None else None
+
+
+def compare(
+    name: str,
+    kind: ComparisonKind,
+    one: MeanOfStrides,
+    other: MeanOfStrides,
+    assessments: tuple[Assessment, ...],
+    *,
+    is_chosen_before: bool = False,
+) -> Difference:
+    """`one` less `other`: is it larger than its error?
+
+    Parameters
+    ----------
+    name
+        The column of strides.csv.
+    assessments
+        What may be said of each of the two; a difference of what is withheld is none.
+    is_chosen_before
+        The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
+    """
+    nothing = math.nan
+    if any(not found.is_told for found in assessments):
+        return Difference(nothing, nothing, Judgement.WITHHELD)
+    if min(one.n, other.n) < MIN_STRIDES_FOR_MEAN:
+        return Difference(nothing, nothing, Judgement.TOO_FEW_STRIDES)
+    difference = one.mean - other.mean
+    if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
+        return Difference(difference, nothing, Judgement.TOO_FEW_STRIDES)
+    sigma = sigma_of(name, kind)
+    if sigma is None:
+        return Difference(difference, nothing, Judgement.NO_PUBLISHED_FIGURE)
+    between = sigma.value * (0.01 * 0.5 * abs(one.mean + other.mean) if sigma.is_relative else 1.0)
+    error = Z95 * math.sqrt(one.uncertainty**2 + other.uncertainty**2 + 2 * between**2)
+    exceeds = abs(difference) > error
+    factor = 1.0 if sigma.is_published_error or is_chosen_before else SENTENCE_FACTOR
+    return Difference(
+        difference=difference,
+        error=error,
+        judgement=Judgement.EXCEEDS_ERROR if exceeds else Judgement.INSIDE_ERROR,
+        sources=_sources(name, kind, one, other),
+        is_worth_a_sentence=abs(difference) > factor * error and not sigma.is_borrowed,
+        is_unverified=not sigma.is_verified,
+    )
+
+
+def whisker(name: str, kind: ComparisonKind, found: MeanOfStrides) -> float:
+    """Half of the error of a difference from a mean as sure: whiskers that lie apart differ by more than the error."""
+    sigma = sigma_of(name, kind)
+    if sigma is None or found.n < MIN_STRIDES_FOR_SD:
+        return math.nan
+    between = sigma.value * (0.01 * abs(found.mean) if sigma.is_relative else 1.0)
+    return 0.5 * Z95 * math.sqrt(2 * found.uncertainty**2 + 2 * between**2)
+
+
+def _sources(name: str, kind: ComparisonKind, one: MeanOfStrides, other: MeanOfStrides) -> tuple[ErrorSource, ...]:
+    quantity = KINDS[name]
+    found = [ErrorSource.CHANCE, ErrorSource.DRIFT]
+    if one.clock_error or other.clock_error:
+        found.append(ErrorSource.CLOCK)
+    if kind is ComparisonKind.LEGS and quantity in _OWN_LEG:
+        return (*found, ErrorSource.EVENTS)
+    found += _BETWEEN[kind]
+    if quantity in _HEIGHTS and kind not in (ComparisonKind.HALVES, ComparisonKind.ATTACHED):
+        found.append(ErrorSource.ZERO)
+    return tuple(found)

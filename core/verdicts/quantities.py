@@ -1,0 +1,160 @@
+"""Which figures does a walk give, and which verdict does each rest on? Values per stride, empty where withheld."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+import numpy as np
+
+from core.body import Joint, Side, ankle_of, knee_of
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
+from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
+from core.gait.strides import strides_of
+from core.results import RecordingAnalysis, SideGait
+from core.samples import FloatArray
+from core.verdicts.model import Assessment, Verdict, Verdicts, together
+
+
+class QuantityClass(StrEnum):
+    """What a figure needs to be known. `PEAK_TIME` is a shape that a mirrored curve would not have."""
+
+    SHAPE = "shape"
+    PEAK_TIME = "peak_time"
+    HEIGHT = "height"
+    TIMING = "timing"
+    DISTANCE = "distance"
+    BETWEEN = "between"
+
+
+QUANTITIES: Mapping[str, QuantityClass] = {  # the columns of strides.csv, angles in degrees there
+    "stride_time_s": QuantityClass.TIMING,
+    "step_time_s": QuantityClass.BETWEEN,
+    "stance_percent": QuantityClass.TIMING,
+    "swing_percent": QuantityClass.TIMING,
+    "stride_length_m": QuantityClass.DISTANCE,
+    "speed_m_s": QuantityClass.DISTANCE,
+    "clearance_m": QuantityClass.DISTANCE,
+    "knee_at_initial_contact_deg": QuantityClass.HEIGHT,
+    "knee_loading_peak_deg": QuantityClass.HEIGHT,
+    "knee_stance_minimum_deg": QuantityClass.HEIGHT,
+    "knee_swing_peak_deg": QuantityClass.HEIGHT,
+    "knee_swing_peak_percent": QuantityClass.PEAK_TIME,
+    "knee_range_deg": QuantityClass.SHAPE,
+    "ankle_at_initial_contact_deg": QuantityClass.HEIGHT,
+    "ankle_loading_plantarflexion_deg": QuantityClass.HEIGHT,
+    "ankle_stance_dorsiflexion_deg": QuantityClass.HEIGHT,
+    "ankle_push_off_plantarflexion_deg": QuantityClass.HEIGHT,
+    "ankle_swing_dorsiflexion_deg": QuantityClass.HEIGHT,
+    "ankle_range_deg": QuantityClass.SHAPE,
+}
+PARAMETERS = tuple(QUANTITIES)
+OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
+WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
+
+
+@dataclass(frozen=True, slots=True)
+class SideMean:
+    """A figure of one leg over the strides used, and whether it may be told. NaN where it is withheld."""
+
+    found: MeanAndSd
+    assessment: Assessment
+
+
+def joint_of(name: str, side: Side) -> Joint | None:
+    """Whose angle a column of strides.csv tells; None for time and distance."""
+    kind = name.split("_")[0]
+    return {"knee": knee_of, "ankle": ankle_of}[kind](side) if kind in ("knee", "ankle") else None
+
+
+def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
+    """What may be said of one column of strides.csv."""
+    joint, wanted = joint_of(name, side), QUANTITIES[name]
+    if joint is not None:
+        found = verdicts.joint(joint)
+        if wanted is QuantityClass.SHAPE:
+            return found.shape
+        return together((found.shape, found.sign) if wanted is QuantityClass.PEAK_TIME else (found.height, found.sign))
+    if wanted is QuantityClass.BETWEEN:
+        return together((verdicts.between, verdicts.leg(side).timing))
+    leg = verdicts.leg(side)
+    return leg.distance if wanted is QuantityClass.DISTANCE else leg.timing
+
+
+def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
+    """What may be said of cadence, double support and speed, from the legs that were measured.
+
+    Double support, as the sum of both legs' stances less a stride, needs no common clock; but it adds up what is in
+    doubt about four events, so the timing of both legs has to be beyond doubt.
+    """
+    legs = [verdicts.leg(side) for side in Side if side in verdicts.legs]
+    if not legs:
+        return together([verdicts.leg(Side.LEFT).timing])
+    if name == "speed_m_s":
+        return together(leg.distance for leg in legs)
+    timing = together(leg.timing for leg in legs)
+    if name == "double_support_percent" and (len(legs) < len(Side) or timing.verdict is not Verdict.READ):
+        is_one = len(legs) < len(Side)
+        return replace(timing, verdict=Verdict.NOT_MEASURED if is_one else Verdict.WITHHELD)
+    return timing
+
+
+def raw_values(gait: SideGait, name: str) -> FloatArray:
+    """One column of strides.csv (k,), angles in degrees, whatever may be said of it; NaN where not known."""
+    values = gait.parameters.get(name.removesuffix("_deg") + "_rad" if name.endswith("_deg") else name)
+    if values is None:
+        return np.full(len(gait.strides), np.nan)
+    return np.rad2deg(values) if name.endswith("_deg") else values
+
+
+def values_of(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray:
+    """As `raw_values`; NaN throughout where the figure is withheld."""
+    gait = recording.gait[side]
+    if not assessment_of(recording.verdicts, side, name).is_told:
+        return np.full(len(gait.strides), np.nan)
+    return raw_values(gait, name)
+
+
+def side_mean(recording: RecordingAnalysis, side: Side, name: str) -> SideMean:
+    """The mean over the strides used."""
+    used = recording.gait[side].strides.is_used
+    return SideMean(mean_and_sd(values_of(recording, side, name)[used]), assessment_of(recording.verdicts, side, name))
+
+
+def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> FloatArray:
+    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is withheld."""
+    gait, joint = recording.gait[side], joint_of(column, side)
+    if joint is None or joint not in gait.cycles:
+        return np.full(len(gait.strides), np.nan)
+    found = recording.verdicts.joint(joint)
+    if not together((found.shape, found.sign)).is_told:
+        return np.full(len(gait.strides), np.nan)
+    return find_peak(gait.cycles[joint], WINDOWS[column]).percent
+
+
+def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
+    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be said of it."""
+    gait = recording.gait[joint.side]
+    return gait.cycles[joint][gait.strides.is_used] if joint in gait.cycles else np.empty((0, POINTS))
+
+
+def mean_curve(recording: RecordingAnalysis, joint: Joint) -> MeanCycle:
+    """The joint's mean over the strides used, radians; NaN where its shape or its sign is withheld.
+
+    Its height holds only where that is not withheld.
+    """
+    found = mean_cycle(used_cycles(recording, joint))
+    said = recording.verdicts.joint(joint)
+    if together((said.shape, said.sign)).is_told:
+        return found
+    nothing = np.full(POINTS, np.nan)
+    return replace(found, mean=nothing, sd=found.sd if said.shape.is_told else nothing)
+
+
+def both_sides(recording: RecordingAnalysis) -> BothFeet:
+    """Cadence, double support and speed, NaN where withheld, also where only one side was measured."""
+    nothing = strides_of(())
+    left, right = (recording.gait[side].strides if side in recording.gait else nothing for side in Side)
+    found = both_feet(left, right)
+    withheld = {name: math.nan for name in OF_BOTH if not assessment_of_both(recording.verdicts, name).is_told}
+    return replace(found, **withheld)
