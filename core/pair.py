@@ -1,9 +1,11 @@
 """What do the two sensors at one joint measure at the same instants?"""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from core.joint_force import JointForce, joint_force
 from core.rotations import cross_matrix, matrix_from_quaternion
 from core.samples import BoolArray, FloatArray
 from core.tracks import Track, at_positions, continuous
@@ -13,12 +15,26 @@ MOVING_WINDOW_S = 0.5
 FAST_RAD_S = 6.0  # above, impacts and whole-body turns dominate what the sensors feel
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class OrientedTrack:
     """A track with its gyroscope bias removed and an orientation (n, 4), earth from sensor."""
 
     track: Track
     q_earth_from_sensor: FloatArray
+
+    @cached_property
+    def joint_force(self) -> JointForce:
+        """What it feels of a joint; found once, for both joints of its segment."""
+        track = self.track
+        return joint_force(
+            track.start_s,
+            track.step_s,
+            track.gyr_rad_s,
+            angular_acceleration(track.gyr_rad_s, track.step_s),
+            track.acc_m_s2,
+            matrix_from_quaternion(self.q_earth_from_sensor),
+            track.is_measured,
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +43,7 @@ class Pair:
 
     Rates `g`, specific forces `a` and angular accelerations `dg` are (n, 3) in sensor axes, rotations `earth_from` are
     (n, 3, 3); the two earths differ by a heading. `is_measured` and `is_known` (n,): both sensors were heard; and their
-    angular accelerations exist too.
+    angular accelerations exist too. `tracks` are what was paired, the distal one's stamps `lag_s` earlier.
     """
 
     time_s: FloatArray
@@ -42,6 +58,8 @@ class Pair:
     earth_from_2: FloatArray
     is_measured: BoolArray
     is_known: BoolArray
+    tracks: tuple[OrientedTrack, OrientedTrack]
+    lag_s: float
 
     def __len__(self) -> int:
         return len(self.time_s)
@@ -103,7 +121,8 @@ def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pai
     is_measured = one.is_measured[part] & two.is_measured[np.clip(whole, 0, len(two) - 1).astype(int)]
     rates = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
     forces = one.acc_m_s2[part], at_positions(two.acc_m_s2, position)
-    return pair_of(time_s, one.step_s, rates, forces, (proximal.q_earth_from_sensor[part], q2), is_measured)
+    q1 = proximal.q_earth_from_sensor[part]
+    return _pair(time_s, one.step_s, rates, forces, (q1, q2), is_measured, (proximal, distal), lag_s)
 
 
 def pair_of(
@@ -114,7 +133,7 @@ def pair_of(
     orientations: tuple[FloatArray, FloatArray],
     is_measured: BoolArray,
 ) -> Pair:
-    """A pair from samples of both sensors at the same instants.
+    """A pair from samples of both sensors at the same even instants.
 
     Parameters
     ----------
@@ -123,6 +142,23 @@ def pair_of(
     orientations : two of (n, 4)
         Earth from sensor.
     """
+    one, two = (
+        OrientedTrack(Track(float(time_s[0]), step_s, rate, force, None, None, is_measured), q)
+        for rate, force, q in zip(rates, forces, orientations, strict=True)
+    )
+    return _pair(time_s, step_s, rates, forces, orientations, is_measured, (one, two), 0.0)
+
+
+def _pair(
+    time_s: FloatArray,
+    step_s: float,
+    rates: tuple[FloatArray, FloatArray],
+    forces: tuple[FloatArray, FloatArray],
+    orientations: tuple[FloatArray, FloatArray],
+    is_measured: BoolArray,
+    tracks: tuple[OrientedTrack, OrientedTrack],
+    lag_s: float,
+) -> Pair:
     return Pair(
         time_s=time_s,
         step_s=step_s,
@@ -136,6 +172,8 @@ def pair_of(
         earth_from_2=matrix_from_quaternion(orientations[1]),
         is_measured=is_measured,
         is_known=_known(is_measured),
+        tracks=tracks,
+        lag_s=lag_s,
     )
 
 

@@ -1,7 +1,8 @@
 """Do both sensors feel the same acceleration at the joint? The test that tells true candidates from mirror images.
 
 With the centres o and the accelerometer biases b, a1 - b1 - K1 o1 = R12 (a2 - b2 - K2 o2), K(g) = [g]x[g]x + [g']x: the
-vector form of Seel et al. 2014, eq 7, linear in all unknowns once the relative orientation R12 is known.
+vector form of Seel et al. 2014, eq 7, linear in all unknowns once the relative orientation R12 is known. What decides
+between hypotheses is low-passed first, for tissue rings above; what a hinge's centre is found from is not.
 """
 
 from dataclasses import dataclass
@@ -10,13 +11,14 @@ import numpy as np
 
 from core.datasets import Datasets
 from core.pair import lever_matrix
-from core.samples import FloatArray
+from core.samples import FloatArray, IntArray
 
 CENTRE_PRIOR_M = 0.3  # a sensor sits within a segment's length of the joint
 BIAS_PRIOR_M_S2 = 0.05
 SCALE_M_S2 = 0.5
 STEPS = 3
 GRAVITY_M_S2 = 9.81
+MIN_CLEAR = 50  # samples
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,21 +51,89 @@ def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float =
     return solve_robustly(design, target, scale_m_s2)
 
 
-def disagreement(data: Datasets, rotation_12: FloatArray, unknowns: FloatArray) -> float:
+@dataclass(frozen=True, slots=True)
+class JointForces:
+    """What both sensors of a joint feel of it, low-passed, at those samples of a data set where both were heard.
+
+    `chosen` (n,) are the samples' numbers, `terms_1` and `terms_2` (n, 3, 7) as in `JointForce`.
+    """
+
+    chosen: IntArray
+    terms_1: FloatArray
+    terms_2: FloatArray
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+
+def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
+    """The forces at the samples of `data`; at all of them where hardly any is clear of gaps.
+
+    Parameters
+    ----------
+    room_s
+        How much earlier and later the distal sensor has to be heard as well.
+    """
+    is_clear = np.zeros(len(data), dtype=bool)
+    for s, pair in enumerate(data.pairs):
+        mine = data.stretch == s
+        one, two = (track.joint_force for track in pair.tracks)
+        own_s = data.time_s[mine]
+        is_clear[mine] = one.is_heard_at(own_s)
+        for shift_s in (-room_s, 0.0, room_s) if room_s else (0.0,):
+            is_clear[mine] &= two.is_heard_at(own_s - pair.lag_s - shift_s)
+    if np.count_nonzero(is_clear) < MIN_CLEAR:
+        is_clear[:] = True
+    chosen = np.flatnonzero(is_clear)
+    terms_1 = np.empty((len(chosen), 3, 7))
+    for s, pair in enumerate(data.pairs):
+        mine = data.stretch[chosen] == s
+        terms_1[mine] = pair.tracks[0].joint_force.at(data.time_s[chosen[mine]])
+    return JointForces(chosen, terms_1, distal_terms(data, chosen, 0.0))
+
+
+def distal_terms(data: Datasets, chosen: IntArray, shift_s: float) -> FloatArray:
+    """Terms (n, 3, 7) of the distal sensor, its stamps moved by `shift_s` more."""
+    terms = np.empty((len(chosen), 3, 7))
+    for s, pair in enumerate(data.pairs):
+        mine = data.stretch[chosen] == s
+        terms[mine] = pair.tracks[1].joint_force.at(data.time_s[chosen[mine]] - pair.lag_s - shift_s)
+    return terms
+
+
+def fit_forces(forces: JointForces, heading: FloatArray) -> Coincidence:
+    """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples."""
+    turned = _turned(heading, forces.terms_2)
+    c, n = heading.shape
+    design = np.empty((c, n, 3, 12))
+    design[..., 0:3], design[..., 6:9] = forces.terms_1[..., 0:3], forces.terms_1[..., 3:6]
+    design[..., 3:6], design[..., 9:12] = -turned[..., 0:3], -turned[..., 3:6]
+    return solve_robustly(design, forces.terms_1[..., 6] - turned[..., 6], SCALE_M_S2)
+
+
+def _turned(heading: FloatArray, terms: FloatArray) -> FloatArray:
+    """Rz(heading) terms, (c, n, 3, 7) for headings (c, n)."""
+    c, s = np.cos(heading)[..., None], np.sin(heading)[..., None]
+    turned = np.empty((*heading.shape, 3, terms.shape[-1]))
+    turned[..., 0, :] = c * terms[:, 0] - s * terms[:, 1]
+    turned[..., 1, :] = s * terms[:, 0] + c * terms[:, 1]
+    turned[..., 2, :] = terms[:, 2]
+    return turned
+
+
+def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray) -> float:
     """What the best coincidence leaves, against all that both sensors feel beside gravity: 0 one joint, 1 none.
 
     Parameters
     ----------
-    rotation_12 : (n, 3, 3)
+    heading : (n,)
     unknowns : (12,)
     """
-    one = data.a1 - unknowns[6:9] - lever_matrix(data.g1, data.dg1) @ unknowns[0:3]
-    two = data.a2 - unknowns[9:12] - lever_matrix(data.g2, data.dg2) @ unknowns[3:6]
-    left = _loss(one - np.einsum("nij,nj->ni", rotation_12, two))
-    felt = 0.0
-    for earth_from, force in ((data.earth_from_1, data.a1), (data.earth_from_2, data.a2)):
-        felt += _loss(np.einsum("nij,nj->ni", earth_from, force) - [0.0, 0.0, GRAVITY_M_S2])
-    return left / max(felt, 1e-12)
+    turned = _turned(heading[None], forces.terms_2)[0]
+    one = forces.terms_1[..., 6] - forces.terms_1[..., :6] @ unknowns[[0, 1, 2, 6, 7, 8]]
+    two = turned[..., 6] - turned[..., :6] @ unknowns[[3, 4, 5, 9, 10, 11]]
+    felt = sum(_loss(terms[..., 6] - [0.0, 0.0, GRAVITY_M_S2]) for terms in (forces.terms_1, forces.terms_2))
+    return _loss(one - two) / max(felt, 1e-12)
 
 
 def _loss(error: FloatArray) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.calibration import certainty
-from core.calibration.coincidence import disagreement, fit_coincidence, relative_rotation
+from core.calibration.coincidence import disagreement, fit_forces, joint_forces
 from core.calibration.heading import residual_scales
 from core.calibration.hinge import MAX_HINGE_RESIDUAL_RAD_S, MAX_OFF_AXIS_RAD_S, hinge_axes, hinge_residual
 from core.calibration.joint_axis import (
@@ -19,7 +19,7 @@ from core.calibration.joint_axis import (
     residuals,
 )
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
-from core.calibration.lag import Lag, find_lag, lowest_cost
+from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
 from core.calibration.refinement import refine_on_hinge
 from core.datasets import Datasets, gather, moving_indices, united
 from core.pair import FAST_RAD_S, Pair
@@ -143,7 +143,8 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
     found = joined([candidates(data, few, s) for s in _richest_stretches(data)])
     found = polish(few, found, CANDIDATE_STEPS)
     some = data.thinned(DECISION_SAMPLES)
-    coincidence = fit_coincidence(some, relative_rotation(some, some.heading(found.knots_rad)))
+    forces = joint_forces(some)
+    coincidence = fit_forces(forces, some.heading(found.knots_rad)[:, forces.chosen])
     cost = np.log(found.cost) + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
     best = int(np.argmin(cost))
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
@@ -165,13 +166,15 @@ def _elevations(axis_1: FloatArray, axis_2: FloatArray, downs: Downs) -> FloatAr
 
 
 def _rest_of_lag(data: Datasets, others: Datasets | None, decision: Decision) -> float:
-    """What a first correction has left. On a hinge walks tell it as well; on a human tissue rings there."""
+    """What a first correction has left. On a hinge nothing rings, and walks, full of sharp changes, tell it as well."""
     some, best = data.thinned(DECISION_SAMPLES), decision.best
-    if others is None or hinge_residual(some, best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
-        return lowest_cost(some, best.knots_rad[0]).best_s
+    if hinge_residual(some, best.axis_1[0], best.axis_2[0]) > MAX_HINGE_RESIDUAL_RAD_S:
+        return smoothest_lag(some, best.knots_rad[0]).best_s
+    if others is None:
+        return sharpest_lag(some, best.knots_rad[0]).best_s
     more = others.thinned(DECISION_SAMPLES)
     knots = np.concatenate([best.knots_rad, heading_from_axes(more, best.axis_1, best.axis_2)], axis=1)
-    return lowest_cost(united([some, more]), knots[0]).best_s
+    return sharpest_lag(united([some, more]), knots[0]).best_s
 
 
 def _richest_stretches(data: Datasets) -> list[int]:
@@ -251,8 +254,9 @@ def _refined(
 def _disagreement(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
     some = data.thinned(DECISION_SAMPLES)
     knots = heading_from_axes(some, axis_1[None], axis_2[None])
-    rotation = relative_rotation(some, some.heading(knots))
-    return disagreement(some, rotation[0], fit_coincidence(some, rotation).unknowns[0])
+    forces = joint_forces(some)
+    heading = some.heading(knots)[:, forces.chosen]
+    return disagreement(forces, heading[0], fit_forces(forces, heading).unknowns[0])
 
 
 def _axis_covariance(data: Datasets, fit: Candidates) -> FloatArray:

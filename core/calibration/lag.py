@@ -3,16 +3,20 @@
 The rates' own criterion (eq 3) invents lags of tens of milliseconds at joints that are no perfect hinge.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.calibration.coincidence import fit_coincidence, relative_rotation
+from core.calibration.coincidence import distal_terms, fit_coincidence, fit_forces, joint_forces, relative_rotation
 from core.datasets import Datasets
 from core.samples import FloatArray, IntArray
 
 SEARCH_S = 0.08
 COARSE_S = 0.02
+FINE_S = 0.005
+CORRELATION_S = 0.1
+MIN_SAMPLES = 50
 MAX_LAG_S = 0.075  # nearer to the border of the search it is not a lag but not the same joint
 MIN_LAG_S = 0.001
 MIN_COST_RATIO = 1.15
@@ -34,7 +38,10 @@ class Lag:
     is_at_border: bool
 
 
-def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
+NO_LAG = Lag(0.0, 0.0, None, 1.0, False)
+
+
+def find_lag(data: Datasets, knots_rad: FloatArray, is_hinge: bool = False) -> Lag:
     """The lag that both halves of the data agree on.
 
     A clock is late all the time; tissue and a motion that shows little look late in one half and not in the other.
@@ -43,43 +50,65 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     ----------
     knots_rad : (k,)
         Relative heading, decided before.
+    is_hinge
+        Nothing rings there, and the sharpest changes tell most: the accelerations are taken as they are.
     """
-    lag = lowest_cost(data, knots_rad)
+    find = sharpest_lag if is_hinge else smoothest_lag
+    lag = find(data, knots_rad)
     if not lag.lag_s:
         return lag
     is_first = np.arange(len(data)) < len(data) // 2
-    halves = [lowest_cost(data.only(half), knots_rad) for half in (is_first, ~is_first)]
+    halves = [find(data.only(half), knots_rad) for half in (is_first, ~is_first)]
     apart_s = max(abs(half.best_s - lag.best_s) for half in halves)
     if apart_s > max(MAX_DISAGREEMENT_S, MIN_SIGMAS * (lag.sd_s or 0.0)):
         return replace(lag, lag_s=0.0)
     return lag
 
 
-def lowest_cost(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """Shift the distal sensor by up to 80 ms and see where the accelerations of the joint coincide best.
+def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
+    """Where the accelerations of the joint coincide best below the frequencies of tissue."""
+    forces = joint_forces(data, SEARCH_S)
+    if len(forces) < MIN_SAMPLES:
+        return NO_LAG
+    heading = data.heading(knots_rad)[None, forces.chosen]
 
-    Parameters
-    ----------
-    knots_rad : (k,)
-        Relative heading, decided before.
-    """
+    def cost(shift_s: float) -> float:
+        shifted = replace(forces, terms_2=distal_terms(data, forces.chosen, shift_s))
+        return float(fit_forces(shifted, heading).cost[0])
+
+    return _lowest(cost, FINE_S, len(forces) * _share_of_sample(data.only(np.isin(np.arange(len(data)), forces.chosen))))
+
+
+def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
+    """Where the accelerations of a hinge coincide best, in whole samples."""
     step_s = data.pairs[0].step_s
-    reach = int(np.ceil(SEARCH_S / step_s))
-    inner = _with_room(data, reach)
-    if len(inner) < 50:
-        return Lag(0.0, 0.0, None, 1.0, False)
-    coarse = max(1, round(COARSE_S / step_s))
+    inner = _with_room(data, int(np.ceil(SEARCH_S / step_s)))
+    if len(inner) < MIN_SAMPLES:
+        return NO_LAG
+
+    def cost(shift_s: float) -> float:
+        shifted = _shifted(inner, round(shift_s / step_s))
+        rotation = relative_rotation(shifted, inner.heading(knots_rad)[None])
+        return float(fit_coincidence(shifted, rotation).cost[0])
+
+    return _lowest(cost, step_s, len(inner) * _share_of_sample(inner))
+
+
+def _lowest(cost_of: Callable[[float], float], step_s: float, independent: float) -> Lag:
+    """The lowest cost over all lags up to 80 ms: coarsely, then by steps of `step_s`, then by a parabola."""
     costs: dict[int, float] = {}
 
     def cost(shift: int) -> float:
         if shift not in costs:
-            shifted = _shifted(inner, shift)
-            rotation = relative_rotation(shifted, inner.heading(knots_rad)[None])
-            costs[shift] = float(fit_coincidence(shifted, rotation).cost[0])
+            costs[shift] = cost_of(shift * step_s)
         return costs[shift]
 
-    best = min(range(-(reach // coarse) * coarse, reach + 1, coarse), key=cost)
-    best = min(range(max(-reach, best - coarse + 1), min(reach, best + coarse - 1) + 1), key=cost)
+    reach = int(np.ceil(SEARCH_S / step_s - 1e-9))
+    width = max(1, round(COARSE_S / step_s))
+    best = min(range(-(reach // width) * width, reach + 1, width), key=cost)
+    while width > 1:  # a cost below the frequencies of tissue has one valley between two coarse steps
+        width = max(1, width // 2)
+        best = min((best - width, best, best + width), key=cost)
     if abs(best) >= reach:
         return Lag(0.0, 0.0, None, cost(0) / cost(best), cost(0) / cost(best) > MIN_COST_RATIO)
     before, here, after = cost(best - 1), cost(best), cost(best + 1)
@@ -88,8 +117,7 @@ def lowest_cost(data: Datasets, knots_rad: FloatArray) -> Lag:
     lowest = here - 0.125 * (before - after) ** 2 / bend if bend > 0 else here
     lag_s = (best + offset) * step_s
     ratio = cost(0) / max(lowest, 1e-12)
-    independent = max(1.0, len(inner) * min(1.0, _spacing_s(inner) / 0.1))
-    sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * independent))) if bend > 0 else None
+    sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * max(1.0, independent)))) if bend > 0 else None
     if abs(lag_s) > MAX_LAG_S:
         return Lag(0.0, 0.0, None, ratio, ratio > MIN_COST_RATIO)
     is_clear = sd_s is not None and abs(lag_s) > MIN_SIGMAS * sd_s
@@ -97,8 +125,9 @@ def lowest_cost(data: Datasets, knots_rad: FloatArray) -> Lag:
     return Lag(lag_s if is_found else 0.0, lag_s, sd_s, ratio, False)
 
 
-def _spacing_s(data: Datasets) -> float:
-    return float(np.median(np.diff(data.time_s)))
+def _share_of_sample(data: Datasets) -> float:
+    """What each sample tells, where neighbours within a tenth of a second tell the same."""
+    return min(1.0, float(np.median(np.diff(data.time_s))) / CORRELATION_S)
 
 
 def _with_room(data: Datasets, reach: int) -> Datasets:

@@ -12,7 +12,7 @@ from core.calibration.coincidence import fit_coincidence, relative_rotation
 from core.calibration.heading import heading_over
 from core.calibration.lag import find_lag
 from core.datasets import Datasets, gather, moving_indices
-from core.pair import Pair, lever_matrix
+from core.pair import OrientedTrack, Pair, lever_matrix, pair_up
 from core.rotations import joint_frame, wrap
 
 if TYPE_CHECKING:
@@ -68,18 +68,17 @@ def test_a_false_heading_is_dear(data: Datasets) -> None:
     assert cost[0] < 1e-3 * cost[2]
 
 
-def late(pair: Pair, lag_s: float, person: "Person") -> Pair:
-    """The pair as it would be if the distal sensor's stamps were late by `lag_s`: everything of it is read earlier."""
-    shift = round(lag_s / pair.step_s)
-    roll = {name: np.roll(getattr(pair, name), shift, axis=0) for name in ("g2", "a2", "dg2", "earth_from_2")}
-    known = pair.is_known.copy()
-    known[: abs(shift) + 2] = known[len(pair) - abs(shift) - 2 :] = False
-    return replace(pair, is_known=known, **roll)
+def late(pair: Pair, lag_s: float) -> Pair:
+    """The pair as it would be if the distal sensor's stamps were late by `lag_s`."""
+    one, two = pair.tracks
+    shifted = pair_up(one, OrientedTrack(replace(two.track, start_s=lag_s), two.q_earth_from_sensor), 0.0)
+    assert shifted is not None
+    return shifted
 
 
 @pytest.mark.parametrize("lag_s", [0.03, -0.05, 0.06])
-def test_a_late_clock_is_found_with_the_sign_that_corrects_it(person_5: "Person", pair: Pair, lag_s: float) -> None:
-    shifted = late(pair, lag_s, person_5)
+def test_a_late_clock_is_found_with_the_sign_that_corrects_it(pair: Pair, lag_s: float) -> None:
+    shifted = late(pair, lag_s)
     sets = gather((shifted,), [moving_indices(shifted)])
     found = find_lag(sets.thinned(400), np.full(sets.knots, -0.7))
     # what is added to the distal stamps: a late clock needs a negative correction
@@ -94,8 +93,8 @@ def test_no_lag_is_invented(pair: Pair) -> None:
     assert not found.is_at_border
 
 
-def test_a_lag_beyond_the_search_is_not_called_a_lag(person_5: "Person", pair: Pair) -> None:
-    shifted = late(pair, 0.2, person_5)
+def test_a_lag_beyond_the_search_is_not_called_a_lag(pair: Pair) -> None:
+    shifted = late(pair, 0.2)
     sets = gather((shifted,), [moving_indices(shifted)])
     found = find_lag(sets.thinned(400), np.full(sets.knots, -0.7))
     assert found.lag_s == 0.0
