@@ -87,13 +87,17 @@ class ImuBlock:
 
 @dataclass(frozen=True, slots=True)
 class SensorInfo:
-    """What is known of the sensor worn at one site. `rate_kind` None: not told, to be found from the data."""
+    """What is known of the sensor worn at one site. `rate_kind` None: not told, to be found from the data.
+
+    Sensors whose `clock` is the same share one; empty: not known.
+    """
 
     serial: str = ""
     model: str = ""
     firmware: str = ""
     rate_hz: float | None = None
     rate_kind: RateKind | None = None
+    clock: str = ""
     unknown: Mapping[str, object] = field(default_factory=dict)
 
 

@@ -46,7 +46,10 @@ def bare(session: Session) -> Session:
             for recording in session.recordings
         ),
         patient=Patient(affected_side=patient.affected_side, prosthetic_side=patient.prosthetic_side),
-        sensors={site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind) for site, info in told.items()},
+        sensors={
+            site: SensorInfo(rate_hz=info.rate_hz, rate_kind=info.rate_kind, clock=info.clock)
+            for site, info in told.items()
+        },
         zero_rad=session.zero_rad,
         turned_sign=session.turned_sign,
         is_simulated=session.is_simulated,
@@ -108,6 +111,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
     for site, info in session.sensors.items():
         told[f"{site} rate_hz"] = info.rate_hz
         told[f"{site} rate_kind"] = info.rate_kind
+        told[f"{site} clock"] = info.clock
     for number, finding in enumerate(session.findings):
         told[f"finding {number}"] = repr(finding)
     return AnalysisInputs(

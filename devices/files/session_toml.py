@@ -152,6 +152,7 @@ SENSOR: Mapping[str, Known] = {
     "firmware": ("firmware", _text),
     "rate_hz": ("rate_hz", _number(0.001, 100_000.0, "hertz")),
     "rate_kind": ("rate_kind", _one_of(RateKind, RateKind)),
+    "clock": ("clock", _text),
 }
 RECORDING: Mapping[str, Known] = {
     "name": ("name", _filled),

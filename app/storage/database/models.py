@@ -210,6 +210,7 @@ class PlacedSensorRow(Base):
     firmware: Mapped[str]
     rate_hz: Mapped[float | None]
     rate_kind: Mapped[RateKind | None] = mapped_column(_words(RateKind, "rate_kind"))
+    clock: Mapped[str]
     unknown: Mapped[Mapping[str, object]]
 
 

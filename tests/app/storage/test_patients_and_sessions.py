@@ -47,7 +47,7 @@ FULL = Patient(
 WALK = Recording("walk 1", RecordingKind.WALKING, "walk_1", {}, condition="alignment A", note="\N{SNOWMAN}")
 SENSORS = {
     Site.LEFT_SHANK: PlacedSensor("S1", SensorInfo(serial="S1", rate_hz=100.0, rate_kind=RateKind.AVERAGED)),
-    Site.LEFT_THIGH: PlacedSensor("S2", SensorInfo(model="Dot", unknown={"colour": "red"})),
+    Site.LEFT_THIGH: PlacedSensor("S2", SensorInfo(model="Dot", clock="receiver 1", unknown={"colour": "red"})),
 }
 SWAPPED = {Site.LEFT_SHANK: SENSORS[Site.LEFT_THIGH], Site.LEFT_THIGH: SENSORS[Site.LEFT_SHANK]}
 

@@ -45,6 +45,7 @@ def test_every_key_of_the_format_is_read() -> None:
         firmware = "1.2"
         rate_hz = 100
         rate_kind = "averaged"
+        clock = "receiver 1"
         [zero]
         left_knee = 5
         [sign]
@@ -65,7 +66,7 @@ def test_every_key_of_the_format_is_read() -> None:
     assert (session.started, session.operator, session.surface) == ("2024-05-01T10:00:00", "N. N.", "carpet")
     assert (session.notes, session.software, session.is_simulated) == ("none", "x 1", True)
     assert session.patient == Patient("P-001", 1950, "f", 1.7, 70.0, "AFO", "stick", "left", "none")
-    assert session.sensors == {Site.LEFT_THIGH: SensorInfo("A1", "M", "1.2", 100.0, RateKind.AVERAGED)}
+    assert session.sensors == {Site.LEFT_THIGH: SensorInfo("A1", "M", "1.2", 100.0, RateKind.AVERAGED, "receiver 1")}
     assert session.zero_rad == {Joint.LEFT_KNEE: pytest.approx(np.radians(5.0))}
     assert session.turned_sign == {Joint.LEFT_KNEE: -1, Joint.RIGHT_ANKLE: 1}
     recording = plans[0].recording

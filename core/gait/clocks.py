@@ -1,0 +1,195 @@
+"""Do the sensors of both legs tell one time? Without that, no instant of one leg may be set against one of the other.
+
+Within a leg the joints' motion ties the clocks of its sensors; between the legs nothing does but a clock that they
+share, or stamps that were fitted to one. A stamp proves a common clock only where it carries more than the sample's
+number: stamps of 0.00, 0.01, 0.02 s are made up, and two sensors started apart have the same.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+
+from core.body import Joint, Segment, Side, Site
+from core.results import SideGait
+from core.samples import FloatArray, Recording, Session
+from core.tracks import nominal_step_s
+
+READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart
+MAX_LAG_S = 0.005  # found inside of a leg: the sensors' clocks are not what they seem
+MAX_SHARE_OFF_PERCENT, ALIKE_STANCE_PERCENT = 5.0, 3.0  # steps so uneven with stances so alike are two clocks
+TOGETHER_S = 0.25  # one command starts all sensors within this, and stops them
+MADE_UP_S = 0.0002  # stamps so near to a round rate all along tell nothing but the sample's number
+SAME_STAMP_S = 0.0005
+MIN_SAMPLES = 100
+
+
+class ClockTie(StrEnum):
+    """What ties the clocks of both legs."""
+
+    ONE_CLOCK = "one_clock"
+    HOST_CLOCK = "host_clock"
+    UNKNOWN = "unknown"
+
+
+class ClockTrust(StrEnum):
+    """Whether what compares instants of both legs may be read. The values are those of a verdict."""
+
+    READ = "read"
+    CARE = "care"
+    WITHHELD = "withheld"
+
+
+class ClockGate(StrEnum):
+    """What decided."""
+
+    RESIDUAL = "residual"
+    UNKNOWN = "unknown"
+    LAG = "lag"
+    STEP_SHARE = "step_share"
+
+
+@dataclass(frozen=True, slots=True)
+class LegClocks:
+    """Evidence that both legs' sensors tell one time in one walk, and what follows.
+
+    Attributes
+    ----------
+    residual_s
+        How far apart the clocks may still be; NaN where nothing ties them.
+    lag_s
+        The largest lag found inside of a leg.
+    step_share_percent
+        The left step's share of both steps, NaN without steps of both feet. Two clocks that are off by 0.1 of a stride
+        shift it by 10 points.
+    stance_difference_percent
+        Left less right.
+    """
+
+    tie: ClockTie
+    residual_s: float
+    lag_s: float
+    step_share_percent: float
+    stance_difference_percent: float
+
+    @property
+    def trust(self) -> ClockTrust:
+        if self.gate is not ClockGate.RESIDUAL:
+            return ClockTrust.WITHHELD
+        if self.residual_s <= READ_S:
+            return ClockTrust.READ
+        return ClockTrust.CARE if self.residual_s <= CARE_S else ClockTrust.WITHHELD
+
+    @property
+    def gate(self) -> ClockGate:
+        if self.lag_s >= MAX_LAG_S:
+            return ClockGate.LAG
+        is_uneven = abs(self.step_share_percent - 50.0) > MAX_SHARE_OFF_PERCENT
+        if is_uneven and abs(self.stance_difference_percent) < ALIKE_STANCE_PERCENT:
+            return ClockGate.STEP_SHARE
+        return ClockGate.UNKNOWN if self.tie is ClockTie.UNKNOWN else ClockGate.RESIDUAL
+
+    @property
+    def value(self) -> float:
+        """What the gate looked at: seconds, for `STEP_SHARE` percent; NaN where nothing is known."""
+        by_gate = {ClockGate.LAG: self.lag_s, ClockGate.STEP_SHARE: self.step_share_percent}
+        return by_gate.get(self.gate, self.residual_s)
+
+    @property
+    def limit(self) -> float:
+        """What `value` was held against: seconds, for `STEP_SHARE` the points off 50 %."""
+        by_gate = {ClockGate.LAG: MAX_LAG_S, ClockGate.STEP_SHARE: MAX_SHARE_OFF_PERCENT}
+        return by_gate.get(self.gate, CARE_S if self.trust is ClockTrust.WITHHELD else READ_S)
+
+
+def leg_clocks(
+    session: Session, recording: Recording, gait: Mapping[Side, SideGait], lags_s: Mapping[Joint, float]
+) -> LegClocks:
+    """What the session says, the stamps prove and the steps contradict about the clocks of both legs.
+
+    Parameters
+    ----------
+    gait
+        Of this recording.
+    lags_s
+        Of each joint, as found between its two sensors.
+    """
+    tie, residual_s = _tie(session, recording, gait)
+    share, difference = _share_and_difference(gait)
+    lag_s = max((abs(one) for one in lags_s.values()), default=0.0)
+    return LegClocks(tie, residual_s, lag_s, share, difference)
+
+
+def _tie(session: Session, recording: Recording, gait: Mapping[Side, SideGait]) -> tuple[ClockTie, float]:
+    sites = [_site_of(side, gait[side], recording) for side in Side if side in gait]
+    known = [site for site in sites if site is not None]
+    if len(known) < len(Side):
+        return ClockTie.UNKNOWN, float("nan")
+    ids = [info.clock if (info := session.sensors.get(site)) else "" for site in known]
+    if all(ids):
+        return (ClockTie.ONE_CLOCK, 0.0) if len(set(ids)) == 1 else (ClockTie.UNKNOWN, float("nan"))
+    residual_s = stamps_residual_s(*(recording.imu[site].time_s for site in known))
+    return (ClockTie.HOST_CLOCK if np.isfinite(residual_s) else ClockTie.UNKNOWN), residual_s
+
+
+def _site_of(side: Side, gait: SideGait, recording: Recording) -> Site | None:
+    is_from_shank = any(events.is_from_shank for events in gait.events)
+    site = Site(f"{side}_{Segment.SHANK if is_from_shank else Segment.FOOT}")
+    return site if recording.holds(site) else None
+
+
+def stamps_residual_s(one_s: FloatArray, other_s: FloatArray) -> float:
+    """How far apart two sensors' ascending stamps (n,), (m,) leave their clocks, if they prove a common one; else NaN.
+
+    They do where sample for sample they are irregular together, as one receiver's are; or where they begin and end
+    together at rates that are their own, as stamps that were fitted to the host's clock do.
+    """
+    if min(len(one_s), len(other_s)) < MIN_SAMPLES:
+        return float("nan")
+    apart_s = np.abs(np.array([one_s[0] - other_s[0], one_s[-1] - other_s[-1]]))
+    lines = [_line(stamps_s) for stamps_s in (one_s, other_s)]
+    if apart_s.max() > TOGETHER_S or any(line.is_made_up for line in lines):
+        return float("nan")
+    nearest = np.clip(np.searchsorted(other_s, one_s), 1, len(other_s) - 1)
+    off_s = np.minimum(np.abs(one_s - other_s[nearest - 1]), np.abs(one_s - other_s[nearest]))
+    if np.mean(off_s < SAME_STAMP_S) > 0.9:
+        return float(np.sqrt(np.mean(np.minimum(off_s, SAME_STAMP_S) ** 2)))
+    if apart_s[0] < 1e-6:  # each counted from its own beginning
+        return float("nan")
+    return float(np.hypot(lines[0].rms_s, lines[1].rms_s))
+
+
+@dataclass(frozen=True, slots=True)
+class StampLine:
+    """How one sensor's stamps lie on a straight line over the sample's number."""
+
+    rms_s: float
+    is_made_up: bool
+
+
+def _line(stamps_s: FloatArray) -> StampLine:
+    step_s = nominal_step_s(stamps_s)
+    number = np.concatenate([[0.0], np.cumsum(np.maximum(np.round(np.diff(stamps_s) / step_s), 1.0))])
+    slope, start = np.polyfit(number, stamps_s, 1)
+    rms_s = float(np.sqrt(np.mean((stamps_s - start - slope * number) ** 2)))
+    round_s = [round(float(slope), 4), 1.0 / max(1.0, round(1.0 / float(slope), 1))]
+    off_s = [float(np.max(np.abs(stamps_s - stamps_s[0] - one * number))) for one in round_s]
+    return StampLine(rms_s, min(off_s) < MADE_UP_S)
+
+
+def _share_and_difference(gait: Mapping[Side, SideGait]) -> tuple[float, float]:
+    """The left step's share of both, and the stances' difference, percent; NaN where a side tells none."""
+    steps, stances = [], []
+    for side in Side:
+        if side not in gait:
+            return float("nan"), float("nan")
+        is_used = gait[side].strides.is_used
+        steps.append(_median(gait[side].parameters["step_time_s"][is_used]))
+        stances.append(_median(gait[side].parameters["stance_percent"][is_used]))
+    return 100.0 * steps[0] / (steps[0] + steps[1]), stances[0] - stances[1]
+
+
+def _median(values: FloatArray) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else float("nan")
