@@ -45,6 +45,10 @@ SENTENCES = {
     "distance": later("The stride lengths of both feet differ by {value} ({limit} at most)."),
     "speed": later("The walking speed found is {value} (limit {limit}): the distance may be wrong."),
     "toe_off": later("A prosthetic foot rolls on, so toe-off is found late: stance is not compared or judged."),
+    "step_share": later(
+        "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' clocks "
+        "differ. Use one receiver for all sensors."
+    ),
     "clocks": later(
         "The clocks of both legs may be {value} apart ({limit} at most). Use one receiver for all sensors."
     ),
@@ -60,6 +64,10 @@ WITHOUT_FIGURES = {
         "The motion does not show how far the two sensors' clocks are apart. Use one receiver for all sensors."
     ),
     "strap": later("A strap slipped before this walk. Tighten it and record free motion again."),
+    "step_share": later(
+        "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' clocks "
+        "differ. Use one receiver for all sensors."
+    ),
     "clocks": later(
         "Nothing ties the clocks of both legs together, so nothing that compares instants of both is given. Use one "
         "receiver for all sensors."

@@ -14,6 +14,7 @@ from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, 
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.chosen_strides import leave_out
 from core.findings import Finding, Severity
+from core.gait.clocks import leg_clocks
 from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
@@ -110,7 +111,7 @@ def analyse(
         findings += told
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
-            found = _before_slips(found, slipped)
+            found = _with_clocks(tracks, recording, _before_slips(found, slipped), lags)
             here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
             found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
             recordings.append(found)
@@ -321,11 +322,17 @@ def _calibration(
         walks_from=tuple(name for name in found.recordings if name in basis.walks),
         acc_bias_proximal_m_s2=found.geometry.unknowns[6:9] if robust else None,
         acc_bias_distal_m_s2=found.geometry.unknowns[9:12] if robust else None,
+        is_clock_shared=_is_clock_shared(session, joint),
         is_same_joint=robust.is_same_joint if robust else True,
         is_lag_at_border=robust.lag.is_at_border if robust else False,
         disagreement=robust.disagreement if robust else None,
     )
     return calibration, sign
+
+
+def _is_clock_shared(session: Session, joint: Joint) -> bool:
+    clocks = {info.clock if (info := session.sensors.get(site)) else "" for site in (joint.proximal, joint.distal)}
+    return len(clocks) == 1 and "" not in clocks
 
 
 def _standing_twist(tracks: SensorTracks, found: Identified) -> float | None:
@@ -447,6 +454,18 @@ def _before_slips(recording: RecordingAnalysis, slipped: Slipped) -> RecordingAn
         for side, found in recording.gait.items()
     }
     return replace(recording, gait=gait, slipped_from_s=from_s)
+
+
+def _with_clocks(
+    tracks: SensorTracks,
+    recording: Recording,
+    found: RecordingAnalysis,
+    lags: dict[tuple[str, Joint], float],
+) -> RecordingAnalysis:
+    if len(found.gait) < len(Side):
+        return found
+    lags_s = {joint: lag_s for (name, joint), lag_s in lags.items() if name == recording.name}
+    return replace(found, clocks=leg_clocks(tracks.session, recording, found.gait, lags_s))
 
 
 def _clock_offset_s(

@@ -6,6 +6,7 @@ from enum import StrEnum
 
 from core.body import Joint, Side, Site
 from core.findings import Finding
+from core.gait.clocks import LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Strides
 from core.samples import FloatArray, IntArray, RecordingKind
@@ -137,6 +138,8 @@ class RecordingAnalysis:
         Samples missing, by site.
     slipped_from_s
         From when on a side's straps are not to be trusted, on the recording's clock; -inf throughout.
+    clocks
+        What ties the clocks of both legs; None where not both were measured.
     verdicts
         What may be said of it; whoever changes what is above makes them anew.
     """
@@ -149,6 +152,7 @@ class RecordingAnalysis:
     gait: Mapping[Side, SideGait] = field(default_factory=dict)
     lost_percent: Mapping[Site, float] = field(default_factory=dict)
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
+    clocks: LegClocks | None = None
     verdicts: Verdicts = field(default_factory=Verdicts)
 
 

@@ -114,6 +114,7 @@ def _session(settings: WalkerSettings, recordings: list[Recording]) -> Session:
             model="simulated",
             rate_hz=settings.site_rates_hz.get(site, settings.rate_hz),
             rate_kind=settings.rate_kind,
+            clock="" if settings.clock_late_s else "simulated",
         )
         for site in settings.sites
     }

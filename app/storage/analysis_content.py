@@ -15,6 +15,7 @@ import numpy as np
 
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
+from core.gait.clocks import ClockTie, LegClocks
 from core.gait.events import FootEvents
 from core.gait.strides import Reason, Strides
 from core.results import (
@@ -39,12 +40,12 @@ VALUES: Mapping[str, type] = {
     for kind in (
         *(Analysis, Calibration, Finding, FootEvents, JointAngle, JointCalibration),
         *(RecordingAnalysis, SideGait, Strides),
-        *(Assessment, GateReason, JointVerdicts, LegVerdicts, Verdicts),
+        *(Assessment, GateReason, LegClocks, JointVerdicts, LegVerdicts, Verdicts),
     )
 }
 WORDS: Mapping[str, type[StrEnum]] = {
     kind.__name__: kind
-    for kind in (AxisSource, Joint, Method, Reason, RecordingKind, Severity, Side, Site, Verdict, ZeroKind)
+    for kind in (AxisSource, ClockTie, Joint, Method, Reason, RecordingKind, Severity, Side, Site, Verdict, ZeroKind)
 }
 
 

@@ -76,7 +76,9 @@ def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
         shifted = replace(forces, terms_2=distal_terms(data, forces.chosen, shift_s))
         return float(fit_forces(shifted, heading).cost[0])
 
-    return _lowest(cost, FINE_S, len(forces) * _share_of_sample(data.only(np.isin(np.arange(len(data)), forces.chosen))))
+    return _lowest(
+        cost, FINE_S, len(forces) * _share_of_sample(data.only(np.isin(np.arange(len(data)), forces.chosen)))
+    )
 
 
 def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:

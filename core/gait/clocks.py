@@ -8,13 +8,16 @@ number: stamps of 0.00, 0.01, 0.02 s are made up, and two sensors started apart 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site
-from core.results import SideGait
 from core.samples import FloatArray, Recording, Session
 from core.tracks import nominal_step_s
+
+if TYPE_CHECKING:  # which holds this evidence
+    from core.results import SideGait
 
 READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart
 MAX_LAG_S = 0.005  # found inside of a leg: the sensors' clocks are not what they seem
@@ -104,7 +107,7 @@ class LegClocks:
 
 
 def leg_clocks(
-    session: Session, recording: Recording, gait: Mapping[Side, SideGait], lags_s: Mapping[Joint, float]
+    session: Session, recording: Recording, gait: "Mapping[Side, SideGait]", lags_s: Mapping[Joint, float]
 ) -> LegClocks:
     """What the session says, the stamps prove and the steps contradict about the clocks of both legs.
 
@@ -121,7 +124,7 @@ def leg_clocks(
     return LegClocks(tie, residual_s, lag_s, share, difference)
 
 
-def _tie(session: Session, recording: Recording, gait: Mapping[Side, SideGait]) -> tuple[ClockTie, float]:
+def _tie(session: Session, recording: Recording, gait: "Mapping[Side, SideGait]") -> tuple[ClockTie, float]:
     sites = [_site_of(side, gait[side], recording) for side in Side if side in gait]
     known = [site for site in sites if site is not None]
     if len(known) < len(Side):
@@ -133,7 +136,7 @@ def _tie(session: Session, recording: Recording, gait: Mapping[Side, SideGait]) 
     return (ClockTie.HOST_CLOCK if np.isfinite(residual_s) else ClockTie.UNKNOWN), residual_s
 
 
-def _site_of(side: Side, gait: SideGait, recording: Recording) -> Site | None:
+def _site_of(side: Side, gait: "SideGait", recording: Recording) -> Site | None:
     is_from_shank = any(events.is_from_shank for events in gait.events)
     site = Site(f"{side}_{Segment.SHANK if is_from_shank else Segment.FOOT}")
     return site if recording.holds(site) else None
@@ -178,7 +181,7 @@ def _line(stamps_s: FloatArray) -> StampLine:
     return StampLine(rms_s, min(off_s) < MADE_UP_S)
 
 
-def _share_and_difference(gait: Mapping[Side, SideGait]) -> tuple[float, float]:
+def _share_and_difference(gait: "Mapping[Side, SideGait]") -> tuple[float, float]:
     """The left step's share of both, and the stances' difference, percent; NaN where a side tells none."""
     steps, stances = [], []
     for side in Side:

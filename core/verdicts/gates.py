@@ -10,12 +10,14 @@ import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of
 from core.calibration.clinical_sign import MIN_MARGIN
+from core.gait.clocks import ClockGate
 from core.gait.cycles import mean_cycle, range_of_cycles
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
 from core.samples import FloatArray, RecordingKind
 from core.verdicts.model import (
     NOT_MEASURED,
+    READ,
     Assessment,
     GateReason,
     JointVerdicts,
@@ -46,7 +48,6 @@ class Limits:
     stance_percent: tuple[float, float] = (40.0, 85.0)
     stride_length_percent: float = 5.0
     speed_m_s: tuple[float, float] = (0.1, 2.5)
-    clock_residual_ms: tuple[float, float] = (5.0, 20.0)
 
 
 LIMITS = Limits()
@@ -272,9 +273,18 @@ def _speed(gait: SideGait) -> Iterator[GateReason]:
 
 
 def _between(recording: RecordingAnalysis) -> Assessment:
-    if len(recording.gait) < len(Side):
+    clocks = recording.clocks
+    if len(recording.gait) < len(Side) or clocks is None:
         return NOT_MEASURED
-    return assess([GateReason("clocks", Verdict.WITHHELD)])
+    verdict = Verdict(clocks.trust)
+    if verdict is Verdict.READ:
+        return READ
+    if clocks.gate is ClockGate.STEP_SHARE:
+        limit = 50.0 + np.copysign(clocks.limit, clocks.value - 50.0)
+        return assess([GateReason("step_share", verdict, clocks.value, float(limit), "%")])
+    known = _known(clocks.value)
+    value_ms = None if known is None or clocks.gate is ClockGate.UNKNOWN else 1000.0 * known
+    return assess([GateReason("clocks", verdict, value_ms, 1000.0 * clocks.limit, "ms")])
 
 
 # the course of a walk
