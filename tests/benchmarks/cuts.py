@@ -1,0 +1,42 @@
+"""Sessions in which nothing differs: one walk cut into parts that are given as conditions."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.samples import ImuBlock, Recording, RecordingKind, Session
+
+NAMES = "ABCDEF"
+
+
+def cut(session: Session, parts: int) -> Session:
+    """The session with every walk cut into parts of equal length, the first called A, the second B, and so on."""
+    recordings: list[Recording] = []
+    for recording in session.recordings:
+        if recording.kind is not RecordingKind.WALKING:
+            recordings.append(recording)
+            continue
+        stamps = [block.time_s for block in recording.imu.values() if len(block)]
+        first_s, last_s = max(float(t[0]) for t in stamps), min(float(t[-1]) for t in stamps)
+        edges_s = np.linspace(first_s, last_s, parts + 1)
+        for letter, from_s, to_s in zip(NAMES, edges_s[:-1], edges_s[1:], strict=False):
+            name = f"{recording.name} {letter}"
+            imu = {site: between(block, from_s, to_s) for site, block in recording.imu.items()}
+            recordings.append(
+                replace(recording, name=name, folder=name.replace(" ", "_"), imu=imu, condition=letter, left_out_s={})
+            )
+    return replace(session, recordings=tuple(recordings))
+
+
+def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
+    """The samples stamped from..to."""
+    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist())
+    told = {name: getattr(block, name) for name in ("q_earth_from_sensor", "mag")}
+    return replace(
+        block,
+        time_s=block.time_s[part],
+        gyr_rad_s=block.gyr_rad_s[part],
+        acc_m_s2=block.acc_m_s2[part],
+        unknown={name: values[part] for name, values in block.unknown.items()},
+        **{name: None if values is None else values[part] for name, values in told.items()},
+    )
