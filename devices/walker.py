@@ -9,17 +9,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.body import Side, Site
+from core.body import Joint, Side, Site
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.walker_body import (
+    COARSE,
+    NO_CHANGE,
     NO_ERRORS,
+    PEOPLE,
+    VERY_COARSE,
     FreeMotion,
+    GaitChange,
     Leg,
     Manner,
     Motion,
     SensorErrors,
     Standing,
     Tissue,
+    Variation,
     Walk,
     WalkerSettings,
     make_leg,
@@ -40,12 +46,18 @@ from devices.walker_sensors import (
     sensor_poses,
 )
 from devices.walker_truth import FootTruth, JointTruth, RecordingTruth, SessionTruth, Take, tell_truth, truth_table
+from devices.walker_variation import NO_CHANGES, StepChanges, draw_changes, draw_gain, follow_joint
 
 __all__ = [
+    "COARSE",
     "DEMONSTRATION",
+    "NO_CHANGE",
     "NO_ERRORS",
+    "PEOPLE",
+    "VERY_COARSE",
     "FootTruth",
     "FreeMotion",
+    "GaitChange",
     "JointTruth",
     "Manner",
     "Motion",
@@ -55,6 +67,7 @@ __all__ = [
     "SimulatedSession",
     "Standing",
     "Tissue",
+    "Variation",
     "Walk",
     "WalkerSettings",
     "simulate",
@@ -67,6 +80,15 @@ DEMONSTRATION = WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Standing(
 FINE_HZ = 1000.0  # least rate of the fine clock: differences of fourth order are then far below the sensors' noise
 MARGIN_S = 0.25  # the fine clock runs on by this at both ends, for lags, averaging and differences
 MAX_LATE_S = 0.2  # what the margin leaves for a clock
+
+
+@dataclass(frozen=True, slots=True)
+class Worn:
+    """How the sensors were strapped before recording `strapping`; `gains` as in `JointTruth`."""
+
+    strapping: int
+    mountings: Mapping[Site, Mounting]
+    gains: Mapping[Joint, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,14 +113,19 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     legs = {side: make_leg(settings, side) for side in Side}
     faults = {site: draw_faults(settings.errors, _rng(settings, 2, _index(site))) for site in settings.sites}
     start_faults = faults
-    mountings = _mount(settings, 0)
+    strapping = 0
+    mountings = _mount(settings, strapping)
     rides: dict[tuple[Site, type], Ride] = {}
     recordings: list[Recording] = []
     takes: list[Take] = []
     for number, wanted in enumerate(settings.recordings):
         if wanted.is_restrapped_before:
-            mountings, rides = _mount(settings, number), {}
-        recording, take, faults = _take(settings, number, legs, mountings, faults, rides)
+            strapping = number
+            mountings, rides = _mount(settings, strapping), {}
+        soft = [joint for joint in Joint if not _is_bare(legs, joint.distal)]
+        gains = {joint: draw_gain(settings, joint, strapping) if joint in soft else 0.0 for joint in Joint}
+        worn = Worn(strapping, mountings, gains)
+        recording, take, faults = _take(settings, number, legs, worn, faults, rides)
         recordings.append(recording)
         takes.append(take)
     truth = tell_truth(settings, legs, takes, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
@@ -140,7 +167,7 @@ def _take(
     settings: WalkerSettings,
     number: int,
     legs: Mapping[Side, Leg],
-    mountings: Mapping[Site, Mounting],
+    worn: Worn,
     faults: Mapping[Site, SensorFaults],
     rides: dict[tuple[Site, type], Ride],
 ) -> tuple[Recording, Take, dict[Site, SensorFaults]]:
@@ -149,18 +176,18 @@ def _take(
     `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
     """
     wanted = settings.recordings[number]
-    motions, duration_s = _move(settings, number, wanted, legs)
+    motions, duration_s = _move(settings, number, worn.strapping, legs)
     imu: dict[Site, ImuBlock] = {}
     clocks: dict[Site, Clock] = {}
     biases: dict[Site, FloatArray] = {}
     after: dict[Site, SensorFaults] = {}
     for site in settings.sites:
         leg = motions[site.side]
-        is_bare = legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
-        tissue = Tissue.RIGID if is_bare else settings.tissue
+        tissue = Tissue.RIGID if _is_bare(legs, site) else settings.tissue
         chance = _rng(settings, 4, _index(site), number)
         ride = rides.setdefault((site, type(wanted)), draw_ride(chance))
-        poses = sensor_poses(leg, site, mountings[site], tissue, ride, chance)
+        following = _following(legs[site.side], leg, site, worn.gains)
+        poses = sensor_poses(leg, site, worn.mountings[site], tissue, ride, chance, following)
         clocks[site] = make_clock(settings, site, duration_s, _rng(settings, 5, _index(site), number))
         noise = _rng(settings, 8, _index(site), number)
         imu[site], bias = record(settings, site, clocks[site], leg.time_s, poses, faults[site], noise)
@@ -174,13 +201,31 @@ def _take(
         imu=imu,
         is_restrapped_before=wanted.is_restrapped_before,
     )
-    return recording, Take(wanted.name, isinstance(wanted, Standing), motions, clocks, mountings, biases), after
+    return (
+        recording,
+        Take(wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains),
+        after,
+    )
+
+
+def _is_bare(legs: Mapping[Side, Leg], site: Site) -> bool:
+    """Whether a site is on a prosthesis, where there is no tissue."""
+    return legs[site.side].is_prosthetic and SEGMENT_ROW[site.segment] > 0
+
+
+def _following(leg: Leg, motion: LegMotion, site: Site, gains: Mapping[Joint, float]) -> FloatArray | None:
+    for joint, axis in ((Joint(f"{leg.side}_knee"), leg.knee_axis), (Joint(f"{leg.side}_ankle"), leg.ankle_axis)):
+        turned = follow_joint(motion, axis, joint, site, gains[joint])
+        if turned is not None:
+            return turned
+    return None
 
 
 def _move(
-    settings: WalkerSettings, number: int, wanted: Standing | FreeMotion | Walk, legs: Mapping[Side, Leg]
+    settings: WalkerSettings, number: int, strapping: int, legs: Mapping[Side, Leg]
 ) -> tuple[dict[Side, LegMotion], float]:
     """Both legs' poses on the fine clock, in a compass direction of the recording's own, and its duration."""
+    wanted = settings.recordings[number]
     rng = _rng(settings, 6, number)
     per_leg = {side: _rng(settings, 7, number, i) for i, side in enumerate(Side)}
     if isinstance(wanted, FreeMotion):
@@ -189,7 +234,8 @@ def _move(
         starts = {Side.LEFT: 0.0, Side.RIGHT: wanted.duration_s if wanted.is_in_turn else 0.0}
         motions = {side: move_freely(legs[side], wanted, time_s, starts[side], per_leg[side]) for side in Side}
     else:
-        motions, duration_s = _stand_or_walk(settings, wanted, legs, rng, per_leg)
+        changes = draw_changes(settings, number, strapping, wanted) if isinstance(wanted, Walk) else NO_CHANGES
+        motions, duration_s = _stand_or_walk(settings, wanted, changes, legs, rng, per_leg)
     compass = rotation_about(Z_AXIS, rng.uniform(0.0, 2.0 * np.pi, 1))[0]
     return {side: _turned(motion, compass) for side, motion in motions.items()}, duration_s
 
@@ -197,16 +243,18 @@ def _move(
 def _stand_or_walk(
     settings: WalkerSettings,
     wanted: Standing | Walk,
+    changes: StepChanges,
     legs: Mapping[Side, Leg],
     rng: np.random.Generator,
     per_leg: Mapping[Side, np.random.Generator],
 ) -> tuple[dict[Side, LegMotion], float]:
     if isinstance(wanted, Walk):
         # no stride takes longer than 2.2 s; the plan says how much of this is needed
-        ample = wanted.standing_before_s + wanted.standing_after_s + 2.2 * (wanted.strides + 2)
+        slowest = max(1.0, float(changes.of_steps(2 * wanted.strides)[0].max()))
+        ample = wanted.standing_before_s + wanted.standing_after_s + 2.2 * slowest * (wanted.strides + 2)
         time_s = _fine_clock(settings, ample)
         first = list(Side)[int(rng.integers(2))]
-        plan = plan_walk(wanted, time_s, first, settings.prosthetic_side, rng)
+        plan = plan_walk(wanted, time_s, first, settings.prosthetic_side, rng, changes)
         time_s = time_s[time_s <= plan.duration_s + MARGIN_S]
         plan = replace(plan, hip_path_m=plan.hip_path_m[: len(time_s)])
     else:

@@ -13,8 +13,9 @@ from core.samples import FloatArray, RateKind
 class Tissue(StrEnum):
     """How a sensor moves against its bone, and a knee against a hinge.
 
-    RIGID: not at all. SOFT: thigh about 2 deg and 5 mm, and 6 deg of knee rotation per 60 deg of flexion. REAL: the
-    same with so much wobble that the off-axis relative rate is that of real walking, 0.55-1.05 rad/s.
+    RIGID: not at all. SOFT: thigh about 2 deg and 5 mm, and 6 deg of knee rotation per 60 deg of flexion. REAL: more,
+    ringing at 5-12 Hz after contacts and trembling, so that the relative rate off the axis is that of people walking:
+    0.55-1.05 rad/s, 0.5-0.7 of it (rms) above 3 Hz.
     """
 
     RIGID = "rigid"
@@ -38,12 +39,67 @@ class Motion(StrEnum):
 class Manner(StrEnum):
     """How the feet are used in walking.
 
-    SHUFFLING: short steps, the foot put down and lifted nearly flat. TOES: the heels never touch the floor.
+    SHUFFLING: short steps, the foot put down and lifted nearly flat. TOES: the heels never touch the floor. FLAT: the
+    foot lands and lifts flat, with a pitch of a few degrees. STIFF: foot and shank roll as one piece, as in an
+    ankle-foot orthosis. DRAGGING: a foot that hangs, its toes on the floor in early swing, landing on the toes or flat;
+    toe-off is where the toes begin to slide. TOE_FIRST: lands on the toes, then lowers the heel.
     """
 
     ORDINARY = "ordinary"
     SHUFFLING = "shuffling"
     TOES = "toes"
+    FLAT = "flat"
+    STIFF = "stiff"
+    DRAGGING = "dragging"
+    TOE_FIRST = "toe_first"
+
+
+@dataclass(frozen=True, slots=True)
+class GaitChange:
+    """A change of gait, or standard deviations of one.
+
+    Attributes
+    ----------
+    knee_deg
+        Added to the knee's peak in swing, and so to its range.
+    ankle_deg
+        Added to the range, by more plantarflexion at toe-off. Beyond -3 deg the range has other ends.
+    stance_percent
+        Points of the stride.
+    time, length
+        Of a stride, as shares: 0.02 is 2 % more.
+    """
+
+    knee_deg: float = 0.0
+    ankle_deg: float = 0.0
+    stance_percent: float = 0.0
+    time: float = 0.0
+    length: float = 0.0
+
+
+NO_CHANGE = GaitChange()
+
+
+@dataclass(frozen=True, slots=True)
+class Variation:
+    """Standard deviations beyond the walker's own small ones.
+
+    From stride to stride, where `correlation` is that of successive strides; from walk to walk; and from strapping to
+    strapping, whose `knee_deg` and `ankle_deg` are of what the sensors tell, the joints themselves staying as they are.
+    """
+
+    strides: GaitChange = NO_CHANGE
+    walks: GaitChange = NO_CHANGE
+    strappings: GaitChange = NO_CHANGE
+    correlation: float = 0.0
+
+
+# as people vary: with the walker's own 0.9 deg and 0.8 % the strides of the knee spread by 1.7 deg, the time by 2 %
+PEOPLE = Variation(
+    strides=GaitChange(knee_deg=1.5, ankle_deg=1.5, stance_percent=1.0, time=0.018, length=0.027),
+    walks=GaitChange(knee_deg=1.0, ankle_deg=1.0, stance_percent=0.5, time=0.02, length=0.025),
+    correlation=0.3,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +126,18 @@ class FreeMotion:
 
 @dataclass(frozen=True, slots=True)
 class Walk:
-    """Standing, `strides` steps of each foot, standing. `turn_rad` (positive to the left) is made half-way."""
+    """Standing, `strides` steps of each foot, standing. `turn_rad` (positive to the left) is made half-way.
+
+    Attributes
+    ----------
+    manner_of_side
+        Sides that walk in another manner than `manner`.
+    change, changed_side
+        How this walk differs from the person's others, in both legs or, for joints and stance, in one.
+    drift, is_drift_random
+        How gait changes from the first to the last stride: evenly, or as a random walk that ends by `drift` (a standard
+        deviation) away.
+    """
 
     name: str = "walk 1"
     speed_m_s: float = 1.19
@@ -80,11 +147,20 @@ class Walk:
     turn_rad: float = 0.0
     manner: Manner = Manner.ORDINARY
     is_restrapped_before: bool = False
+    manner_of_side: Mapping[Side, Manner] = field(default_factory=dict)
+    change: GaitChange = NO_CHANGE
+    changed_side: Side | None = None
+    drift: GaitChange = NO_CHANGE
+    is_drift_random: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class SensorErrors:
-    """Densities per root hertz (of the half sample rate), standard deviations of what is constant in one session."""
+    """Densities per root hertz (of the half sample rate), standard deviations of what is constant in one session.
+
+    `..._step_...` is the least difference between two values that the sensor can tell (0: any), `..._range_...` the
+    largest value, positive or negative; `COARSE` and `VERY_COARSE` are those of real sensors.
+    """
 
     gyro_noise_rad_s: float = np.deg2rad(0.01)
     gyro_bias_sd_rad_s: float = np.deg2rad(0.3)
@@ -93,9 +169,27 @@ class SensorErrors:
     acc_noise_m_s2: float = 150e-6 * 9.81
     acc_bias_sd_m_s2: float = 0.03
     acc_scale_sd: float = 0.003
+    gyro_step_rad_s: float = 0.0
+    acc_step_m_s2: float = 0.0
+    gyro_range_rad_s: float = np.inf
+    acc_range_m_s2: float = np.inf
 
 
 NO_ERRORS = SensorErrors(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+# 16 bits over +-2000 deg/s and +-16 g; and an older one of 0.07 deg/s and 0.004 g, whose noise is below its steps
+COARSE = SensorErrors(
+    gyro_step_rad_s=np.deg2rad(4000.0 / 65536),
+    acc_step_m_s2=32 * 9.81 / 65536,
+    gyro_range_rad_s=np.deg2rad(2000.0),
+    acc_range_m_s2=16 * 9.81,
+)
+VERY_COARSE = SensorErrors(
+    gyro_noise_rad_s=np.deg2rad(0.003),
+    gyro_step_rad_s=np.deg2rad(0.07),
+    acc_step_m_s2=0.004 * 9.81,
+    gyro_range_rad_s=np.deg2rad(2000.0),
+    acc_range_m_s2=8 * 9.81,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +200,9 @@ class WalkerSettings:
     ----------
     clock_late_s
         By how much a site's stamps are later than the truth. Missing sites are on time.
+    clock_rate
+        How fast a site's clock runs against the truth, 1.02: 2 % fast. At the start of each recording it is right but
+        for `clock_late_s`; it samples by its own seconds.
     loss_fraction
         Share of samples lost, in bursts.
     stamp_jitter_s
@@ -114,6 +211,12 @@ class WalkerSettings:
         Sites that do not sample at `rate_hz`.
     stiff_knee_side
         A leg whose knee bends by a quarter only.
+    tissue_gain, tissue_gain_sd
+        By what share of the true flexion sensors read more at the knee, as the thigh's tissue stays behind the bone:
+        mean and standard deviation over legs. On people 0.09 and 0.04 in walking. What was drawn is in the session's
+        truth (`JointTruth.sensor_gain`), whose angles stay those of the bones.
+    variation
+        How gait varies beyond the walker's own small spread: `PEOPLE` is as people do.
     """
 
     seed: int = 0
@@ -126,10 +229,14 @@ class WalkerSettings:
     site_rates_hz: Mapping[Site, float] = field(default_factory=dict)
     rate_kind: RateKind = RateKind.INSTANTANEOUS
     clock_late_s: Mapping[Site, float] = field(default_factory=dict)
+    clock_rate: Mapping[Site, float] = field(default_factory=dict)
     loss_fraction: float = 0.0
     stamp_jitter_s: float = 0.0
     errors: SensorErrors = SensorErrors()
     mounting_sd_m: float = 0.025
+    tissue_gain: float = 0.0
+    tissue_gain_sd: float = 0.0
+    variation: Variation = Variation()
 
 
 @dataclass(frozen=True, slots=True)

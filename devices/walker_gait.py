@@ -6,6 +6,7 @@ In swing the ankle's curve and the hip's path are bridged from toe-off to the ne
 Each hip has a path of its own: a pelvis would have to give by some centimetres, which no sensor on the legs can tell.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -13,7 +14,8 @@ from scipy.interpolate import BPoly, PchipInterpolator
 
 from core.body import Side
 from core.samples import FloatArray, IntArray
-from devices.walker_body import HEEL_M, TOE_M, Leg, Manner, Walk
+from devices.walker_body import HEEL_M, TOE_M, Leg, Walk
+from devices.walker_manners import Gait, gait_at, gaits_of_walk
 from devices.walker_motion import (
     Y_AXIS,
     Z_AXIS,
@@ -27,13 +29,14 @@ from devices.walker_motion import (
     smooth,
     smooth_step,
 )
+from devices.walker_variation import NO_CHANGES, FootChanges, StepChanges
 
 HIP_AHEAD_OF_ANKLE_M = 0.03  # standing, over the middle of the foot
 MARGIN_S = 0.03  # the rolling goes on this long beyond both ends of stance, so that swing can join on smoothly
 PITCH_WIDTH_S = 0.012  # an impact takes some 20 ms to turn a foot
 # the foot is driven forward and up by so much at initial contact: about 40 m/s2 there, 27 at the shank, 14 at the thigh
+STIFF_GIVE_RAD, STIFF_FLAT_RAD = np.deg2rad(2.0), np.deg2rad(0.3)
 SHOCK_M, SHOCK_PITCH_RAD = 0.0015, np.deg2rad(0.25)
-LEAST_CLEARANCE_M = 0.012  # Winter 1992, doi 10.1093/ptj/72.1.45: 1.3 cm under the toe
 TURN_RADIUS_M = 0.8
 
 # Knee flexion, deg, over stance and swing (each 0-1) of a stride at comfortable speed: the two-peaked curve of every
@@ -50,89 +53,18 @@ KNEE_STANCE = (
     (1.0, 31.0),
 )
 KNEE_SWING = ((0.11, 46.5), (0.31, 62.5), (0.48, 56.0), (0.62, 40.0), (0.76, 19.0), (0.88, 4.5), (0.95, 1.5))
+KNEE_PEAK_DEG = 59.0  # of the swing, over where the curves are scaled from
+ANKLE_AT_TOE_OFF = 0.89  # of what is added to the ankle's range: swing goes on beyond toe-off
 INVERSION_DEG = ((0.0, 2.0), (0.2, -3.5), (0.7, -1.0), (1.0, 4.0), (1.5, 2.5))  # over stance 0-1 and swing 1-2
 ROTATION_DEG = ((0.0, -1.0), (0.3, 3.0), (0.8, -2.0), (1.0, -3.0), (1.5, 1.0))
-
-
-@dataclass(frozen=True, slots=True)
-class Gait:
-    """What speed and manner decide: stride length and time, the shares of the stride, the size of the curves.
-
-    `flat_pitch_rad` is the foot's pitch in the middle of stance; `toe_off_pitch_rad`, where not NaN, its pitch at
-    toe-off, else the ankle's plantarflexion decides.
-    """
-
-    speed_m_s: float
-    stride_m: float
-    stride_s: float
-    stance: float
-    full_contact: float
-    heel_rise: float
-    midstance: float
-    contact_pitch_rad: float
-    toe_off_ankle_rad: float
-    knee_loading: float
-    knee_swing: float
-    shock: float
-    clearance_m: float = LEAST_CLEARANCE_M
-    lifted_rad: float = np.deg2rad(4.5)
-    flat_pitch_rad: float = 0.0
-    toe_off_pitch_rad: float = np.nan
-
-
-def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
-    """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640)."""
-    ordinary = _ordinary_gait(speed_m_s)
-    if manner is Manner.SHUFFLING:
-        return replace(
-            ordinary,
-            stride_m=0.55 * ordinary.stride_m,
-            stride_s=0.55 * ordinary.stride_s,
-            stance=ordinary.stance + 0.05,
-            full_contact=0.06,
-            heel_rise=ordinary.stance - 0.07,
-            contact_pitch_rad=np.deg2rad(2.0),
-            knee_swing=0.3,
-            shock=0.3 * ordinary.shock,
-            clearance_m=0.004,
-            lifted_rad=np.deg2rad(2.0),
-            toe_off_pitch_rad=np.deg2rad(-6.0),
-        )
-    if manner is Manner.TOES:
-        return replace(
-            ordinary,
-            contact_pitch_rad=np.deg2rad(-6.0),
-            lifted_rad=np.deg2rad(-15.0),
-            flat_pitch_rad=np.deg2rad(-25.0),
-        )
-    return ordinary
-
-
-def _ordinary_gait(speed_m_s: float) -> Gait:
-    relative = speed_m_s / 1.19
-    stride_m = 1.28 * relative**0.55
-    stance = 0.605 - 0.048 * (speed_m_s - 1.19) + 0.05 * max(0.0, 0.8 - speed_m_s)
-    return Gait(
-        speed_m_s=speed_m_s,
-        stride_m=stride_m,
-        stride_s=stride_m / speed_m_s,
-        stance=stance,
-        full_contact=0.105,
-        heel_rise=0.375 + 0.06 * (1.0 - relative),
-        midstance=0.29 + 0.6 * (stance - 0.605),
-        contact_pitch_rad=np.deg2rad(19.0) * relative**0.5,
-        toe_off_ankle_rad=np.deg2rad(-12.5) * min(relative, 1.0) ** 0.6,
-        knee_loading=min(relative**0.7, 1.4),
-        knee_swing=0.85 + 0.15 * min(relative, 1.3),
-        shock=min(relative, 1.5),
-    )
 
 
 @dataclass(frozen=True, slots=True)
 class StepPlan:
     """The stances of one foot: the first and the last are standing, so contact and toe-off are infinite at the ends.
 
-    All (i,). `ankle_m` is where along the path the ankle stands.
+    All (i,). `ankle_m` is where along the path the ankle stands. `knee_deg` and `ankle_deg` are added to the peaks of
+    the swing that follows and of the toe-off that ends the stance.
     """
 
     contact_s: FloatArray
@@ -140,33 +72,46 @@ class StepPlan:
     heel_rise_s: FloatArray
     toe_off_s: FloatArray
     ankle_m: FloatArray
+    knee_deg: FloatArray
+    ankle_deg: FloatArray
 
 
 @dataclass(frozen=True, slots=True)
 class WalkPlan:
     """Both feet's steps, and when the hips speed up and slow down along the path."""
 
-    gait: Gait
+    gaits: Mapping[Side, Gait]
     duration_s: float
     hip_path_m: FloatArray
     steps: dict[Side, StepPlan]
 
 
 def plan_walk(
-    walk: Walk, time_s: FloatArray, first: Side, prosthetic_side: Side | None, rng: np.random.Generator
+    walk: Walk,
+    time_s: FloatArray,
+    first: Side,
+    prosthetic_side: Side | None,
+    rng: np.random.Generator,
+    changes: StepChanges = NO_CHANGES,
 ) -> WalkPlan:
     """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording."""
-    gait = gait_at(walk.speed_m_s, walk.manner)
+    gaits = gaits_of_walk(walk)
+    gait = gaits[first]
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
     first_off = walk.standing_before_s + 0.3 * stride_s
-    steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides)
+    time, length = changes.of_steps(2 * walk.strides)
+    steps_s = 0.5 * stride_s * rng.normal(1.0, 0.012, 2 * walk.strides) * time
     contact = first_off + swing_s + np.concatenate([[0.0], np.cumsum(steps_s[1:])])
     at_speed = contact[0] + 0.12 * stride_s
     slowing = contact[-2]
     stopped = slowing + 2.0 * gait.midstance * stride_s
-    speed = walk.speed_m_s * (
-        smooth_step((time_s - at_speed) / (0.65 * stride_s) + 1.0)
-        - smooth_step((time_s - slowing) / (stopped - slowing))
+    speed = (
+        walk.speed_m_s
+        * np.interp(time_s, contact, length / time)
+        * (
+            smooth_step((time_s - at_speed) / (0.65 * stride_s) + 1.0)
+            - smooth_step((time_s - slowing) / (stopped - slowing))
+        )
     )
     hip_path = np.cumsum(speed) * (time_s[1] - time_s[0])
     placed_s = contact + gait.midstance * stride_s
@@ -174,21 +119,31 @@ def plan_walk(
     ankle[-2:] = hip_path[-1]
     ankle[:-2] += rng.normal(0.0, 0.01 * gait.stride_m, len(ankle) - 2)
     other = Side.RIGHT if first is Side.LEFT else Side.LEFT
+    stride_time = 0.5 * (time + np.concatenate([time[:1], time[:-1]]))
     plans = {
         side: _plan_foot(
-            gait,
+            gaits[side],
             side is prosthetic_side,
             contact[k::2],
             np.concatenate([[hip_path[0]], ankle[k::2]]) - HIP_AHEAD_OF_ANKLE_M,
+            stride_time[k::2],
+            changes.of_foot(side, walk.strides),
         )
         for k, side in enumerate((first, other))
     }
-    return WalkPlan(gait, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans)
+    return WalkPlan(gaits, float(stopped + walk.standing_after_s + 0.4 * stride_s), hip_path, plans)
 
 
-def _plan_foot(gait: Gait, is_prosthetic: bool, contact_s: FloatArray, ankle_m: FloatArray) -> StepPlan:
+def _plan_foot(
+    gait: Gait,
+    is_prosthetic: bool,
+    contact_s: FloatArray,
+    ankle_m: FloatArray,
+    stride_time: FloatArray,
+    changes: FootChanges,
+) -> StepPlan:
     full_contact, heel_rise = (0.14, 0.30) if is_prosthetic else (gait.full_contact, gait.heel_rise)
-    swing_s = (1.0 - gait.stance) * gait.stride_s
+    swing_s = (1.0 - gait.stance - 0.01 * changes.stance_percent) * gait.stride_s * stride_time
     starts = np.concatenate([[-np.inf], contact_s])
     ends = np.concatenate([contact_s - swing_s, [np.inf]])
     return StepPlan(
@@ -197,20 +152,24 @@ def _plan_foot(gait: Gait, is_prosthetic: bool, contact_s: FloatArray, ankle_m: 
         heel_rise_s=ends - (gait.stance - heel_rise) * gait.stride_s,
         toe_off_s=ends,
         ankle_m=ankle_m,
+        knee_deg=np.append(changes.knee_deg, 0.0),
+        ankle_deg=np.append(changes.ankle_deg, 0.0),
     )
 
 
 def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
     """Both feet side by side, no step."""
-    foot = _plan_foot(gait_at(1.19), False, np.empty(0), np.array([-HIP_AHEAD_OF_ANKLE_M]))
-    return WalkPlan(gait_at(1.19), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
+    gait = gait_at(1.19)
+    place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
+    foot = _plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
+    return WalkPlan(dict.fromkeys(Side, gait), duration_s, np.zeros_like(time_s), dict.fromkeys(Side, foot))
 
 
 def walk_leg(
     leg: Leg, plan: WalkPlan, walk: Walk | None, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator
 ) -> LegMotion:
     """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left."""
-    steps, gait = plan.steps[leg.side], plan.gait
+    steps, gait = plan.steps[leg.side], plan.gaits[leg.side]
     step_s = time_s[1] - time_s[0]
     stance = _stance_at(steps, time_s)
     swings = [
@@ -219,7 +178,11 @@ def walk_leg(
     ]
     shock = _shock(steps, time_s) * gait.shock
     knee = smooth(_knee_curve(leg, steps, gait, time_s, rng), step_s, 0.03)
-    pitch = smooth(_stance_pitch(leg, plan, time_s), step_s, PITCH_WIDTH_S) + SHOCK_PITCH_RAD * shock
+    if gait.is_ankle_stiff:
+        pitch, steps = _roll_as_one(leg, plan, knee, time_s)
+    else:
+        pitch = _stance_pitch(leg, plan, time_s)
+    pitch = smooth(pitch, step_s, PITCH_WIDTH_S) + SHOCK_PITCH_RAD * shock
     rolled_x, rolled_z = _roll(pitch)
     rolled_x = rolled_x + SHOCK_M * shock
 
@@ -229,6 +192,8 @@ def walk_leg(
     lean = _shank_lean(leg, ahead, knee)
     ankle = pitch + lean
     lifted = np.deg2rad(2.0) if leg.is_prosthetic else gait.lifted_rad
+    if gait.is_ankle_stiff:
+        lifted = _standing_lean(leg)
     for swing in swings:
         _bridge(ankle, swing, step_s, lifted)
 
@@ -248,6 +213,8 @@ def walk_leg(
     for swing in swings:
         _bridge(hip, swing, step_s)
         _lift_hip(hip, foot, hanging[2], swing, gait.clearance_m)
+        if gait.drag > 0.0:
+            _drag_toes(hip, foot, hanging[2], swing, gait.drag)
     rotations, origins = hang_from_hip(leg, thigh, hip, angles)
     events = FootEvents(steps.contact_s[1:], steps.full_contact_s[1:], steps.heel_rise_s[:-1], steps.toe_off_s[:-1])
     return LegMotion(time_s, angles, rotations, origins, events, place)
@@ -274,7 +241,7 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
     last = len(steps.contact_s) - 1
     for i in range(last + 1):
         loading = gait.knee_loading * leg.knee_gain * rng.normal(1.0, 0.05)
-        swing = gait.knee_swing * leg.knee_gain * rng.normal(1.0, 0.015)
+        swing = gait.knee_swing * leg.knee_gain * rng.normal(1.0, 0.015) + steps.knee_deg[i] / KNEE_PEAK_DEG
         on, off = steps.contact_s[i], steps.toe_off_s[i]
         if i == 0:
             on = off - stance_s
@@ -297,20 +264,21 @@ def _knee_curve(leg: Leg, steps: StepPlan, gait: Gait, time_s: FloatArray, rng: 
 
 def _stance_pitch(leg: Leg, plan: WalkPlan, time_s: FloatArray) -> FloatArray:
     """Pitch of the foot (n,), toes up positive, zero when the sole is flat; in swing it means nothing."""
-    steps, w = plan.steps[leg.side], PITCH_WIDTH_S
+    steps, gait, w = plan.steps[leg.side], plan.gaits[leg.side], PITCH_WIDTH_S
     beyond_s = MARGIN_S + 2.5 * w  # what smoothing spoils is further away than what swing looks at
-    rest = plan.gait.flat_pitch_rad
+    rest = gait.flat_pitch_rad
     pitch = np.full_like(time_s, rest)
     for i in range(1, len(steps.contact_s)):
         on, flat = steps.contact_s[i], steps.full_contact_s[i] - w
         here = slice(*np.searchsorted(time_s, [on - beyond_s, flat]))
-        contact = _contact_pitch(leg, plan.gait, float(np.interp(on, time_s, plan.hip_path_m)) - steps.ankle_m[i])
+        contact = _contact_pitch(leg, gait, float(np.interp(on, time_s, plan.hip_path_m)) - steps.ankle_m[i])
         u = (flat - time_s[here]) / (flat - on)
         pitch[here] = rest + contact * u**2 * (2.0 - u)
     for i in range(len(steps.contact_s) - 1):
         rise, end = steps.heel_rise_s[i] + w, steps.toe_off_s[i]
         here = slice(*np.searchsorted(time_s, [rise, end + beyond_s]))
-        off = _toe_off_pitch(leg, plan.gait, float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i]) - rest
+        hip_ahead_m = float(np.interp(end, time_s, plan.hip_path_m)) - steps.ankle_m[i]
+        off = _toe_off_pitch(leg, gait, hip_ahead_m, steps.knee_deg[i], steps.ankle_deg[i]) - rest
         u = (time_s[here] - rise) / (end - rise)
         # a stiff ankle turns the foot with the shank, a human one holds it down for longer
         pitch[here] = rest + off * (0.3 * u + 0.7 * u**2 if leg.is_prosthetic else 0.6 * u**2 + 1.4 * u**3 - u**4)
@@ -326,16 +294,44 @@ def _contact_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
     return float(np.clip(wanted - lean[0], np.deg2rad(2.0), gait.contact_pitch_rad))
 
 
-def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float) -> float:
+def _toe_off_pitch(leg: Leg, gait: Gait, hip_ahead_m: float, knee_deg: float, ankle_deg: float) -> float:
     """The pitch that gives the ankle its plantarflexion at toe-off, when the hip is `hip_ahead_m` of the foothold."""
+    more_rad = ANKLE_AT_TOE_OFF * np.deg2rad(ankle_deg)
     if np.isfinite(gait.toe_off_pitch_rad):
-        return gait.toe_off_pitch_rad
-    knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing]))
-    wanted = np.deg2rad(-2.0) if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain
+        return gait.toe_off_pitch_rad - more_rad
+    knee = np.deg2rad(np.array([3.5 + 27.5 * leg.knee_gain * gait.knee_swing + 27.5 * knee_deg / KNEE_PEAK_DEG]))
+    wanted = np.deg2rad(-2.0) if leg.is_prosthetic else gait.toe_off_ankle_rad * leg.ankle_gain - more_rad
     pitch = np.array([-0.5])
     for _ in range(8):  # the rolling foot carries the ankle forward: a contraction by a fifth each time
         pitch = wanted - _shank_lean(leg, hip_ahead_m - _roll(pitch)[0], knee)
     return float(pitch[0])
+
+
+def _roll_as_one(leg: Leg, plan: WalkPlan, knee: FloatArray, time_s: FloatArray) -> tuple[FloatArray, StepPlan]:
+    """Pitch (n,) of a foot that turns with its shank, flat while the shank leans as in standing, and when it is flat.
+
+    A shoe gives by `STIFF_GIVE_RAD` before the foot follows.
+    """
+    steps = plan.steps[leg.side]
+    ahead = np.clip(plan.hip_path_m - steps.ankle_m[_stance_at(steps, time_s)], -0.6, 0.6)
+    pitch = np.zeros_like(time_s)
+    for _ in range(8):  # a contraction, as at toe-off
+        lean = _standing_lean(leg) - _shank_lean(leg, ahead - _roll(pitch)[0], knee)
+        beyond = np.maximum(np.abs(lean) - STIFF_GIVE_RAD, 0.0)
+        pitch = np.sign(lean) * beyond**2 / (beyond + STIFF_GIVE_RAD)
+    full_contact_s, heel_rise_s = steps.full_contact_s.copy(), steps.heel_rise_s.copy()
+    flat = np.abs(pitch) < STIFF_FLAT_RAD
+    for i, (on, off) in enumerate(zip(steps.contact_s, steps.toe_off_s, strict=True)):
+        here = time_s[flat & (time_s > on) & (time_s < off)]
+        if i > 0:
+            full_contact_s[i] = here[0]
+        if i + 1 < len(heel_rise_s):
+            heel_rise_s[i] = here[-1]
+    return pitch, replace(steps, full_contact_s=full_contact_s, heel_rise_s=heel_rise_s)
+
+
+def _standing_lean(leg: Leg) -> float:
+    return float(_shank_lean(leg, np.array([HIP_AHEAD_OF_ANKLE_M]), np.array([leg.standing_knee_rad]))[0])
 
 
 def _shock(steps: StepPlan, time_s: FloatArray) -> FloatArray:
@@ -449,3 +445,13 @@ def _lift_hip(
     inner = slice(len(u) // 5, len(u) - len(u) // 5)
     lack = (clearance_m - lowest[inner]) / bump[inner]
     hip[span, 2] += max(0.0, float(lack.max())) * bump
+
+
+def _drag_toes(
+    hip: FloatArray, foot: FloatArray, ankle_below_hip: FloatArray, swing: tuple[int, int], share: float
+) -> None:
+    """Lower the hip by what the toes have over the floor in the first `share` of swing, in place."""
+    span = slice(swing[0], swing[1] + 1)
+    u = np.linspace(0.0, 1.0, swing[1] - swing[0] + 1)
+    lowest = hip[span, 2] + ankle_below_hip[span, 2] + np.minimum(foot[span] @ HEEL_M, foot[span] @ TOE_M)[:, 2]
+    hip[span, 2] -= lowest * smooth_step(1.0 + (share - u) / 0.4)

@@ -17,8 +17,14 @@ GRAVITY_M_S2 = np.array([0.0, 0.0, -9.81])
 SEGMENT_ROW = {Segment.THIGH: 0, Segment.SHANK: 1, Segment.FOOT: 2}
 TISSUE_SHARE = {Segment.THIGH: 1.0, Segment.SHANK: 0.6, Segment.FOOT: 0.25}
 TISSUE_RAD, TISSUE_M = np.deg2rad(2.0), 0.005
-REAL_WALK_WOBBLE, REAL_FREE_WOBBLE = 0.95, 0.45  # in walking the off-axis relative rate is then 0.55-1.05 rad/s
 RING_HZ, RING_DECAY_S = 9.0, 0.08
+# Real tissue: in walking the relative rate off the axis is then 0.5-0.9 rad/s (1.48 MAD) and about 0.6 (rms) above 3 Hz
+REAL_RIDE = 1.8  # how much more than soft tissue it follows the flexion
+REAL_WALK_WOBBLE, REAL_FREE_WOBBLE = 1.0, 0.4
+REAL_RING_HZ, REAL_RING_DECAY_S, REAL_RING_STEADINESS = (5.0, 12.0), (0.05, 0.12), 0.3
+REAL_RING, REAL_TOE_OFF_RING, REAL_JITTER = 2.0, 0.5, 0.045
+REAL_SHARE = {Segment.THIGH: 0.9, Segment.SHANK: 0.8, Segment.FOOT: 0.65}  # of ring and jitter
+MOST_TURN_RAD = np.deg2rad(12.0)  # a strap lets a sensor turn no further
 LOST_AT_ONCE = 5  # mean length of a burst, samples
 
 
@@ -46,15 +52,18 @@ class Ride:
 
     The drives (3, 3) are the flexion, its rate and the ringing after contacts. In one task one strap rides alike from
     stride to stride and from walk to walk; tissue depends on the task (Leardini et al. 2005,
-    doi:10.1016/j.gaitpost.2004.05.002).
+    doi:10.1016/j.gaitpost.2004.05.002). Real tissue rings at `ring_hz` and for `ring_decay_s` of this strap's own.
     """
 
     turn: FloatArray
     shift: FloatArray
+    ring_hz: float
+    ring_decay_s: float
 
 
 def draw_ride(rng: np.random.Generator) -> Ride:
-    return Ride(*(np.stack([_direction(rng) for _ in range(3)]) for _ in range(2)))
+    turn, shift = (np.stack([_direction(rng) for _ in range(3)]) for _ in range(2))
+    return Ride(turn, shift, rng.uniform(*REAL_RING_HZ), rng.uniform(*REAL_RING_DECAY_S))
 
 
 def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Mounting:
@@ -79,11 +88,22 @@ def draw_faults(errors: SensorErrors, rng: np.random.Generator) -> SensorFaults:
 
 
 def sensor_poses(
-    leg: LegMotion, site: Site, mounting: Mounting, tissue: Tissue, ride: Ride, rng: np.random.Generator
+    leg: LegMotion,
+    site: Site,
+    mounting: Mounting,
+    tissue: Tissue,
+    ride: Ride,
+    rng: np.random.Generator,
+    following: FloatArray | None = None,
 ) -> tuple[FloatArray, FloatArray]:
-    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone."""
+    """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone.
+
+    With `following` (n, 3, 3) the sensor and the tissue under it are turned so against their segment.
+    """
     row = SEGMENT_ROW[site.segment]
     segment, origin = leg.rotations[row], leg.origins_m[row]
+    if following is not None:
+        segment = segment @ following
     if tissue is Tissue.RIGID:
         return segment @ mounting.segment_from_sensor, origin + segment @ mounting.place_m
     turn, shift = _tissue_motion(leg, site.segment, tissue, ride, rng)
@@ -96,23 +116,47 @@ def _tissue_motion(
 ) -> tuple[FloatArray, FloatArray]:
     """The sensor against its segment, in segment axes: rotation vectors (n, 3) and shifts (n, 3).
 
-    It follows the flexion, rings after each contact and, in the real setting, wobbles at 1.5 to 6 Hz while moving.
+    It follows the flexion and rings after each contact. Real tissue follows it further, wobbles slowly, rings after
+    toe-off too, differently each time, and trembles with the muscles.
     """
     t, share = leg.time_s, TISSUE_SHARE[segment]
     step_s = t[1] - t[0]
     flexion = leg.angles.ankle if segment is Segment.FOOT else leg.angles.knee
-    drives = [flexion / np.deg2rad(60.0), gaussian_filter1d(np.gradient(flexion, step_s), 0.01 / step_s) / 4.0]
+    follows = [flexion / np.deg2rad(60.0), gaussian_filter1d(np.gradient(flexion, step_s), 0.01 / step_s) / 4.0]
+    contacts_s = leg.events.initial_contact_s
+    if tissue is Tissue.SOFT:
+        drives = np.stack([*follows, 2.0 * _ring(t, contacts_s, np.ones(len(contacts_s)), RING_HZ, RING_DECAY_S)], -1)
+        return share * TISSUE_RAD * (drives @ ride.turn), share * TISSUE_M * (drives @ ride.shift)
+    hits_s = np.concatenate([contacts_s, leg.events.toe_off_s])
+    sizes = np.repeat([1.0, REAL_TOE_OFF_RING], [len(contacts_s), len(leg.events.toe_off_s)])
+    sizes = sizes * np.exp(rng.normal(0.0, REAL_RING_STEADINESS, len(hits_s)))
+    ring = REAL_RING * REAL_SHARE[segment] / share * _ring(t, hits_s, sizes, ride.ring_hz, ride.ring_decay_s)
+    drives = np.stack([*(REAL_RIDE * drive for drive in follows), ring], axis=-1)
+    moving = _is_moving(leg)[:, None]
+    slow = REAL_WALK_WOBBLE if len(contacts_s) else REAL_FREE_WOBBLE
+    fast = REAL_JITTER * REAL_SHARE[segment] / share * slow / REAL_WALK_WOBBLE
+    turn, shift = (
+        drives @ directions
+        + moving * (slow * _wobble(t, (1.2, 3.8), rng) + fast * _wobble(t, (6.0, 18.0), rng) * _bursts(t, rng))
+        for directions in (ride.turn, ride.shift)
+    )
+    return _bounded(share * TISSUE_RAD * turn), share * TISSUE_M * shift
+
+
+def _ring(t: FloatArray, hits_s: FloatArray, sizes: FloatArray, ring_hz: float, decay_s: float) -> FloatArray:
+    """A decaying oscillation (n,) after each hit, that begins smoothly."""
     ring = np.zeros_like(t)
-    for contact in leg.events.initial_contact_s:
-        since = np.maximum(t - contact, 0.0)
+    for hit_s, size in zip(hits_s, sizes, strict=True):
+        since = np.maximum(t - hit_s, 0.0)
         start = (1.0 - np.exp(-since / 0.015)) ** 3
-        ring += start * np.exp(-since / RING_DECAY_S) * np.sin(2.0 * np.pi * RING_HZ * since)
-    drives.append(2.0 * ring)
-    turn, shift = (np.stack(drives, axis=-1) @ directions for directions in (ride.turn, ride.shift))
-    if tissue is Tissue.REAL:
-        size = (REAL_WALK_WOBBLE if ring.any() else REAL_FREE_WOBBLE) * _is_moving(leg)[:, None]
-        turn, shift = turn + size * _wobble(t, rng), shift + size * _wobble(t, rng)
-    return share * TISSUE_RAD * turn, share * TISSUE_M * shift
+        ring += size * (start * np.exp(-since / decay_s) * np.sin(2.0 * np.pi * ring_hz * since))
+    return ring
+
+
+def _bounded(turn: FloatArray) -> FloatArray:
+    """Rotation vectors (n, 3) that a strap lets through: small ones as they are, none beyond `MOST_TURN_RAD`."""
+    size = np.linalg.norm(turn, axis=1, keepdims=True) / MOST_TURN_RAD
+    return np.asarray(turn / (1.0 + size**4) ** 0.25)
 
 
 def _direction(rng: np.random.Generator) -> FloatArray:
@@ -120,12 +164,17 @@ def _direction(rng: np.random.Generator) -> FloatArray:
     return np.asarray(v / np.linalg.norm(v))
 
 
-def _wobble(t: FloatArray, rng: np.random.Generator) -> FloatArray:
-    """Band noise (n, 3) of unit standard deviation: a few sines each between 1.5 and 6 Hz."""
+def _wobble(t: FloatArray, band_hz: tuple[float, float], rng: np.random.Generator) -> FloatArray:
+    """Band noise (n, 3) of unit standard deviation: a few sines each within `band_hz`."""
     count = 5
-    frequency, phase = rng.uniform(1.5, 6.0, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
+    frequency, phase = rng.uniform(*band_hz, (3, count)), rng.uniform(0.0, 2.0 * np.pi, (3, count))
     waves = [np.sin(2.0 * np.pi * np.outer(t, f) + p).sum(axis=1) for f, p in zip(frequency, phase, strict=True)]
     return np.stack(waves, axis=-1) * np.sqrt(2.0 / count)
+
+
+def _bursts(t: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """How much the muscles tremble (n, 1), 0 to 2.7, mean square about 1: now and then for some tenths of a second."""
+    return np.exp(1.2 * np.tanh(_wobble(t, (0.5, 2.0), rng)[:, :1])) - 0.3
 
 
 def _is_moving(leg: LegMotion) -> FloatArray:
@@ -205,10 +254,11 @@ class Clock:
 
 def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> Clock:
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
-    count = int(np.floor(duration_s * rate_hz + 1e-9)) + 1
-    late_s = settings.clock_late_s.get(site, 0.0)
+    late_s, pace = settings.clock_late_s.get(site, 0.0), settings.clock_rate.get(site, 1.0)
+    # samples come at the rate that the sensor's own clock calls `rate_hz`
+    count = int(np.floor(duration_s * pace * rate_hz + 1e-9)) + 1
     stamp = np.arange(count) / rate_hz
-    true = stamp - late_s
+    true = stamp / pace - late_s
     jitter, lost = rng.normal(size=count), _lost(count, settings.loss_fraction, rng)
     stamp = stamp + np.clip(settings.stamp_jitter_s * jitter, -0.4 / rate_hz, 0.4 / rate_hz)
     return Clock(true[~lost], stamp[~lost])
@@ -240,7 +290,7 @@ def record(
     at = (clock.true_s - fine_s[0]) / step_s
     rate = angular_rate(rotations, step_s)
     if settings.rate_kind is RateKind.AVERAGED:
-        gyr = _mean_before(rate, at, 1.0 / (rate_hz * step_s))
+        gyr = _mean_before(rate, at, 1.0 / (rate_hz * settings.clock_rate.get(site, 1.0) * step_s))
     else:
         gyr = interpolate(rate, at)
     without_gravity = acceleration(place, step_s) - GRAVITY_M_S2
@@ -256,7 +306,23 @@ def record(
     block = ImuBlock(
         sensor=f"DEMO-{site.value}",
         time_s=clock.stamp_s,
-        gyr_rad_s=faults.gyr_scale * gyr + bias + errors.gyro_noise_rad_s * gyr_noise,
-        acc_m_s2=faults.acc_scale * acc + faults.acc_bias_m_s2 + errors.acc_noise_m_s2 * acc_noise,
+        gyr_rad_s=_digits(
+            faults.gyr_scale * gyr + bias + errors.gyro_noise_rad_s * gyr_noise,
+            errors.gyro_step_rad_s,
+            errors.gyro_range_rad_s,
+        ),
+        acc_m_s2=_digits(
+            faults.acc_scale * acc + faults.acc_bias_m_s2 + errors.acc_noise_m_s2 * acc_noise,
+            errors.acc_step_m_s2,
+            errors.acc_range_m_s2,
+        ),
     )
     return block, bias
+
+
+def _digits(values: FloatArray, step: float, limit: float) -> FloatArray:
+    """What a converter of steps `step` (0: none) and of range +-`limit` makes of `values`."""
+    if step > 0.0:
+        values = step * np.round(values / step)
+        limit = step * np.floor(limit / step) if np.isfinite(limit) else limit
+    return np.clip(values, -limit, limit) if np.isfinite(limit) else values

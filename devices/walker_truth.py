@@ -23,11 +23,14 @@ class JointTruth:
     functional_proximal, functional_distal : (3,)
         Principal direction of the bones' relative rate over the whole session; on a hinge it is the axis.
     lag_s
-        Added to the distal sensor's stamps it brings them to the proximal sensor's clock.
+        Added to the distal sensor's stamps it brings them to the proximal sensor's clock; where clocks run at rates of
+        their own, at the start.
     standing_rad
         Mean angle in the session's first standing, NaN without one.
     time_s, angle_rad : (n,)
         The angle, zero in the anatomical neutral position, at the proximal sensor's stamps.
+    sensor_gain
+        By what share of the angle the sensors turn further than the bones, by tissue and strapping.
     """
 
     axis_proximal: FloatArray
@@ -40,6 +43,7 @@ class JointTruth:
     standing_rad: float
     time_s: FloatArray
     angle_rad: FloatArray
+    sensor_gain: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +98,7 @@ class Take:
     clocks: Mapping[Site, Clock]
     mountings: Mapping[Site, Mounting]
     gyro_bias_rad_s: Mapping[Site, FloatArray]
+    gains: Mapping[Joint, float]
 
 
 def tell_truth(
@@ -145,6 +150,7 @@ def _joint(
         standing_rad=standing_rad,
         time_s=clock.stamp_s,
         angle_rad=interpolate(_angle(joint, motion), at),
+        sensor_gain=take.gains[joint],
     )
 
 
