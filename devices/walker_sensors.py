@@ -22,8 +22,8 @@ RING_HZ, RING_DECAY_S = 9.0, 0.08
 REAL_RIDE = 1.8  # how much more than soft tissue it follows the flexion
 REAL_WALK_WOBBLE, REAL_FREE_WOBBLE = 1.0, 0.4
 REAL_RING_HZ, REAL_RING_DECAY_S, REAL_RING_STEADINESS = (5.0, 12.0), (0.05, 0.12), 0.3
-REAL_RING, REAL_TOE_OFF_RING, REAL_JITTER = 2.0, 0.5, 0.045
-REAL_SHARE = {Segment.THIGH: 0.9, Segment.SHANK: 0.8, Segment.FOOT: 0.65}  # of ring and jitter
+REAL_RING, REAL_TOE_OFF_RING, REAL_JITTER = 1.9, 0.5, 0.045
+REAL_SHARE = {Segment.THIGH: 0.95, Segment.SHANK: 0.85, Segment.FOOT: 0.35}  # of ring and jitter
 MOST_TURN_RAD = np.deg2rad(12.0)  # a strap lets a sensor turn no further
 LOST_AT_ONCE = 5  # mean length of a burst, samples
 

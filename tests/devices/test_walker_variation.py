@@ -148,8 +148,8 @@ def test_tissue_makes_knees_read_more_and_the_truth_says_by_how_much() -> None:
         assert 0.0 < truth.sensor_gain < 0.25
         assert read / np.rad2deg(np.ptp(truth.angle_rad)) == pytest.approx(1.0 + truth.sensor_gain, abs=0.003)
     plain = simulate(replace(settings, tissue_gain=0.0, tissue_gain_sd=0.0))
-    bones = [s.truth.recordings["walk 1"].joints[Joint.LEFT_KNEE].angle_rad for s in (simulated, plain)]
-    np.testing.assert_array_equal(*bones)
+    one, other = (s.truth.recordings["walk 1"].joints[Joint.LEFT_KNEE].angle_rad for s in (simulated, plain))
+    np.testing.assert_array_equal(one, other)
     assert simulated.truth.recordings["walk 1"].joints[Joint.LEFT_ANKLE].sensor_gain == 0.0
 
 
