@@ -16,7 +16,7 @@ class Say(Protocol):
     def __call__(self, key: str, severity: Severity, **numbers: float | int | str) -> None: ...
 
 
-MIN_SIGN_MARGIN = 1.3  # of the best hypothesis against its best rival; below, the data hardly tell them apart
+MIN_SIGN_MARGIN = 1.5  # of the best hypothesis against its best rival: wrong ones, of weak short motions, had 1.45
 MAX_AXIS_SD_RAD = np.deg2rad(10.0)
 MAX_DIFFERENCE_RAD = np.deg2rad(5.0)  # between the result and the published angle, about their means
 

@@ -18,7 +18,9 @@ FINE_S = 0.005
 CORRELATION_S = 0.1
 MIN_SAMPLES = 50
 MAX_LAG_S = 0.075  # nearer to the border of the search it is not a lag but not the same joint
-MIN_LAG_S = 0.001
+MIN_LAG_S, MIN_TISSUE_LAG_S = 0.001, 0.008  # a segment under tissue follows its bone late, by up to 8 ms
+TISSUE_SD_S = 0.0015
+TISSUE_COST = 0.03  # of the best coincidence; without tissue 0.01 is left
 MIN_COST_RATIO = 1.15
 MAX_DISAGREEMENT_S = 0.005  # between the halves of a recording
 MIN_SIGMAS = 4.0  # tissue alone shows lags of up to three and a half
@@ -122,8 +124,11 @@ def _lowest(cost_of: Callable[[float], float], step_s: float, independent: float
     sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * max(1.0, independent)))) if bend > 0 else None
     if abs(lag_s) > MAX_LAG_S:
         return Lag(0.0, 0.0, None, ratio, ratio > MIN_COST_RATIO)
+    if lowest > TISSUE_COST and sd_s is not None:
+        sd_s = float(np.hypot(sd_s, TISSUE_SD_S))
     is_clear = sd_s is not None and abs(lag_s) > MIN_SIGMAS * sd_s
-    is_found = is_clear and ratio > MIN_COST_RATIO and abs(lag_s) > MIN_LAG_S
+    least_s = MIN_TISSUE_LAG_S if lowest > TISSUE_COST else MIN_LAG_S
+    is_found = is_clear and ratio > MIN_COST_RATIO and abs(lag_s) > least_s
     return Lag(lag_s if is_found else 0.0, lag_s, sd_s, ratio, False)
 
 
