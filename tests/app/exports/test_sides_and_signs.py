@@ -178,6 +178,7 @@ def test_sides_and_body_site_are_coded_by_snomed_ct(observations: list[dict[str,
         (site,) = one["bodySite"]["coding"]
         assert (site["system"], site["code"]) == (SNOMED, LOWER_LIMB)
         parts = {part["code"]["coding"][0]["code"]: part for part in one["component"]}
+        assert set(parts) >= {"side", "stride_sd", "strides_used"}
         (side,) = parts["side"]["valueCodeableConcept"]["coding"]
         assert side["system"] == SNOMED
         assert side["display"].lower() == SNOMED_SIDES[side["code"]]
