@@ -12,6 +12,7 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason, Strides, strides_of
 from core.results import RecordingAnalysis, SideGait
 from core.samples import RecordingKind
+from core.verdicts.model import Assessment, Verdict
 from core.walk_findings import about_prosthesis, about_walk
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
@@ -79,7 +80,9 @@ def test_a_peak_that_no_stride_has_is_named_unless_the_sign_is_in_doubt(walk: Re
     (found,) = told(walk, passing, right)
     assert (found.key, found.severity, found.where) == ("no_peak", Severity.INFO, "walk 1, left_ankle")
     assert found.numbers == {"peak": "ankle_push_off_plantarflexion"}
-    assert told(walk, replace(passing, sign_in_doubt=frozenset({Joint.LEFT_ANKLE})), right) == []
+    ankle = replace(walk.verdicts.joint(Joint.LEFT_ANKLE), sign=Assessment(Verdict.WITHHELD))
+    doubted = replace(walk, verdicts=replace(walk.verdicts, joints={**walk.verdicts.joints, Joint.LEFT_ANKLE: ankle}))
+    assert told(doubted, passing, right) == []
 
 
 @pytest.mark.parametrize(("whole", "is_told"), [(0, True), (2, True), (3, False)])

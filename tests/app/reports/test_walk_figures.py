@@ -16,7 +16,6 @@ from app.reports.walk_figures import (
     MAY_BE_MIRRORED,
     NO_ZERO,
     Figure,
-    both_sides,
     by_hand_in_words,
     few_strides_in_words,
     peak_figures,
@@ -30,6 +29,8 @@ from core.chosen_strides import leave_out
 from core.gait.strides import Reason
 from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
 from core.samples import Recording
+from core.verdicts.gates import verdicts_of
+from core.verdicts.quantities import both_sides
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 
 Walked = tuple[RecordingAnalysis, dict[Joint, JointCalibration]]
@@ -60,16 +61,16 @@ def named(figures: tuple[Figure, ...], name: str) -> Figure:
 
 
 def test_a_peak_is_the_mean_over_the_strides_used_alone(walked: Walked) -> None:
-    walk, calibrated = walked
+    walk, _ = walked
     few = with_used(walk, Side.LEFT, 4)
-    peak = named(peak_figures(few, calibrated, reference_curves())["knee"], "Swing peak").sides[Side.LEFT]
+    peak = named(peak_figures(few, reference_curves())["knee"], "Swing peak").sides[Side.LEFT]
     cycles_deg = np.rad2deg(walk.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][:4])
     assert peak.n == 4
     assert peak.mean == pytest.approx(float(cycles_deg[:, 55:91].max(axis=1).mean()))
 
 
 def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walked: Walked) -> None:
-    found = peak_figures(*walked, reference_curves())
+    found = peak_figures(walked[0], reference_curves())
     group = reference_curves()
     at = 55 + int(np.argmax(group.knee_mean_deg[55:91]))
     low, high = group.knee_mean_deg[at] - group.knee_sd_deg[at], group.knee_mean_deg[at] + group.knee_sd_deg[at]
@@ -81,7 +82,8 @@ def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walke
 def test_without_a_zero_only_what_needs_none_is_told(walked: Walked) -> None:
     walk, calibrated = walked
     calibrated[Joint.LEFT_KNEE] = replace(calibrated[Joint.LEFT_KNEE], zero=ZeroKind.NONE)
-    for figure in peak_figures(walk, calibrated, reference_curves())["knee"]:
+    walk = replace(walk, verdicts=verdicts_of(walk, calibrated, ()))
+    for figure in peak_figures(walk, reference_curves())["knee"]:
         holds = figure.name in ("Range", "Swing peak at, %")
         assert (Side.LEFT in figure.sides) is holds, figure.name
         assert dict(figure.unknown) == ({} if holds else {Side.LEFT: NO_ZERO})
@@ -90,9 +92,9 @@ def test_without_a_zero_only_what_needs_none_is_told(walked: Walked) -> None:
 
 def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(walked: Walked) -> None:
     walk, calibrated = walked
-    doubted = replace(walk.gait[Side.RIGHT], sign_in_doubt=frozenset({Joint.RIGHT_ANKLE}))
-    walk = replace(walk, gait={**walk.gait, Side.RIGHT: doubted})
-    for figure in peak_figures(walk, calibrated, reference_curves())["ankle"]:
+    calibrated[Joint.RIGHT_ANKLE] = replace(calibrated[Joint.RIGHT_ANKLE], is_sign_certain=False)
+    walk = replace(walk, verdicts=verdicts_of(walk, calibrated, ()))
+    for figure in peak_figures(walk, reference_curves())["ankle"]:
         expected = {} if figure.name == "Range" else {Side.RIGHT: MAY_BE_MIRRORED}
         assert dict(figure.unknown) == expected, figure.name
 
@@ -113,11 +115,12 @@ def test_time_and_distance_stand_beside_the_group_of_the_nearest_speed(walked: W
 def test_one_measured_side_still_gives_cadence_and_speed(walked: Walked) -> None:
     walk, calibrated = walked
     alone = replace(walk, gait={Side.RIGHT: walk.gait[Side.RIGHT]})
+    alone = replace(alone, verdicts=verdicts_of(alone, calibrated, ()))
     feet, whole = both_sides(alone), both_sides(walk)
     assert feet.cadence_steps_min == pytest.approx(whole.cadence_steps_min, rel=0.02)
     assert feet.speed_m_s == pytest.approx(whole.speed_m_s, rel=0.02)
     assert np.isnan(feet.double_support_percent)
-    for figure in peak_figures(alone, calibrated, reference_curves())["knee"]:
+    for figure in peak_figures(alone, reference_curves())["knee"]:
         assert set(figure.sides) == {Side.RIGHT}
 
 
@@ -167,7 +170,8 @@ def test_a_stride_with_a_gap_is_in_no_mean_cycle(walked: Walked) -> None:
     gait = with_used(walk, Side.LEFT, 5).gait[Side.LEFT]
     cycles = gait.cycles[Joint.LEFT_KNEE].copy()
     cycles[1] = np.nan
-    found = side_cycle(replace(gait, cycles={Joint.LEFT_KNEE: cycles}), Joint.LEFT_KNEE)
+    gapped = replace(walk, gait={Side.LEFT: replace(gait, cycles={Joint.LEFT_KNEE: cycles})})
+    found = side_cycle(gapped, Joint.LEFT_KNEE)
     kept = np.rad2deg(cycles[[0, 2, 3, 4]])
     assert found.mean.n == 4
     np.testing.assert_allclose(found.mean.mean, kept.mean(axis=0))
