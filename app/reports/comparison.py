@@ -276,6 +276,8 @@ class Comparison:
     def compare(self, measure: Measure, side: Side, part: Part) -> Compared:
         kind, column, pair = self.error_kind(part), measure.column, (part, self.against)
         means = [one.mean(side, column, kind) for one in pair]
+        speeds = [one.of_both("speed_m_s") for one in pair]
+        speed_apart_m_s = abs(speeds[0] - speeds[1]) if all(map(math.isfinite, speeds)) else 0.0
         assessments = tuple(one.assessment(side, column) for one in pair)
         return Compared(
             measure,
@@ -284,7 +286,7 @@ class Comparison:
             self.against,
             part.value(side, column),
             self.against.value(side, column),
-            compare(column, kind, means[0], means[1], assessments),
+            compare(column, kind, means[0], means[1], assessments, speed_apart_m_s=speed_apart_m_s),
             self._reservation(measure, side, part, assessments),
         )
 

@@ -1,8 +1,9 @@
 """By how much do two means have to differ before anything differs but chance, drift, clocks and straps?
 
 Of one mean u^2 = se^2 + d^2 + c^2: its standard error with the strides' correlation, half of what the walk's halves
-differ by, and what the lag's uncertainty makes of it. Of a difference U^2 = u1^2 + u2^2 + 2 sigma^2 and the error is
-1.96 U, the minimal detectable change at 95 %; sigma adds what lies between the two means, by the kind of comparison.
+or thirds differ by, and what the lag's uncertainty makes of it. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2
+and the error is 1.96 U, the minimal detectable change at 95 %; v is what another speed alone may make of it, and sigma
+adds what lies between the two means, by the kind of comparison.
 """
 
 import math
@@ -40,6 +41,7 @@ class ErrorSource(StrEnum):
     CHANCE = "chance"
     DRIFT = "drift"
     CLOCK = "clock"
+    SPEED = "speed"
     WALKS = "walk_to_walk"
     STRAPS = "strapping"
     DAYS = "day"
@@ -79,6 +81,17 @@ KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `b
     "ankle_push_off_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
     "ankle_swing_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
     "ankle_range_deg": QuantityKind.ANKLE_SHAPE,
+}
+
+
+# What a quantity changes by with walking speed, per m/s: peak knee flexion in swing and stance of 42 adults from slow
+# to fast (Fukuchi, Fukuchi & Duarte 2018, doi 10.7717/peerj.4640); the ankle's is the knee's, for want of one.
+PER_SPEED: Mapping[QuantityKind, float] = {
+    QuantityKind.KNEE_SHAPE: 11.0,
+    QuantityKind.KNEE_HEIGHT: 11.0,
+    QuantityKind.ANKLE_SHAPE: 11.0,
+    QuantityKind.ANKLE_HEIGHT: 11.0,
+    QuantityKind.STANCE: 4.8,
 }
 
 
@@ -174,8 +187,8 @@ class MeanOfStrides:
     ----------
     standard_error
         With the correlation of neighbouring strides.
-    half_difference
-        Half of what the second half of the strides lies from the first.
+    drift
+        Half of what the halves, or the thirds that lie farthest apart, differ by.
     clock_error
         What the uncertainty of the lag between the joint's sensors makes of it.
     """
@@ -184,13 +197,13 @@ class MeanOfStrides:
     sd: float
     n: int
     standard_error: float
-    half_difference: float
+    drift: float
     clock_error: float = 0.0
 
     @property
     def uncertainty(self) -> float:
         """One standard deviation of the mean, u."""
-        return math.sqrt(self.standard_error**2 + self.half_difference**2 + self.clock_error**2)
+        return math.sqrt(self.standard_error**2 + self.drift**2 + self.clock_error**2)
 
 
 class Judgement(StrEnum):
@@ -241,16 +254,19 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrid
         return MeanOfStrides(mean, math.nan, n, math.nan, math.nan)
     sd = float(np.std(known, ddof=1))
     r = min(max(MIN_CORRELATION, _lag_one_correlation(known)), MAX_CORRELATION)
-    half = n // 2
-    apart = float(known[-half:].mean() - known[:half].mean())
     return MeanOfStrides(
         mean=mean,
         sd=sd,
         n=n,
         standard_error=sd / math.sqrt(n) * math.sqrt((1 + r) / (1 - r)),
-        half_difference=abs(apart) / 2,
+        drift=_drift(known),
         clock_error=clock_error,
     )
+
+
+def _drift(values: FloatArray) -> float:
+    halves, thirds = ([part.mean() for part in np.array_split(values, k)] for k in (2, min(3, len(values))))
+    return float(max(np.ptp(halves), np.ptp(thirds))) / 2
 
 
 def _lag_one_correlation(values: FloatArray) -> float:
@@ -274,6 +290,7 @@ def compare(
     other: MeanOfStrides,
     assessments: tuple[Assessment, ...],
     *,
+    speed_apart_m_s: float = 0.0,
     is_chosen_before: bool = False,
 ) -> Difference:
     """`one` less `other`: is it larger than its error?
@@ -284,6 +301,8 @@ def compare(
         The column of strides.csv.
     assessments
         What may be said of each of the two; a difference of what is withheld is none.
+    speed_apart_m_s
+        By how much the walks' speeds differ; what it alone may make of an angle or of stance is no difference.
     is_chosen_before
         The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
     """
@@ -299,14 +318,15 @@ def compare(
     if sigma is None:
         return Difference(difference, nothing, Judgement.NO_PUBLISHED_FIGURE)
     between = sigma.value * (0.01 * 0.5 * abs(one.mean + other.mean) if sigma.is_relative else 1.0)
-    error = Z95 * math.sqrt(one.uncertainty**2 + other.uncertainty**2 + 2 * between**2)
+    by_speed = PER_SPEED.get(KINDS[name], 0.0) * abs(speed_apart_m_s)
+    error = Z95 * math.sqrt(one.uncertainty**2 + other.uncertainty**2 + by_speed**2 + 2 * between**2)
     exceeds = abs(difference) > error
     factor = 1.0 if sigma.is_published_error or is_chosen_before else SENTENCE_FACTOR
     return Difference(
         difference=difference,
         error=error,
         judgement=Judgement.EXCEEDS_ERROR if exceeds else Judgement.INSIDE_ERROR,
-        sources=_sources(name, kind, one, other),
+        sources=_sources(name, kind, one, other, has_speed=by_speed > 0),
         is_worth_a_sentence=abs(difference) > factor * error and not sigma.is_borrowed,
         is_unverified=not sigma.is_verified,
     )
@@ -321,11 +341,15 @@ def whisker(name: str, kind: ComparisonKind, found: MeanOfStrides) -> float:
     return 0.5 * Z95 * math.sqrt(2 * found.uncertainty**2 + 2 * between**2)
 
 
-def _sources(name: str, kind: ComparisonKind, one: MeanOfStrides, other: MeanOfStrides) -> tuple[ErrorSource, ...]:
+def _sources(
+    name: str, kind: ComparisonKind, one: MeanOfStrides, other: MeanOfStrides, *, has_speed: bool
+) -> tuple[ErrorSource, ...]:
     quantity = KINDS[name]
     found = [ErrorSource.CHANCE, ErrorSource.DRIFT]
     if one.clock_error or other.clock_error:
         found.append(ErrorSource.CLOCK)
+    if has_speed:
+        found.append(ErrorSource.SPEED)
     if kind is ComparisonKind.LEGS and quantity in _OWN_LEG:
         return (*found, ErrorSource.EVENTS)
     found += _BETWEEN[kind]

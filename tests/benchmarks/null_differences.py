@@ -18,7 +18,6 @@ from pathlib import Path
 
 import numpy as np
 
-from app.reports.comparison import compare_legs
 from app.reports.differences import comparisons_of, rows_of
 from core.analysis import analyse
 from core.body import Site
@@ -45,13 +44,14 @@ class Tally:
 def tally(session: Session) -> Tally:
     """All differences between the conditions of one session."""
     analysis = analyse(session)
-    rows = [row for comparison in comparisons_of([(session, analysis)]) for row in rows_of(comparison)]
+    found = comparisons_of([(session, analysis)])
+    rows = [row for comparison in found for row in rows_of(comparison)]
     judged = [row for row in rows if row.difference.judgement in JUDGED]
     larger = [row for row in judged if row.difference.exceeds]
     return Tally(
         len(judged),
         len(larger),
-        any(row.difference.is_worth_a_sentence for row in judged),
+        any(row.is_told and row.difference.is_worth_a_sentence for one in found for row in one.rows),
         tuple(f"{row.side} {row.parameter}" for row in larger),
     )
 
