@@ -188,7 +188,7 @@ class MeanOfStrides:
     standard_error
         With the correlation of neighbouring strides.
     drift
-        Half of what the halves, or the thirds that lie farthest apart, differ by.
+        Half of what the halves, or the thirds that lie farthest apart, differ by beyond chance.
     clock_error
         What the uncertainty of the lag between the joint's sensors makes of it.
     """
@@ -254,19 +254,28 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrid
         return MeanOfStrides(mean, math.nan, n, math.nan, math.nan)
     sd = float(np.std(known, ddof=1))
     r = min(max(MIN_CORRELATION, _lag_one_correlation(known)), MAX_CORRELATION)
+    standard_error = sd / math.sqrt(n) * math.sqrt((1 + r) / (1 - r))
     return MeanOfStrides(
         mean=mean,
         sd=sd,
         n=n,
-        standard_error=sd / math.sqrt(n) * math.sqrt((1 + r) / (1 - r)),
-        drift=_drift(known),
+        standard_error=standard_error,
+        drift=_drift(known, standard_error),
         clock_error=clock_error,
     )
 
 
-def _drift(values: FloatArray) -> float:
-    halves, thirds = ([part.mean() for part in np.array_split(values, k)] for k in (2, min(3, len(values))))
-    return float(max(np.ptp(halves), np.ptp(thirds))) / 2
+def _drift(values: FloatArray, standard_error: float) -> float:
+    """Half of what halves or thirds differ by beyond chance, which the standard error holds already.
+
+    By chance alone the squared half difference of halves is 1 squared standard error of the whole, that of the thirds
+    farthest apart 2.5.
+    """
+    beyond = 0.0
+    for parts, by_chance in ((2, 1.0), (3, 2.5)):
+        means = [part.mean() for part in np.array_split(values, parts) if len(part)]
+        beyond = max(beyond, 0.25 * float(np.ptp(means)) ** 2 - by_chance * standard_error**2)
+    return math.sqrt(beyond)
 
 
 def _lag_one_correlation(values: FloatArray) -> float:
