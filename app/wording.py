@@ -62,6 +62,14 @@ SENTENCES = {
     "rate_in_deg_s": (
         "angular rates reach {p99_rad_s:.0f} rad/s, as if in degrees per second. Convert the file and import it again."
     ),
+    "acc_reversed": (
+        "accelerations and rates do not belong together: where its neighbour turns left, this sensor turns right. Its "
+        "joints are left out; give its accelerations the other sign, or its axes their order, and import it again."
+    ),
+    "time_in_ms": (
+        "the times look like {unit}, not seconds: from one sample to the next they grow by {step:.1f}. Convert the "
+        "file and import it again."
+    ),
     "same_data": (
         "both hold the same data, so their joints are left out. Find out which file is the copy and import the "
         "right one."

@@ -7,6 +7,8 @@ import numpy as np
 from core.body import Joint, Site
 from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
+from core.handedness import Turn, reversed_sites, turn_about_vertical
+from core.pair import moving_mean
 from core.samples import BoolArray, FloatArray, ImuBlock, Recording, RecordingKind, Session
 from core.tracks import (
     MAX_FORCE_M_S2,
@@ -28,10 +30,16 @@ PLAUSIBLE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank 
 LARGE = 1e6
 MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
 COMPARED_ROWS = 2000
+MIN_DISTINCT = 0.8  # share of rows that are unlike all others: a finer sensor than that never repeats itself by chance
+MOVING_RAD_S = 0.5
 CLIPPED_RUN = 3  # equal extreme values in a row
+CLIPPED_BEYOND_M_S2, CLIPPED_BEYOND_RAD_S = 14.7, 1.5  # 1.5 g; the narrowest ranges are 2 g and 125 deg/s
 MIN_CLIPPED_PERCENT = 0.05
 CLOCK_OFFSET_S = 5.0
 CLOCK_AGREEMENT_S = 1.0
+CLOCK_GRID_S = 0.1
+MIN_LIKENESS = 0.3  # correlation of how much two sites move, as stamped
+MIN_STEP_NOT_S, MIN_STEP_US = 0.4, 400.0  # steps of what cannot be seconds: milliseconds, from here on microseconds
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,28 +54,36 @@ def look_at(session: Session) -> Quality:
     """Look at every kept recording."""
     findings: list[Finding] = []
     unusable: set[tuple[str, Site]] = set()
+    worn: dict[tuple[str, Site], str] = {}
+    reversed_sensors: set[tuple[Site, str]] = set()
     for recording in session.recordings:
         if not recording.is_kept:
             findings.append(Finding("recording_discarded", Severity.INFO, recording.name))
             continue
-        for site, found in _by_site(recording):
-            findings.append(found)
-            if found.severity is Severity.GRAVE:
+        turns: dict[Site, Turn] = {}
+        for site, block in recording.imu.items():
+            worn[recording.name, site] = block.sensor
+            where = f"{recording.name}, {site}"
+            about = [
+                Finding(key, severity, where, numbers) for key, severity, numbers in _about_block(block, recording.kind)
+            ]
+            findings += about
+            if any(found.severity is Severity.GRAVE for found in about):
                 unusable.add((recording.name, site))
+            elif recording.kind is not RecordingKind.STANDING:
+                turns[site] = turn_about_vertical(block)
         for sites, found in [*_same_data(recording), *_clock_offsets(recording)]:
             findings.append(found)
             unusable.update((recording.name, site) for site in sites)
+        for sites in reversed_sites(turns):
+            if not any((recording.name, site) in unusable for site in sites):
+                where = ", ".join((recording.name, *sites))
+                findings.append(Finding("acc_reversed", Severity.GRAVE, where))
+                reversed_sensors.update((site, worn[recording.name, site]) for site in sites)
+    # a sensor that is so once was so all the time, whether it turned far enough to show it or not
+    unusable.update(key for key, sensor in worn.items() if (key[1], sensor) in reversed_sensors)
     findings.extend(_missing_sites(session))
     return Quality(tuple(findings), frozenset(unusable))
-
-
-def _by_site(recording: Recording) -> list[tuple[Site, Finding]]:
-    found = []
-    for site, block in recording.imu.items():
-        where = f"{recording.name}, {site}"
-        for key, severity, numbers in _about_block(block, recording.kind):
-            found.append((site, Finding(key, severity, where, numbers)))
-    return found
 
 
 About = tuple[str, Severity, dict[str, float | int | str]]
@@ -78,6 +94,10 @@ def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
     there = int(np.count_nonzero(is_there))
     if there < MIN_STRETCH_SAMPLES or np.ptp(block.time_s[is_there]) < MIN_STRETCH_S:
         return [("too_few_samples", Severity.GRAVE, {"samples": there})]
+    step_s = nominal_step_s(block.time_s[is_there])
+    if step_s >= MIN_STEP_NOT_S:
+        unit = "ms" if step_s < MIN_STEP_US else "µs"
+        return [("time_in_ms", Severity.GRAVE, {"unit": unit, "step": round(step_s, 1)})]
     wrong = _about_units(block, is_there, kind)
     if wrong:
         return wrong
@@ -96,8 +116,11 @@ def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
     rate_hz = 1 / nominal_step_s(block.time_s[heard])
     if rate_hz < MIN_RATE_HZ:
         about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
-    clipped = max(_clipped_percent(block.acc_m_s2[heard]), _clipped_percent(block.gyr_rad_s[heard]))
-    if clipped > MIN_CLIPPED_PERCENT:
+    clipped = max(
+        _clipped_percent(block.acc_m_s2[heard], CLIPPED_BEYOND_M_S2),
+        _clipped_percent(block.gyr_rad_s[heard], CLIPPED_BEYOND_RAD_S),
+    )
+    if clipped > MIN_CLIPPED_PERCENT and kind is not RecordingKind.STANDING:
         about.append(("clipped", Severity.WARNING, {"percent": round(clipped, 2)}))
     if kind is RecordingKind.STANDING and rest_of(block) is None:
         about.append(("moved_while_standing", Severity.WARNING, {}))
@@ -111,8 +134,11 @@ def _about_units(block: ImuBlock, is_there: BoolArray, kind: RecordingKind) -> l
     force = np.linalg.norm(np.clip(block.acc_m_s2[is_there], -LARGE, LARGE), axis=1)
     rate = np.linalg.norm(np.clip(block.gyr_rad_s[is_there], -LARGE, LARGE), axis=1)
     median_force, high_rate = float(np.median(force)), float(np.quantile(rate, 0.99))
-    if not np.any(force) or (not np.any(rate) and kind is not RecordingKind.STANDING):
+    is_gyro_dead = not np.any(np.diff(block.gyr_rad_s[is_there], axis=0)) and kind is not RecordingKind.STANDING
+    if not np.any(force) or (is_gyro_dead and not np.any(rate)):
         about.append(("all_zero", Severity.GRAVE, {}))
+    elif is_gyro_dead:
+        about.append(("stuck_throughout", Severity.GRAVE, {}))
     elif GRAVITY_RANGE_G[0] < median_force < GRAVITY_RANGE_G[1]:
         about.append(("acc_in_g", Severity.GRAVE, {"median_m_s2": round(median_force, 2)}))
     elif not PLAUSIBLE_M_S2[0] < median_force < PLAUSIBLE_M_S2[1]:
@@ -154,35 +180,56 @@ def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
     return [("many_gaps" if is_grave else "gaps", Severity.WARNING, numbers)]
 
 
-def _clipped_percent(values: FloatArray) -> float:
+def _clipped_percent(values: FloatArray, beyond: float) -> float:
+    """How much of the worst column of (n, 3) lies at the end of the sensor's range.
+
+    There a signal stays for some samples, farther from zero than any rest (`beyond`), and would have gone on by the
+    slope with which it came or left. A coarse sensor repeats its extremes as well: where the signal turns.
+    """
     worst = 0.0
-    for k in range(values.shape[1]):
-        v = values[:, k]
-        at_end = (v == v.max()) | (v == v.min())
-        if np.ptp(v) == 0.0:
+    for v in (side for column in values.T for side in (column, -column)):
+        limit = float(v.max())
+        if limit <= beyond:
             continue
-        runs = at_end.copy()
-        for shift in range(1, CLIPPED_RUN):
-            runs[shift:] &= at_end[:-shift]
-        runs[: CLIPPED_RUN - 1] = False
-        worst = max(worst, 100 * np.count_nonzero(runs) / len(v))
+        edges = np.flatnonzero(np.diff(np.concatenate([[0], (v == limit).astype(np.int8), [0]])))
+        runs = [(int(i), int(j)) for i, j in zip(edges[::2], edges[1::2], strict=True) if j - i >= CLIPPED_RUN]
+        clipped = sum(j - i for i, j in runs if _would_go_on(v, i, j, limit))
+        worst = max(worst, 100 * clipped / len(v))
     return worst
 
 
+def _would_go_on(v: FloatArray, first: int, end: int, limit: float) -> bool:
+    """Whether the samples before or after a run of extremes lead beyond it by more than the run's own flatness can."""
+    reached = [2 * v[i] - v[k] for i, k in ((first - 1, first - 2), (end, end + 1)) if 0 <= k < len(v)]
+    nearest = [limit - v[i] for i in (first - 1, end) if 0 <= i < len(v)]
+    return bool(reached) and max(reached) - limit > 0.5 * max(nearest)
+
+
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
-    """Two sensors never agree to the last digit, row for row, unless one is a copy of the other."""
+    """Two sensors never agree to the last digit, row for row, unless one is a copy of the other.
+
+    At rest coarse ones do: of these, only rows in motion count.
+    """
     found: list[tuple[tuple[Site, ...], Finding]] = []
     rows: dict[Site, set[bytes]] = {}
     for site, block in recording.imu.items():
-        first = slice(0, COMPARED_ROWS)
-        signals = np.concatenate([block.gyr_rad_s[first], block.acc_m_s2[first]], axis=1).astype(np.float64)
-        mine = {row.tobytes() for row in signals[np.isfinite(signals).all(axis=1) & np.any(signals, axis=1)]}
+        mine = rows[site] = _distinct_rows(block)
         for other, theirs in rows.items():
-            if len(mine & theirs) > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
+            if other is not site and len(mine & theirs) > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
                 where = f"{recording.name}, {other}, {site}"
                 found.append(((other, site), Finding("same_data", Severity.GRAVE, where)))
-        rows[site] = mine
     return found
+
+
+def _distinct_rows(block: ImuBlock) -> set[bytes]:
+    """The first rows of a sensor's samples by which it can be told from another."""
+    first = slice(0, COMPARED_ROWS)
+    signals = np.concatenate([block.gyr_rad_s[first], block.acc_m_s2[first]], axis=1).astype(np.float64)
+    signals = signals[np.isfinite(signals).all(axis=1) & np.any(signals, axis=1)]
+    distinct = {row.tobytes() for row in signals}
+    if len(distinct) >= MIN_DISTINCT * len(signals):
+        return distinct
+    return {row.tobytes() for row in signals[np.linalg.norm(signals[:, :3], axis=1) > MOVING_RAD_S]}
 
 
 def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
@@ -196,11 +243,42 @@ def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding
     found: list[tuple[tuple[Site, ...], Finding]] = []
     for site, (first, last) in spans.items():
         offset_s = 0.5 * (first - start + last - end)
-        if abs(offset_s) > CLOCK_OFFSET_S and abs((last - end) - (first - start)) < CLOCK_AGREEMENT_S:
+        is_shifted = abs(offset_s) > CLOCK_OFFSET_S and abs((last - end) - (first - start)) < CLOCK_AGREEMENT_S
+        if is_shifted and not _moves_with_others(recording, site, offset_s):
             numbers = {"offset_s": round(offset_s, 1)}
             where = f"{recording.name}, {site}"
             found.append(((site,), Finding("clock_offset", Severity.GRAVE, where, numbers)))
     return found
+
+
+def _moves_with_others(recording: Recording, site: Site, offset_s: float) -> bool:
+    """Whether a site moves when its neighbour does as both are stamped, more than it would without the offset.
+
+    Sensors that were switched on and off one after the other are such.
+    """
+    for joint in Joint:
+        if site in (joint.proximal, joint.distal) and recording.holds(joint.proximal, joint.distal):
+            other = joint.distal if site is joint.proximal else joint.proximal
+            as_stamped, shifted = (_likeness(recording.imu[site], recording.imu[other], by) for by in (0.0, offset_s))
+            if as_stamped > max(shifted, MIN_LIKENESS):
+                return True
+    return False
+
+
+def _likeness(one: ImuBlock, other: ImuBlock, late_s: float) -> float:
+    """Correlation of how fast two sensors turn, `late_s` taken off the stamps of the first."""
+    start_s = max(one.time_s[0] - late_s, other.time_s[0])
+    grid_s = np.arange(start_s, min(one.time_s[-1] - late_s, other.time_s[-1]), CLOCK_GRID_S)
+    if len(grid_s) < MIN_STRETCH_SAMPLES:
+        return 0.0
+    speeds = []
+    for block, by_s in ((one, late_s), (other, 0.0)):
+        speed = np.nan_to_num(np.linalg.norm(np.clip(block.gyr_rad_s, -LARGE, LARGE), axis=1))
+        width = max(1, round(CLOCK_GRID_S / nominal_step_s(block.time_s)))
+        speeds.append(np.interp(grid_s + by_s, block.time_s, moving_mean(speed, width)))
+    if min(np.std(speed) for speed in speeds) == 0.0:
+        return 0.0
+    return float(np.corrcoef(*speeds)[0][1])
 
 
 def _missing_sites(session: Session) -> list[Finding]:

@@ -8,10 +8,23 @@ import numpy as np
 import pytest
 
 from core.analysis import analyse
-from core.body import Joint, Segment, Site
+from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
+from core.quality import look_at
 from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
+from devices.walker import (
+    COARSE,
+    VERY_COARSE,
+    FreeMotion,
+    Manner,
+    SensorErrors,
+    Standing,
+    Tissue,
+    Walk,
+    WalkerSettings,
+    simulate,
+)
 
 if TYPE_CHECKING:
     from tests.core.conftest import Person
@@ -290,6 +303,148 @@ def test_walking_instead_of_standing_gives_no_zero(person: "Person", knee_visit:
     found = analyse(replace(knee_visit, recordings=moved), method)
     assert {("moved_while_standing", "standing, left_thigh"), ("gyro_bias_unknown", "left_knee")} <= told(found)
     assert np.std(error_deg(person, found, "walk")) < 1.0
+
+
+def coarse(gyr_step: float, acc_step: float) -> Change:
+    return lambda b: replace(
+        b,
+        gyr_rad_s=gyr_step * np.round(b.gyr_rad_s / gyr_step),
+        acc_m_s2=acc_step * np.round(b.acc_m_s2 / acc_step),
+    )
+
+
+def test_a_clipped_accelerometer_is_told(knee_visit: Session) -> None:
+    def clip(b: ImuBlock) -> ImuBlock:
+        shock = 40.0 * np.sin(2 * np.pi * 5.0 * b.time_s) * (b.time_s % 1.0 < 0.2)
+        return replace(b, acc_m_s2=np.clip(b.acc_m_s2 + shock[:, None], -19.6, 19.6))
+
+    (found,) = (f for f in look_at(changed(knee_visit, clip, (SHANK,), "walk")).findings if f.key == "clipped")
+    assert found.where == "walk, left_shank"
+
+
+@pytest.mark.parametrize("errors", [COARSE, VERY_COARSE])
+def test_a_coarse_sensor_is_not_clipped_nor_stuck_nor_a_copy(errors: SensorErrors) -> None:
+    recordings = (Standing(), Walk(standing_before_s=2.0, standing_after_s=2.0))
+    for seed in range(2):
+        settings = WalkerSettings(seed, recordings, errors=errors, prosthetic_side=Side.LEFT, rate_hz=50.0 * (1 + seed))
+        assert not look_at(simulate(settings).session).findings
+
+
+def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> None:
+    def hold(b: ImuBlock) -> ImuBlock:
+        slow = 5.0 * np.sin(2 * np.pi * 0.5 * (b.time_s - b.time_s[0]))
+        return replace(b, gyr_rad_s=np.round(np.stack([slow, slow, slow], axis=-1), 1))
+
+    told_of = look_at(changed(person.visit((SHANK,), duration_s=8.0), hold)).findings
+    assert "clipped" not in {f.key for f in told_of}
+
+
+def test_coarse_sensors_at_rest_on_a_table_are_no_copies() -> None:
+    rng = np.random.default_rng(0)
+
+    def still(name: str) -> ImuBlock:
+        gyr, acc = rng.normal(0.0, 0.0004, (1000, 3)), np.array([0.0, 0.0, 9.81]) + rng.normal(0.0, 0.01, (1000, 3))
+        block = ImuBlock(name, np.arange(1000) / 100.0, gyr, acc)
+        return coarse(0.00122, 0.0392)(block)
+
+    at_rest = Recording("standing", S, "standing", {site: still(str(site)) for site in (THIGH, SHANK)})
+    assert "same_data" not in {f.key for f in look_at(Session((at_rest,))).findings}
+
+
+def test_a_copy_of_a_coarse_sensor_is_found_by_what_moves(leg_visit: Session) -> None:
+    visit = changed(leg_visit, coarse(0.01, 0.05))
+    walk = visit.recordings[-1]
+    twice = replace(walk, imu={**walk.imu, FOOT: replace(walk.imu[SHANK], sensor="foot")})
+    found = look_at(replace(visit, recordings=(twice,))).findings
+    assert ("same_data", "walk, left_shank, left_foot") in {(f.key, f.where) for f in found}
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e3, "ms"), (1e6, "µs")])
+def test_times_in_milliseconds_are_told_and_nothing_is_computed(knee_visit: Session, factor: float, unit: str) -> None:
+    found = analyse(changed(knee_visit, lambda b: replace(b, time_s=factor * (b.time_s - b.time_s[0])), (SHANK,)))
+    assert told(found) >= everywhere("time_in_ms", SHANK)
+    assert {f.numbers["unit"] for f in found.findings if f.key == "time_in_ms"} == {unit}
+    assert_no_angle(found)
+
+
+def every_20th(b: ImuBlock) -> ImuBlock:
+    return ImuBlock(b.sensor, b.time_s[::20], b.gyr_rad_s[::20], b.acc_m_s2[::20])
+
+
+def test_a_slow_sensor_does_not_tell_milliseconds(person: "Person") -> None:
+    keys_told = {f.key for f in look_at(changed(person.visit(duration_s=20.0), every_20th)).findings}
+    assert "time_in_ms" not in keys_told
+    assert "low_rate" in keys_told
+
+
+REVERSED = scaled(acc=-1.0)
+TURNING = WalkerSettings(tissue=Tissue.SOFT, recordings=(Standing(), Walk(turn_rad=np.pi)))
+
+
+@pytest.mark.parametrize("site", [Site.LEFT_THIGH, Site.RIGHT_SHANK, Site.LEFT_FOOT])
+def test_one_reversed_sensor_is_told_and_left_out(site: Site) -> None:
+    looked = look_at(changed(simulate(TURNING).session, REVERSED, (site,)))
+    assert [(f.key, f.where) for f in looked.findings] == [("acc_reversed", f"walk 1, {site}")]
+    assert looked.unusable == {("standing", site), ("walk 1", site)}
+
+
+def test_of_two_sensors_that_disagree_neither_is_used() -> None:
+    two = replace(TURNING, sites=(THIGH, SHANK))
+    looked = look_at(changed(simulate(two).session, REVERSED, (SHANK,)))
+    assert ("acc_reversed", "walk 1, left_thigh, left_shank") in {(f.key, f.where) for f in looked.findings}
+    assert {("walk 1", THIGH), ("walk 1", SHANK)} <= looked.unusable
+
+
+def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
+    session = simulate(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4)))).session
+    plain, mirrored = analyse(session), analyse(changed(session, REVERSED))
+    assert told(plain) == told(mirrored)
+    for one, other in zip(plain.recordings, mirrored.recordings, strict=True):
+        for joint, angle in one.joints.items():
+            difference = np.rad2deg(angle.angle_rad - other.joints[joint].angle_rad)
+            assert np.nanmax(np.abs(difference)) < 0.3
+
+
+@pytest.mark.parametrize("manner", [Manner.ORDINARY, Manner.FLAT, Manner.DRAGGING])
+def test_sensors_of_a_straight_walk_are_not_called_reversed(manner: Manner) -> None:
+    walk = Walk(speed_m_s=0.6, manner=manner, strides=6)
+    settings = WalkerSettings(recordings=(walk, FreeMotion(duration_s=6.0)), tissue=Tissue.REAL)
+    assert "acc_reversed" not in {f.key for f in look_at(simulate(settings).session).findings}
+
+
+def test_sensors_switched_on_one_after_the_other_have_one_clock(leg_visit: Session) -> None:
+    """The foot's was started and stopped six seconds after the others: its stamps are right."""
+    walk = leg_visit.recordings[-1]
+    whole = simulate(WalkerSettings(sites=(THIGH, SHANK, FOOT), recordings=(Walk(strides=20),))).session.recordings[0]
+    end_s = float(whole.imu[FOOT].time_s[-1])
+
+    def part(b: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
+        here = (b.time_s >= from_s) & (b.time_s <= to_s)
+        return ImuBlock(b.sensor, b.time_s[here], b.gyr_rad_s[here], b.acc_m_s2[here])
+
+    imu = {site: part(b, 6.0, end_s) if site is FOOT else part(b, 0.0, end_s - 6.0) for site, b in whole.imu.items()}
+    late_start = replace(walk, imu=imu)
+    assert "clock_offset" not in {f.key for f in look_at(Session((late_start,))).findings}
+    off = replace(late_start, imu={**imu, FOOT: late(6.0)(part(whole.imu[FOOT], 0.0, end_s - 6.0))})
+    assert "clock_offset" in {f.key for f in look_at(Session((off,))).findings}
+
+
+def test_a_gyroscope_that_holds_one_value_is_stuck(knee_visit: Session) -> None:
+    frozen = changed(knee_visit, lambda b: replace(b, gyr_rad_s=np.full_like(b.gyr_rad_s, 0.02)), (SHANK,))
+    told_of = {(f.key, f.where) for f in look_at(frozen).findings}
+    assert {("stuck_throughout", "free motion, left_shank"), ("stuck_throughout", "walk, left_shank")} <= told_of
+
+
+@pytest.mark.parametrize(("tremor_rad_s", "is_told"), [(0.04, False), (1.0, True)])
+def test_a_trembling_stance_is_rest_and_a_shaking_one_is_told(
+    knee_visit: Session, tremor_rad_s: float, is_told: bool
+) -> None:
+    def tremble(b: ImuBlock) -> ImuBlock:
+        shake = tremor_rad_s * np.sin(2 * np.pi * 5.0 * b.time_s)
+        return replace(b, gyr_rad_s=b.gyr_rad_s + shake[:, None] * [1.0, 0.0, 0.0])
+
+    found = look_at(changed(knee_visit, tremble, (SHANK,), "standing")).findings
+    assert ("moved_while_standing" in {f.key for f in found}) is is_told
 
 
 @pytest.mark.endurance

@@ -1,0 +1,80 @@
+"""Do a sensor's accelerometer and gyroscope belong to one right-handed set of axes? Its neighbours tell.
+
+A body that turns turns as a whole: over a second and more, thigh, shank and foot turn alike about the vertical. A
+sensor whose accelerations have the wrong sign takes up for down and turns the other way round. One sensor alone cannot
+tell: a reversed accelerometer is a person seen in a mirror, who walks as anyone does. For the same reason nothing that
+we compute changes where all accelerometers are reversed alike.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.signal import butter, sosfiltfilt
+from vqf import offlineVQF
+
+from core.body import Joint, Side, Site
+from core.rotations import matrix_from_quaternion
+from core.samples import FloatArray, ImuBlock
+from core.tracks import even_tracks
+
+LOOKED_AT_S = 60.0
+TURN_HZ, GRID_HZ = 1.0, 10.0
+MIN_OVERLAP_S = 5.0
+MIN_TURN_RAD_S = 0.1  # rms; on people a straight walk has 0.1-0.3
+# Correlation: of neighbours on people 0.1-0.9, in free motion and turns 0.6-1.0; below zero where one is reversed
+OPPOSITE = -0.55
+
+# Times and rates (n,); None where a recording is too short or too gappy
+Turn = tuple[FloatArray, FloatArray] | None
+
+
+def reversed_sites(turns: Mapping[Site, Turn]) -> list[tuple[Site, ...]]:
+    """The sites whose sensors turn against their neighbours', each alone or, where it is one of two, with the other.
+
+    `turns` are those about the vertical in one recording.
+    """
+    found: list[tuple[Site, ...]] = []
+    for side in Side:
+        knee, ankle = (_agreement(turns, joint) for joint in (Joint(f"{side}_knee"), Joint(f"{side}_ankle")))
+        thigh, shank, foot = (Site(f"{side}_{segment}") for segment in ("thigh", "shank", "foot"))
+        if knee is False and ankle is False:
+            found.append((shank,))
+        elif knee is False:
+            found.append((thigh,) if ankle else (thigh, shank))
+        elif ankle is False:
+            found.append((foot,) if knee else (shank, foot))
+    return found
+
+
+def _agreement(turns: Mapping[Site, Turn], joint: Joint) -> bool | None:
+    """Whether both sensors at a joint turn the same way; None where they turn too little or it cannot be told."""
+    proximal, distal = turns.get(joint.proximal), turns.get(joint.distal)
+    if proximal is None or distal is None:
+        return None
+    (t1, turn1), (t2, turn2) = proximal, distal
+    grid = np.arange(max(t1[0], t2[0]), min(t1[-1], t2[-1]), 1.0 / GRID_HZ)
+    if len(grid) < MIN_OVERLAP_S * GRID_HZ:
+        return None
+    one, other = np.interp(grid, t1, turn1), np.interp(grid, t2, turn2)
+    sizes = np.sqrt(np.mean(one**2)), np.sqrt(np.mean(other**2))
+    if min(sizes) < MIN_TURN_RAD_S:
+        return None
+    correlation = float(np.mean(one * other) / (sizes[0] * sizes[1]))
+    return False if correlation < OPPOSITE else True if correlation > 0.0 else None
+
+
+def turn_about_vertical(block: ImuBlock) -> Turn:
+    """Times and rates (n,) about the vertical below `TURN_HZ`, of the longest stretch at the start of a recording."""
+    if not len(block):
+        return None
+    tracks = even_tracks(block, to_s=float(block.time_s[0]) + LOOKED_AT_S)
+    if not tracks:
+        return None
+    track = max(tracks, key=len)
+    if track.end_s - track.start_s < MIN_OVERLAP_S or track.step_s > 0.2 / TURN_HZ:
+        return None
+    gyr = np.ascontiguousarray(track.gyr_rad_s)
+    orientation = offlineVQF(gyr, np.ascontiguousarray(track.acc_m_s2), None, track.step_s)["quat6D"]
+    vertical = matrix_from_quaternion(orientation)[:, 2]
+    low = butter(2, TURN_HZ, fs=1.0 / track.step_s, output="sos")
+    return track.time_s, sosfiltfilt(low, np.einsum("ni,ni->n", gyr, vertical))
