@@ -278,7 +278,8 @@ def _likeness(one: ImuBlock, other: ImuBlock, late_s: float) -> float:
         speeds.append(np.interp(grid_s + by_s, block.time_s, moving_mean(speed, width)))
     if min(np.std(speed) for speed in speeds) == 0.0:
         return 0.0
-    return float(np.corrcoef(*speeds)[0][1])
+    one_off, other_off = (speed - np.mean(speed) for speed in speeds)
+    return float(np.mean(one_off * other_off) / (np.std(one_off) * np.std(other_off)))
 
 
 def _missing_sites(session: Session) -> list[Finding]:
