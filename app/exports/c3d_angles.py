@@ -59,7 +59,7 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     values = np.zeros((4, len(joints), len(rows)))
     values[3] = 1.0
     for k, joint in enumerate(joints):
-        values[0, k] = np.where(rows >= 0, as_in_csv_deg(recording.joints[joint].angle_rad)[rows], np.nan)
+        values[0, k] = np.append(as_in_csv_deg(recording.joints[joint].angle_rad), np.nan)[rows]
     is_missing = ~np.isfinite(values[0])
     values[:3, is_missing] = np.nan
     c3d = ezc3d.c3d()
@@ -87,7 +87,7 @@ def _rows_of_frames(recording: RecordingAnalysis) -> tuple[IntArray, float]:
     time_s = recording.time_s
     step_s = nominal_step_s(time_s) if len(time_s) > 1 else 0.01
     if not len(time_s):
-        return np.empty(0, dtype=np.int64), step_s
+        return np.array([-1]), step_s  # ezc3d writes no file without a frame
     frame_s: FloatArray = time_s[0] + step_s * np.arange(round((time_s[-1] - time_s[0]) / step_s) + 1)
     after = np.clip(np.searchsorted(time_s, frame_s), 1, max(len(time_s) - 1, 1))
     before = after - 1

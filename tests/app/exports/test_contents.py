@@ -1,0 +1,255 @@
+"""What stands in the workbook, the C3D and the Bundle beside the numbers: cell by cell, as it was typed."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import ezc3d
+import numpy as np
+import openpyxl
+import pytest
+
+from app.exports.exports import Format, export_from_folder, export_from_library
+from app.exports.spreadsheet import write_spreadsheet
+from app.storage.exchange import import_session
+from app.storage.journal.disk import Room
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.stored import Operator, Role
+from core.findings import Finding, Severity
+from core.results import Analysis
+from core.samples import Patient, Session
+
+TYPED = Patient(
+    code="P 17",
+    birth_year=1950,
+    sex="female",
+    height_m=1.68,
+    mass_kg=71.5,
+    device="barfuß",
+    aids="one stick",
+    affected_side="left",
+    prosthetic_side="right",
+)
+
+
+@pytest.fixture(scope="module")
+def typed(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+    session, analysis = visit
+    session = replace(session, patient=TYPED, operator="HK", surface="corridor", notes="=2+3")
+    findings = (Finding("simulated", Severity.INFO, ""), Finding("no_standing", Severity.WARNING, "session"))
+    return session, replace(analysis, findings=findings)
+
+
+@pytest.fixture(scope="module")
+def book(typed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Any:
+    path = tmp_path_factory.mktemp("xlsx") / "gaitwright.xlsx"
+    write_spreadsheet(*typed, path)
+    return openpyxl.load_workbook(path)
+
+
+def test_the_first_sheet_tells_who_was_measured_and_how(book: Any) -> None:
+    rows = [row[:2] for row in book["About"].iter_rows(values_only=True)]
+    assert book.sheetnames[0] == "About"
+    assert rows[0] == ("what", "value")
+    told = dict(rows[2:])
+    assert rows[1][0].startswith("SIMULATED")
+    expected = {
+        "patient": "P 17",
+        "birth year": 1950,
+        "sex": "female",
+        "height, m": 1.68,
+        "mass, kg": 71.5,
+        "device": "barfuß",
+        "aids": "one stick",
+        "affected side": "left",
+        "prosthetic side": "right",
+        "session": "2026-11-21T10:00:00+01:00",
+        "operator": "HK",
+        "surface": "corridor",
+        "notes": "=2+3",
+        "method": "robust",
+    }
+    assert [item for item in told.items() if item[0] in expected] == list(expected.items())
+    assert told["software"].startswith("gaitwright")
+    assert "Not a medical device" in told["use"]
+
+
+def test_what_was_not_typed_has_no_row(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = visit
+    write_spreadsheet(replace(session, patient=Patient(), surface=""), analysis, tmp_path / "some.xlsx")
+    rows = openpyxl.load_workbook(tmp_path / "some.xlsx")["About"].iter_rows(values_only=True)
+    names = {row[0] for row in rows}
+    assert names.isdisjoint({"patient", "birth year", "sex", "height, m", "mass, kg", "device", "aids", "surface"})
+    assert {"session", "operator", "notes", "method", "software", "use"} <= names
+
+
+def test_sheets_can_be_read_on_a_screen(book: Any) -> None:
+    """Their heading is bold and stays; a column is as wide as its longest text, from 12 to 42 letters."""
+    for name in ("About", "Summary", "Strides", "Cycles", "Events", "Units", "Findings"):
+        sheet = book[name]
+        assert sheet.freeze_panes == "A2", name
+        assert all(cell.font.bold and cell.font.size == sheet["A2"].font.size for cell in sheet[1]), name
+        assert not any(cell.font.bold for cell in sheet[2]), name
+        for column in sheet.iter_cols():
+            longest = max(len(cell.value) for cell in column if isinstance(cell.value, str))
+            width = min(max(longest, 10) + 2, 42)
+            assert sheet.column_dimensions[column[0].column_letter].width == width, (name, column[0].value)
+    assert book["About"].column_dimensions["B"].width > 12
+    assert len(book["Strides"][1]) > 26  # a column AA is one of them
+    assert all(row[4].number_format == "0.00###" for row in book["Summary"].iter_rows(min_row=2))
+    assert all(row[7].number_format == "General" for row in book["Summary"].iter_rows(min_row=2))
+
+
+def test_columns_have_the_unit_that_their_name_ends_with(book: Any) -> None:
+    units = {row[0]: row[1] for row in book["Units"].iter_rows(min_row=2, values_only=True)}
+    expected = {
+        "start_s": "s",
+        "stride_length_m": "m",
+        "speed_m_s": "m/s",
+        "stance_percent": "%",
+        "knee_range_deg": "°",
+    }
+    assert {name: units[name] for name in expected} == expected
+    assert units.keys().isdisjoint({"recording", "side", "event", "used", "strides_used"})
+    of_summary = {row[3]: row[6] for row in book["Summary"].iter_rows(min_row=2, values_only=True)}
+    assert (of_summary["cadence_steps_min"], of_summary["knee_range_deg"]) == ("steps/min", "°")
+
+
+def test_findings_are_told_in_words_and_there_is_no_sheet_without(
+    book: Any, typed: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    header, *rows = book["Findings"].iter_rows(values_only=True)
+    assert header == ("severity", "where", "text")
+    assert [row[:2] for row in rows] == [("info", None), ("warning", "session")]
+    assert all(len(row[2]) > 20 for row in rows)
+    write_spreadsheet(typed[0], replace(typed[1], findings=()), tmp_path / "none.xlsx")
+    assert "Findings" not in openpyxl.load_workbook(tmp_path / "none.xlsx").sheetnames
+
+
+def test_the_time_of_writing_is_in_no_workbook(book: Any) -> None:
+    assert (book.properties.creator, book.properties.created.year) == ("gaitwright", 1980)
+    assert book.properties.modified.year == 1980
+
+
+def test_a_c3d_has_residuals_of_zero_where_an_angle_is_known(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    export_from_folder(*visit, [Format.C3D], tmp_path)
+    for file in tmp_path.rglob("*.c3d"):
+        read = ezc3d.c3d(str(file))
+        data, parameters = read["data"], read["parameters"]
+        assert (data["meta_points"]["residuals"] == 0.0).all()
+        np.testing.assert_array_equal(np.diff(data["points"][3]), 0.0)
+        assert parameters["SUBJECTS"]["IS_SIMULATED"]["value"][0] == 1
+        assert parameters["MANUFACTURER"]["SOFTWARE"]["value"] == ["gaitwright"]
+        assert parameters["EVENT"]["USED"]["value"][0] == len(parameters["EVENT"].get("LABELS", {"value": []})["value"])
+
+
+@pytest.mark.parametrize("rows", [0, 1])
+def test_a_recording_that_hardly_began_is_a_c3d_all_the_same(
+    visit: tuple[Session, Analysis], tmp_path: Path, rows: int
+) -> None:
+    session, analysis = visit
+    short = [
+        replace(
+            recording,
+            time_s=recording.time_s[:rows],
+            joints={joint: replace(a, angle_rad=a.angle_rad[:rows]) for joint, a in recording.joints.items()},
+            gait={},
+        )
+        for recording in analysis.recordings
+    ]
+    export_from_folder(session, replace(analysis, recordings=tuple(short)), [Format.C3D], tmp_path)
+    for file in tmp_path.rglob("*.c3d"):
+        read = ezc3d.c3d(str(file))
+        assert read["parameters"]["POINT"]["RATE"]["value"][0] == pytest.approx(100.0)
+        assert read["data"]["points"].shape[2] == 1  # there is no file without a frame
+        assert np.isnan(read["data"]["points"][0]).all() == (rows == 0)
+        assert read["parameters"]["EVENT"]["USED"]["value"][0] == 0
+
+
+def test_zero_has_no_sign(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = visit
+    recordings = []
+    for recording in analysis.recordings:
+        joints = {
+            joint: replace(a, angle_rad=np.full_like(a.angle_rad, -1e-9)) for joint, a in recording.joints.items()
+        }
+        recordings.append(replace(recording, joints=joints))
+    export_from_folder(session, replace(analysis, recordings=tuple(recordings)), [Format.MOT], tmp_path)
+    for file in tmp_path.rglob("*.mot"):
+        assert "-0.0" not in file.read_text()
+
+
+def test_a_bundle_tells_who_where_and_what_as_it_was_typed(typed: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = typed
+    recordings = tuple(replace(r, condition="barfuß") for r in session.recordings)
+    export_from_folder(replace(session, recordings=recordings), analysis, [Format.FHIR], tmp_path, is_identified=True)
+    written = (tmp_path / "fhir_bundle.json").read_bytes()
+    assert "barfuß".encode() in written
+    assert written.endswith(b"}\n")
+    assert b'\n  "resourceType": "Bundle"' in written
+    told = json.loads(written)
+    assert told["type"] == "collection"
+    patient = told["entry"][0]["resource"]
+    assert patient["identifier"] == [{"system": "urn:x-gaitwright:patient", "value": "P 17"}]
+    assert (patient["gender"], patient["birthDate"]) == ("female", "1950")
+    for entry in told["entry"][1:]:
+        one = entry["resource"]
+        assert one["subject"] == {"reference": told["entry"][0]["fullUrl"]}
+        assert one["effectiveDateTime"] == "2026-11-21T10:00:00+01:00"
+        assert one["code"]["coding"][0]["system"] == "urn:x-gaitwright:parameter"
+        assert one["code"]["text"] == one["code"]["coding"][0]["code"].replace("_", " ")
+        assert one["device"]["display"].startswith("gaitwright")
+        texts = [note["text"] for note in one["note"]]
+        assert texts[0].startswith("walk")
+        assert texts[0].endswith(", barfuß")
+        assert any("Not a medical device" in text for text in texts)
+        assert entry["fullUrl"].startswith("urn:uuid:")
+
+
+def test_a_patient_of_whom_nothing_is_told_has_neither_name_nor_sex(
+    visit: tuple[Session, Analysis], tmp_path: Path
+) -> None:
+    session, analysis = visit
+    for code, sex in (("", ""), (" ", "diverse")):
+        patient = Patient(code=code, sex=sex)
+        export_from_folder(
+            replace(session, patient=patient, started=""), analysis, [Format.FHIR], tmp_path, is_identified=True
+        )
+        told = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]
+        assert told[0]["resource"].keys() <= {"resourceType", "meta"}
+        assert all("effectiveDateTime" not in entry["resource"] for entry in told)
+
+
+@pytest.mark.parametrize("sex", ["female", "male", "other"])
+def test_a_sex_that_fhir_knows_is_told(visit: tuple[Session, Analysis], tmp_path: Path, sex: str) -> None:
+    session, analysis = visit
+    patient = Patient(code="P 17", sex=sex, birth_year=950)
+    export_from_folder(replace(session, patient=patient), analysis, [Format.FHIR], tmp_path, is_identified=True)
+    told = json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"][0]["resource"]
+    assert (told["gender"], told["birthDate"]) == (sex, "0950")
+
+
+def test_an_export_tells_how_far_it_is(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    folder = tmp_path / "library"
+    folder.mkdir()
+    key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", "four short words here")
+    opened = OpenedLibrary(Library.create(folder, key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)), folder, key)
+    session, analysis = visit
+    told: list[tuple[float, str]] = []
+    with opened:
+        room = Room(start_bytes=0, kept_bytes=0)
+        session_id = import_session(opened, session, lambda *_: None, code="DEMO", room=room).session_id
+        export_from_library(
+            opened,
+            session_id,
+            [Format.MOT],
+            tmp_path,
+            {},
+            lambda share, what: told.append((share, what)),
+            analysed=lambda _: analysis,
+        )
+    assert told[-2:] == [(0.5, "analysing"), (1.0, "writing")]
+    assert all(isinstance(what, str) and 0.0 <= share <= 1.0 for share, what in told)
