@@ -9,6 +9,7 @@ import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -41,7 +42,8 @@ def main() -> None:
         if wanted.cover or not COVERING.exists():
             cover()
         until_s = time.monotonic() + wanted.seconds
-        run([one for some in mutants.values() for one in some], wanted.again, until_s)
+        in_turn = zip_longest(*mutants.values())  # so that a run that is cut short has tried as many of each
+        run([one for several in in_turn for one in several if one], wanted.again, until_s)
     report(mutants)
 
 
