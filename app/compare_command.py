@@ -21,6 +21,8 @@ FLAGS = {  # as core.verdicts.measurement_error has them
     "no_published_figure": "not judged",
     "withheld": "withheld",
 }
+DAGGER = "†"
+DAGGER_MEANS = f"{DAGGER} The error rests on a figure of which the source could not be checked."
 
 Report = Callable[[float, str], None]
 
@@ -75,6 +77,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         report(1.0, "writing")
     return [
         *(line for comparison in comparisons for line in _table(comparison)),
+        *(["", DAGGER_MEANS] if any(row.difference.is_unverified for row in rows) else []),
         "",
         f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
     ]
@@ -99,7 +102,8 @@ def _table(comparison: "Comparison") -> Iterator[str]:
             found = row.difference
             figures = (row.value.mean, row.other.mean, found.difference)
             cells = " ".join(f"{_short(figure):>9}" for figure in figures)
-            yield f"  {side:5} {row.parameter:38} {cells} {_short(found.error):>7}  {FLAGS[found.judgement]}"
+            mark = DAGGER if found.is_unverified else " "
+            yield f"  {side:5} {row.parameter:38} {cells} {_short(found.error):>7}{mark} {FLAGS[found.judgement]}"
 
 
 def _named(part: "Part") -> str:

@@ -1,0 +1,255 @@
+"""Is a difference called real by the rule? Every figure here is worked out by hand, none is taken from the code."""
+
+import math
+
+import numpy as np
+import pytest
+
+from core.verdicts.measurement_error import (
+    ComparisonKind,
+    Difference,
+    Judgement,
+    MeanOfStrides,
+    compare,
+    mean_of_strides,
+    sigma_of,
+    whisker,
+)
+from core.verdicts.model import NOT_MEASURED, READ, Assessment, Verdict
+
+ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
+STRAPPINGS, VISITS = ComparisonKind.STRAPPINGS, ComparisonKind.VISITS
+TOLD = (READ, READ)
+
+
+def sure(mean: float, n: int = 12) -> MeanOfStrides:
+    """A mean of strides that are all alike: nothing but the table's figure makes an error."""
+    return mean_of_strides(np.full(n, mean))
+
+
+def difference(name: str, kind: ComparisonKind, one: float, other: float, n: int = 12) -> Difference:
+    return compare(name, kind, sure(one, n), sure(other, n), TOLD)
+
+
+def test_one_mean_is_as_sure_as_its_strides_and_the_walks_halves() -> None:
+    """59, 61, 59 ...: SD sqrt(10/9) = 1.05409; the correlation is negative, so 0.3 is taken.
+
+    1.05409 / sqrt(10) x sqrt(1.3/0.7) = 0.33333 x 1.36277 = 0.45426. The halves are 59.8 and 60.2.
+    """
+    found = mean_of_strides(np.array([59.0, 61.0] * 5))
+    assert (found.mean, found.n) == (60.0, 10)
+    assert found.sd == pytest.approx(1.05409, abs=1e-5)
+    assert found.standard_error == pytest.approx(0.45426, abs=1e-5)
+    assert found.half_difference == pytest.approx(0.2)
+    assert found.uncertainty == pytest.approx(0.49634, abs=1e-5)  # sqrt(0.45426^2 + 0.2^2)
+
+
+def test_strides_that_follow_one_another_count_for_less() -> None:
+    """Five of 55, then five of 65: products of neighbours 4 x 25 - 25 + 4 x 25 = 175 of 250, so r = 0.7.
+
+    SD sqrt(250/9) = 5.27046; 5.27046 / sqrt(10) x sqrt(1.7/0.3) = 1.66667 x 2.38048 = 3.96746.
+    """
+    found = mean_of_strides(np.array([55.0] * 5 + [65.0] * 5))
+    assert found.standard_error == pytest.approx(3.96746, abs=1e-4)
+    assert found.half_difference == pytest.approx(5.0)
+    # a long ramp has 0.97 and is taken as 0.9: 29.0115 / 10 x sqrt(1.9/0.1) = 12.6458
+    assert mean_of_strides(np.arange(100.0)).standard_error == pytest.approx(12.6458, abs=1e-3)
+
+
+def test_of_an_odd_number_the_middle_stride_is_in_neither_half() -> None:
+    assert mean_of_strides(np.array([1.0, 1.0, 50.0, 3.0, 3.0])).half_difference == pytest.approx(1.0)
+
+
+def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
+    assert mean_of_strides(np.array([np.nan, 59.0, 61.0, np.nan])).n == 2
+    one, none = mean_of_strides(np.array([60.0])), mean_of_strides(np.empty(0))
+    assert (one.mean, one.n) == (60.0, 1)
+    assert math.isnan(one.uncertainty)
+    assert math.isnan(none.mean)
+
+
+def test_what_the_clocks_leave_open_adds_to_it() -> None:
+    found = mean_of_strides(np.array([59.0, 61.0] * 5), clock_error=0.8)
+    assert found.uncertainty == pytest.approx(0.94146, abs=1e-5)  # sqrt(0.49634^2 + 0.8^2)
+    assert "clock" in compare("knee_range_deg", LEGS, found, found, TOLD).sources
+
+
+def test_the_error_of_a_difference_is_that_of_both_means_and_of_what_lies_between() -> None:
+    """U^2 = 2 x 0.49634^2 + 2 x 1.0^2 = 2.49271; 1.96 x 1.57883 = 3.09451."""
+    values = np.array([59.0, 61.0] * 5)
+    found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.0), mean_of_strides(values), TOLD)
+    assert found.difference == pytest.approx(3.0)
+    assert found.error == pytest.approx(3.09451, abs=1e-4)
+    assert found.judgement is Judgement.INSIDE_ERROR
+    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.1), mean_of_strides(values), TOLD)
+    assert more.judgement is Judgement.EXCEEDS_ERROR
+    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.1), TOLD)
+    assert (less.difference, less.judgement) == (pytest.approx(-3.1), Judgement.EXCEEDS_ERROR)
+
+
+def test_walks_of_twenty_strides_with_the_sensors_left_on_tell_a_few_degrees_apart() -> None:
+    """An SD of 2.5 deg, 2 points of stance, 0.05 m in 1.3 m: what may be missed is 6 deg, 3 points, 12 %."""
+    noise = np.random.default_rng(1).normal(size=(2, 20))
+    noise = (noise - noise.mean(axis=1, keepdims=True)) / noise.std(axis=1, ddof=1, keepdims=True)
+
+    def error(name: str, mean: float, sd: float) -> float:
+        one, other = (mean_of_strides(mean + sd * row) for row in noise)
+        return compare(name, ATTACHED, one, other, TOLD).error
+
+    assert 2.7719 < error("knee_range_deg", 60.0, 2.5) < 6.0
+    assert 1.3859 < error("stance_percent", 62.0, 2.0) < 3.0
+    assert 0.0900 < error("stride_length_m", 1.3, 0.05) < 0.12 * 1.3
+
+
+# the error of two means that are sure, by the table: 1.96 x sqrt(2) x sigma, or the published figure itself.
+# Relative ones are of a mean of 1.0: 2.77186 x 0.02 = 0.05544 and so on. None: not judged.
+TABLE = {
+    (ATTACHED, "knee_range_deg"): 2.77186,
+    (ATTACHED, "ankle_range_deg"): 2.77186,
+    (ATTACHED, "knee_swing_peak_deg"): 3.32623,
+    (ATTACHED, "ankle_stance_dorsiflexion_deg"): 3.32623,
+    (ATTACHED, "stance_percent"): 1.38593,
+    (ATTACHED, "swing_percent"): 1.38593,
+    (ATTACHED, "stride_time_s"): 0.05544,
+    (ATTACHED, "step_time_s"): 0.05544,
+    (ATTACHED, "speed_m_s"): 0.08316,
+    (ATTACHED, "stride_length_m"): 0.06930,
+    (LEGS, "knee_range_deg"): 9.2,
+    (LEGS, "ankle_range_deg"): 9.2,
+    (LEGS, "knee_at_initial_contact_deg"): 12.4,
+    (LEGS, "ankle_push_off_plantarflexion_deg"): 12.4,
+    (LEGS, "stance_percent"): 2.5,
+    (LEGS, "step_time_s"): 0.05,
+    (LEGS, "stride_time_s"): None,
+    (LEGS, "speed_m_s"): None,
+    (LEGS, "stride_length_m"): 0.03,
+    (STRAPPINGS, "knee_range_deg"): 9.2,
+    (STRAPPINGS, "ankle_range_deg"): 9.2,
+    (STRAPPINGS, "knee_swing_peak_deg"): 12.4,
+    (STRAPPINGS, "stance_percent"): 8.31558,
+    (STRAPPINGS, "stride_time_s"): 0.11087,
+    (STRAPPINGS, "speed_m_s"): 0.11087,
+    (STRAPPINGS, "stride_length_m"): 0.13859,
+    (VISITS, "knee_range_deg"): 9.2,
+    (VISITS, "ankle_range_deg"): 9.2,
+    (VISITS, "knee_swing_peak_deg"): 12.4,
+    (VISITS, "stance_percent"): 8.31558,
+    (VISITS, "stride_time_s"): 0.11087,
+    (VISITS, "speed_m_s"): 0.20,
+    (VISITS, "stride_length_m"): 0.13859,
+    (ATTACHED, "clearance_m"): None,
+    (VISITS, "knee_swing_peak_percent"): None,
+}
+VERIFIED = {(ATTACHED, "stance_percent"), (ATTACHED, "swing_percent"), (ATTACHED, "stride_length_m")}
+VERIFIED |= {(ATTACHED, "stride_time_s"), (ATTACHED, "step_time_s")}
+
+
+@pytest.mark.parametrize(("kind", "name"), list(TABLE))
+def test_the_errors_are_those_of_the_table(kind: ComparisonKind, name: str) -> None:
+    expected = TABLE[kind, name]
+    mean = 1.0 if name.endswith(("_s", "_m", "m_s")) else 60.0
+    found = compare(name, kind, sure(mean), sure(mean), TOLD)
+    if expected is None:
+        assert found.judgement is Judgement.NO_PUBLISHED_FIGURE
+        assert math.isnan(found.error)
+        assert found.difference == 0.0
+        return
+    assert found.error == pytest.approx(expected, abs=1e-5)
+    assert found.is_unverified is ((kind, name) not in VERIFIED)
+    assert found.judgement is Judgement.INSIDE_ERROR
+
+
+def test_halves_of_one_walk_differ_by_nothing_but_chance_and_drift() -> None:
+    values = np.array([59.0, 61.0] * 5)
+    found = compare("knee_range_deg", ComparisonKind.HALVES, mean_of_strides(values), mean_of_strides(values), TOLD)
+    assert found.error == pytest.approx(1.37577, abs=1e-4)  # 1.96 x sqrt(2) x 0.49634
+    assert found.sources == ("chance", "drift")
+    assert not found.is_unverified
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "sources"),
+    [
+        (ATTACHED, "knee_swing_peak_deg", ("chance", "drift", "walk_to_walk")),
+        (LEGS, "knee_range_deg", ("chance", "drift", "strapping")),
+        (LEGS, "knee_swing_peak_deg", ("chance", "drift", "strapping", "zero")),
+        (LEGS, "stance_percent", ("chance", "drift", "event_bias")),
+        (STRAPPINGS, "stance_percent", ("chance", "drift", "walk_to_walk", "strapping")),
+        (VISITS, "knee_swing_peak_deg", ("chance", "drift", "walk_to_walk", "strapping", "day", "zero")),
+    ],
+)
+def test_an_error_says_what_it_contains(kind: ComparisonKind, name: str, sources: tuple[str, ...]) -> None:
+    assert difference(name, kind, 60.0, 60.0).sources == sources
+
+
+def test_a_sentence_needs_half_as_much_again_unless_the_error_is_a_published_upper_end() -> None:
+    """The error of walks with the sensors left on is 2.772, and 1.5 of it 4.158."""
+
+    def told(apart: float, kind: ComparisonKind, *, is_goal: bool = False) -> tuple[bool, bool]:
+        found = compare("knee_range_deg", kind, sure(60.0 + apart), sure(60.0), TOLD, is_chosen_before=is_goal)
+        return found.exceeds, found.is_worth_a_sentence
+
+    assert told(2.7, ATTACHED) == (False, False)
+    assert told(4.1, ATTACHED) == (True, False)
+    assert told(4.2, ATTACHED) == (True, True)
+    assert told(-4.2, ATTACHED) == (True, True)
+    assert told(2.8, ATTACHED, is_goal=True) == (True, True)
+    assert told(9.1, VISITS) == (False, False)
+    assert told(9.3, VISITS) == (True, True)
+    stance = difference("stance_percent", LEGS, 63.0, 60.0)  # 2.5 is no published figure: 3.75 are needed
+    assert (stance.exceeds, stance.is_worth_a_sentence) == (True, False)
+
+
+def test_an_ankle_across_strappings_is_judged_and_never_worth_a_sentence() -> None:
+    for kind in (LEGS, STRAPPINGS, VISITS):
+        for name in ("ankle_range_deg", "ankle_stance_dorsiflexion_deg"):
+            found = compare(name, kind, sure(60.0), sure(20.0), TOLD, is_chosen_before=True)
+            assert (found.exceeds, found.is_unverified, found.is_worth_a_sentence) == (True, True, False)
+    assert difference("ankle_range_deg", ATTACHED, 30.0, 20.0).is_worth_a_sentence
+
+
+def test_under_ten_strides_nothing_is_judged_and_under_three_nothing_is_told() -> None:
+    nine = compare("knee_range_deg", LEGS, sure(60.0, 10), sure(30.0, 9), TOLD)
+    assert (nine.difference, nine.judgement) == (30.0, Judgement.TOO_FEW_STRIDES)
+    assert math.isnan(nine.error)
+    assert not nine.is_worth_a_sentence
+    assert difference("knee_range_deg", LEGS, 60.0, 30.0, 10).judgement is Judgement.EXCEEDS_ERROR
+    for n in (0, 1, 2):
+        few = compare("knee_range_deg", LEGS, sure(60.0), sure(30.0, n), TOLD)
+        assert (few.judgement, few.is_told) == (Judgement.TOO_FEW_STRIDES, False)
+    assert difference("knee_range_deg", LEGS, 60.0, 30.0, 3).is_told
+
+
+@pytest.mark.parametrize("gone", [Assessment(Verdict.WITHHELD), NOT_MEASURED])
+def test_what_is_withheld_has_no_difference(gone: Assessment) -> None:
+    for pair in ((gone, READ), (READ, gone)):
+        found = compare("knee_range_deg", LEGS, sure(60.0), sure(30.0), pair)
+        assert found.judgement is Judgement.WITHHELD
+        assert not found.is_told
+        assert math.isnan(found.error)
+        assert not found.is_worth_a_sentence
+        assert found.ratio == 0.0
+    assert compare("knee_range_deg", LEGS, sure(60.0), sure(30.0), (READ, Assessment(Verdict.CARE))).exceeds
+
+
+def test_a_ratio_is_how_many_errors_a_difference_is_large() -> None:
+    assert difference("knee_range_deg", LEGS, 78.4, 60.0).ratio == pytest.approx(2.0)
+    assert difference("speed_m_s", LEGS, 1.4, 1.0).ratio == 0.0
+
+
+def test_whiskers_that_lie_apart_differ_by_more_than_the_error() -> None:
+    assert whisker("knee_range_deg", LEGS, sure(60.0)) == pytest.approx(4.6)
+    assert whisker("stride_length_m", ATTACHED, sure(1.3)) == pytest.approx(0.5 * 2.77186 * 0.025 * 1.3, abs=1e-5)
+    values = np.array([59.0, 61.0] * 5)
+    one = mean_of_strides(values)
+    reach = whisker("knee_range_deg", ATTACHED, one)
+    assert reach == pytest.approx(1.54726, abs=1e-4)  # half of the 3.09451 above
+    for apart in (2 * reach - 0.01, 2 * reach + 0.01):
+        found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + apart), one, TOLD)
+        assert found.exceeds == (apart > 2 * reach)
+
+
+def test_there_is_no_whisker_where_there_is_no_spread_or_no_figure() -> None:
+    assert math.isnan(whisker("knee_range_deg", LEGS, sure(60.0, 9)))
+    assert math.isnan(whisker("clearance_m", ATTACHED, sure(0.1)))
+    assert sigma_of("stride_time_s", LEGS) is None
