@@ -31,17 +31,18 @@ def difference(name: str, kind: ComparisonKind, one: float, other: float, n: int
     return compare(name, kind, sure(one, n), sure(other, n), TOLD)
 
 
-def test_one_mean_is_as_sure_as_its_strides_and_the_walks_halves() -> None:
+def test_one_mean_is_as_sure_as_its_strides_and_the_walks_parts() -> None:
     """59, 61, 59 ...: SD sqrt(10/9) = 1.05409; the correlation is negative, so 0.3 is taken.
 
-    1.05409 / sqrt(10) x sqrt(1.3/0.7) = 0.33333 x 1.36277 = 0.45426. The halves are 59.8 and 60.2.
+    1.05409 / sqrt(10) x sqrt(1.3/0.7) = 0.33333 x 1.36277 = 0.45426. The halves are 59.8 and 60.2, the thirds of
+    four, three and three 60, 59.667 and 60.333: half of 0.667 is more than half of 0.4.
     """
     found = mean_of_strides(np.array([59.0, 61.0] * 5))
     assert (found.mean, found.n) == (60.0, 10)
     assert found.sd == pytest.approx(1.05409, abs=1e-5)
     assert found.standard_error == pytest.approx(0.45426, abs=1e-5)
-    assert found.half_difference == pytest.approx(0.2)
-    assert found.uncertainty == pytest.approx(0.49634, abs=1e-5)  # sqrt(0.45426^2 + 0.2^2)
+    assert found.drift == pytest.approx(1 / 3)
+    assert found.uncertainty == pytest.approx(0.56344, abs=1e-5)  # sqrt(0.45426^2 + 0.33333^2)
 
 
 def test_strides_that_follow_one_another_count_for_less() -> None:
@@ -51,13 +52,15 @@ def test_strides_that_follow_one_another_count_for_less() -> None:
     """
     found = mean_of_strides(np.array([55.0] * 5 + [65.0] * 5))
     assert found.standard_error == pytest.approx(3.96746, abs=1e-4)
-    assert found.half_difference == pytest.approx(5.0)
+    assert found.drift == pytest.approx(5.0)
     # a long ramp has 0.97 and is taken as 0.9: 29.0115 / 10 x sqrt(1.9/0.1) = 12.6458
     assert mean_of_strides(np.arange(100.0)).standard_error == pytest.approx(12.6458, abs=1e-3)
 
 
-def test_of_an_odd_number_the_middle_stride_is_in_neither_half() -> None:
-    assert mean_of_strides(np.array([1.0, 1.0, 50.0, 3.0, 3.0])).half_difference == pytest.approx(1.0)
+def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
+    values = np.repeat([60.0, 63.0, 60.0], 4)  # both halves are 61
+    assert mean_of_strides(values).drift == pytest.approx(1.5)
+    assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(1.0)
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
@@ -70,21 +73,21 @@ def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None
 
 def test_what_the_clocks_leave_open_adds_to_it() -> None:
     found = mean_of_strides(np.array([59.0, 61.0] * 5), clock_error=0.8)
-    assert found.uncertainty == pytest.approx(0.94146, abs=1e-5)  # sqrt(0.49634^2 + 0.8^2)
+    assert found.uncertainty == pytest.approx(0.97850, abs=1e-5)  # sqrt(0.56344^2 + 0.8^2)
     assert "clock" in compare("knee_range_deg", LEGS, found, found, TOLD).sources
 
 
 def test_the_error_of_a_difference_is_that_of_both_means_and_of_what_lies_between() -> None:
-    """U^2 = 2 x 0.49634^2 + 2 x 1.0^2 = 2.49271; 1.96 x 1.57883 = 3.09451."""
+    """U^2 = 2 x 0.56344^2 + 2 x 1.0^2 = 2.63493; 1.96 x 1.62325 = 3.18156."""
     values = np.array([59.0, 61.0] * 5)
     found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.0), mean_of_strides(values), TOLD)
     assert found.difference == pytest.approx(3.0)
-    assert found.error == pytest.approx(3.09451, abs=1e-4)
+    assert found.error == pytest.approx(3.18156, abs=1e-4)
     assert found.judgement is Judgement.INSIDE_ERROR
-    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.1), mean_of_strides(values), TOLD)
+    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.2), mean_of_strides(values), TOLD)
     assert more.judgement is Judgement.EXCEEDS_ERROR
-    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.1), TOLD)
-    assert (less.difference, less.judgement) == (pytest.approx(-3.1), Judgement.EXCEEDS_ERROR)
+    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.2), TOLD)
+    assert (less.difference, less.judgement) == (pytest.approx(-3.2), Judgement.EXCEEDS_ERROR)
 
 
 def test_walks_of_twenty_strides_with_the_sensors_left_on_tell_a_few_degrees_apart() -> None:
@@ -99,6 +102,23 @@ def test_walks_of_twenty_strides_with_the_sensors_left_on_tell_a_few_degrees_apa
     assert 2.7719 < error("knee_range_deg", 60.0, 2.5) < 6.0
     assert 1.3859 < error("stance_percent", 62.0, 2.0) < 3.0
     assert 0.0900 < error("stride_length_m", 1.3, 0.05) < 0.12 * 1.3
+
+
+def test_what_another_speed_alone_may_make_of_an_angle_or_of_stance_is_no_difference() -> None:
+    """At 0.2 m/s more 11 x 0.2 = 2.2 deg and 4.8 x 0.2 = 0.96 points.
+
+    1.96 x sqrt(2.2^2 + 2) = 5.12605, with 2 x 1.2^2 5.44584, 1.96 x sqrt(0.96^2 + 2 x 0.5^2) = 2.33692.
+    """
+
+    def error(name: str, apart_m_s: float) -> Difference:
+        return compare(name, ATTACHED, sure(60.0), sure(60.0), TOLD, speed_apart_m_s=apart_m_s)
+
+    assert error("knee_range_deg", 0.2).error == pytest.approx(5.12605, abs=1e-4)
+    assert error("ankle_stance_dorsiflexion_deg", -0.2).error == pytest.approx(5.44584, abs=1e-4)
+    assert error("stance_percent", 0.2).error == pytest.approx(2.33692, abs=1e-4)
+    assert error("stance_percent", 0.2).sources == ("chance", "drift", "speed", "walk_to_walk")
+    for name in ("stride_time_s", "stride_length_m"):
+        assert error(name, 0.2) == error(name, 0.0)
 
 
 # the error of two means that are sure, by the table: 1.96 x sqrt(2) x sigma, or the published figure itself.
@@ -162,7 +182,7 @@ def test_the_errors_are_those_of_the_table(kind: ComparisonKind, name: str) -> N
 def test_halves_of_one_walk_differ_by_nothing_but_chance_and_drift() -> None:
     values = np.array([59.0, 61.0] * 5)
     found = compare("knee_range_deg", ComparisonKind.HALVES, mean_of_strides(values), mean_of_strides(values), TOLD)
-    assert found.error == pytest.approx(1.37577, abs=1e-4)  # 1.96 x sqrt(2) x 0.49634
+    assert found.error == pytest.approx(1.56178, abs=1e-4)  # 1.96 x sqrt(2) x 0.56344
     assert found.sources == ("chance", "drift")
     assert not found.is_unverified
 
@@ -243,7 +263,7 @@ def test_whiskers_that_lie_apart_differ_by_more_than_the_error() -> None:
     values = np.array([59.0, 61.0] * 5)
     one = mean_of_strides(values)
     reach = whisker("knee_range_deg", ATTACHED, one)
-    assert reach == pytest.approx(1.54726, abs=1e-4)  # half of the 3.09451 above
+    assert reach == pytest.approx(1.59078, abs=1e-4)  # half of the 3.18156 above
     for apart in (2 * reach - 0.01, 2 * reach + 0.01):
         found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + apart), one, TOLD)
         assert found.exceeds == (apart > 2 * reach)
