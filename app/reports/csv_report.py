@@ -8,6 +8,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.csv
 
+from app.reports.status import WITHHELD, is_slipped, joint_status
 from core.body import Joint, Side
 from core.gait.phases import PHASES
 from core.results import JointAngle, RecordingAnalysis
@@ -20,7 +21,9 @@ DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns nee
 
 
 def write_angles(recording: RecordingAnalysis, path: Path) -> None:
-    """Write one recording's angles in degrees, gaps as empty cells, and the phase of each foot in words.
+    """Write one recording's angles in degrees, gaps as empty cells, the phase of each foot and what may be said of each.
+
+    The samples of an angle that is withheld stay, as evidence; its status says so in every row.
 
     Raises
     ------
@@ -66,6 +69,7 @@ def _angle_blocks(recording: RecordingAnalysis) -> Iterator[pa.RecordBatch]:
             columns |= _joint_columns(joint, recording.joints[joint], rows)
         n = len(columns["time_s"])
         columns |= {f"{side}_phase": _phases(recording, side, rows, n) for side in Side}
+        columns |= {f"{joint}_status": _status(recording, joint, rows) for joint in joints}
         yield pa.RecordBatch.from_pydict(columns)
 
 
@@ -75,6 +79,12 @@ def _phases(recording: RecordingAnalysis, side: Side, rows: slice, n: int) -> pa
         return pa.nulls(n, pa.string())
     words = pa.array([str(phase) or None for phase in PHASES])
     return words.take(pa.array(recording.gait[side].phase[rows]))
+
+
+def _status(recording: RecordingAnalysis, joint: Joint, rows: slice) -> pa.Array:
+    """Give the joint's status in each row, withheld after a strap of its leg slipped."""
+    words = pa.array([joint_status(recording, joint) or None, WITHHELD])
+    return words.take(pa.array(is_slipped(recording, joint.side, rows).astype(np.int64)))
 
 
 def _joint_columns(joint: Joint, angle: JointAngle, rows: slice) -> dict[str, pa.Array]:

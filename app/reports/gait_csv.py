@@ -11,10 +11,11 @@ from pathlib import Path
 import numpy as np
 
 from app.reports.csv_report import write_table
+from app.reports.status import joint_status
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
-from core.verdicts.model import Assessment, Verdict, together
+from core.verdicts.model import Assessment, together
 from core.verdicts.quantities import PARAMETERS, WINDOWS, mean_curve, peak_percent, values_of
 
 EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
@@ -83,21 +84,6 @@ def events_of(recording: RecordingAnalysis) -> list[tuple[float, Side, str]]:
         if math.isfinite(time_s)
     ]
     return sorted(found, key=lambda event: (event[0], event[1], EVENTS.index(event[2])))
-
-
-def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
-    """What holds of a joint's angle in one word: read, care, withheld, range_only or no_zero; empty: not measured.
-
-    `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height says nothing.
-    """
-    found = recording.verdicts.joint(joint)
-    if found.shape.verdict is Verdict.NOT_MEASURED:
-        return ""
-    if not found.shape.is_told:
-        return str(Verdict.WITHHELD)
-    if not found.sign.is_told:
-        return "range_only"
-    return str(together((found.shape, found.height)).verdict) if found.height.is_told else "no_zero"
 
 
 def _strides(recording: RecordingAnalysis) -> Iterator[list[str]]:

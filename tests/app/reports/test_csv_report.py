@@ -2,6 +2,7 @@
 
 import csv
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,10 @@ import pytest
 
 from app.reports import csv_report
 from app.reports.csv_report import write_angles
-from core.body import Joint
+from core.body import Joint, Side
 from core.results import JointAngle, RecordingAnalysis
 from core.samples import FloatArray, RecordingKind
+from core.verdicts.model import READ, Assessment, JointVerdicts, Verdict, Verdicts
 
 GOLDEN = Path(__file__).parents[2] / "golden"
 
@@ -35,7 +37,12 @@ def knee_and_ankle() -> RecordingAnalysis:
         orientation_rad=np.full(5, -1.0),
     )
     time_s = np.array([12.3, 12.31, 0.1 + 0.2 + 13.0, 1e5 + 1 / 3, 123456789.01])
-    return recording(time_s, {Joint.RIGHT_ANKLE: ankle, Joint.LEFT_KNEE: knee})
+    walk = recording(time_s, {Joint.RIGHT_ANKLE: ankle, Joint.LEFT_KNEE: knee})
+    said = {
+        Joint.LEFT_KNEE: JointVerdicts(READ, Assessment(Verdict.CARE), READ),
+        Joint.RIGHT_ANKLE: JointVerdicts(READ, Assessment(Verdict.WITHHELD), READ),
+    }
+    return replace(walk, verdicts=Verdicts(said), slipped_from_s={Side.LEFT: 1000.0})
 
 
 def random_walk(n: int) -> RecordingAnalysis:
@@ -49,6 +56,52 @@ def random_walk(n: int) -> RecordingAnalysis:
 def test_angles_read_as_agreed(tmp_path: Path) -> None:
     write_angles(knee_and_ankle(), tmp_path / "angles.csv")
     assert (tmp_path / "angles.csv").read_bytes() == (GOLDEN / "angles.csv").read_bytes()
+
+
+def told(path: Path, column: str) -> list[str]:
+    with path.open(newline="") as file:
+        return [row[column] for row in csv.DictReader(file)]
+
+
+@pytest.mark.parametrize(
+    ("shape", "height", "sign", "status"),
+    [
+        ("read", "read", "read", "read"),
+        ("care", "read", "read", "care"),
+        ("read", "care", "read", "care"),
+        ("read", "withheld", "read", "no_zero"),
+        ("care", "withheld", "withheld", "range_only"),
+        ("withheld", "withheld", "withheld", "withheld"),
+        ("withheld", "read", "read", "withheld"),
+        ("not_measured", "not_measured", "not_measured", ""),
+    ],
+)
+def test_each_row_says_what_may_be_read_and_keeps_its_samples(
+    tmp_path: Path, shape: str, height: str, sign: str, status: str
+) -> None:
+    walk, parts = random_walk(20), [Assessment(Verdict(one)) for one in (shape, height, sign)]
+    walk = replace(walk, verdicts=Verdicts({Joint.LEFT_ANKLE: JointVerdicts(*parts)}))
+    write_angles(walk, tmp_path / "angles.csv")
+    assert told(tmp_path / "angles.csv", "left_ankle_status") == [status] * 20
+    assert told(tmp_path / "angles.csv", "right_ankle_status") == [""] * 20
+    known = [bool(cell) for cell in told(tmp_path / "angles.csv", "left_ankle_deg")]
+    assert known == np.isfinite(walk.joints[Joint.LEFT_ANKLE].angle_rad).tolist()
+
+
+def test_from_where_a_strap_slipped_the_rows_of_its_leg_are_withheld(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(csv_report, "ROWS_PER_BLOCK", 30)
+    walk = random_walk(100)
+    said = Verdicts(dict.fromkeys(Joint, JointVerdicts(READ, READ, READ)))
+    slipped = replace(walk, verdicts=said, slipped_from_s={Side.RIGHT: float(walk.time_s[40])})
+    write_angles(slipped, tmp_path / "angles.csv")
+    for joint in Joint:
+        good = 40 if joint.side is Side.RIGHT else 100
+        assert told(tmp_path / "angles.csv", f"{joint}_status") == ["read"] * good + ["withheld"] * (100 - good)
+    never = replace(slipped, slipped_from_s={Side.RIGHT: -np.inf})
+    write_angles(never, tmp_path / "angles.csv")
+    assert set(told(tmp_path / "angles.csv", "right_knee_status")) == {"withheld"}
 
 
 def test_a_table_without_samples_or_joints_keeps_its_heading(tmp_path: Path) -> None:
