@@ -21,7 +21,7 @@ DIGITS = 18  # what fits into the 64 bits below; an angle of a million turns nee
 
 
 def write_angles(recording: RecordingAnalysis, path: Path) -> None:
-    """Write one recording's angles in degrees, gaps as empty cells, the phase of each foot and what may be said of each.
+    """Write one recording's angles in degrees, gaps as empty cells, and the phase of each foot in words.
 
     The samples of an angle that is withheld stay, as evidence; its status says so in every row.
 

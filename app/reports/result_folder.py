@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
+from app.reports.columns import COLUMNS, write_columns
 from app.reports.comparison import Comparison, Kind, conditions_of, first_and_second
 from app.reports.csv_report import write_angles, write_table
 from app.reports.differences import (
@@ -40,7 +41,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES),
+        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS),
     )
 )
 
@@ -65,11 +66,23 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
     if any(recording.gait for recording in analysis.recordings):
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
     _write_comparisons(session, analysis, folder)
+    describe_tables(analysis, folder)
     if has_log:
         from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write
 
         write_log(session, analysis, folder / LOG)
     write_summary(analysis, folder / SUMMARY)
+
+
+def describe_tables(analysis: Analysis, folder: Path) -> None:
+    """Write what the columns of the tables of an analysis mean; again, where a table was added since.
+
+    Raises
+    ------
+    OSError
+        A table cannot be read, or this one not written.
+    """
+    write_columns(folder, [recording.folder for recording in analysis.recordings])
 
 
 def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:

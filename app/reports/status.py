@@ -49,7 +49,7 @@ def why_status(recording: RecordingAnalysis, joint: Joint) -> str:
 
 
 def is_slipped(recording: RecordingAnalysis, side: Side, rows: slice = slice(None)) -> BoolArray:
-    """Which of some samples come after a strap of this side slipped: no angle of it holds there, whatever its status."""
+    """Which of some samples come after a strap of this side slipped: there no angle of it holds."""
     from_s = recording.slipped_from_s.get(side, np.inf)
     return np.asarray(recording.time_s[rows] >= from_s, dtype=bool)
 

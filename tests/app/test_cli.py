@@ -81,6 +81,7 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> str:
 def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Path, tmp_path: Path) -> None:
     assert analyse(session, tmp_path / "out") == 0
     assert list(files_in(tmp_path / "out")) == [
+        "columns.csv",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "report.pdf",
@@ -282,6 +283,7 @@ def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path
     (tmp_path / "out" / "walk_9").mkdir()
     assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
     assert list(files_in(tmp_path / "out")) == [
+        "columns.csv",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "summary.json",

@@ -10,7 +10,7 @@ from app.reports.differences import rows_of, write_compared_cycles, write_differ
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
-from app.reports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES
+from app.reports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES, describe_tables
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -46,6 +46,7 @@ def write_visits(request: ReportRequest, folder: Path) -> None:
     if comparison is not None and comparison.kind is Kind.VISITS:
         write_differences(rows_of(comparison), folder / VISITS)
         write_compared_cycles(comparison.parts, folder / VISITS_CYCLES)
+        describe_tables(request.visit.analysis, folder)
 
 
 def chosen_walks(visit: Visit, wanted: list[str], session: str) -> tuple[str, ...]:

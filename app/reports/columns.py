@@ -1,0 +1,232 @@
+"""What does each column of each CSV file mean? `columns.csv`: unit, sign, definition, and what it needs to be known.
+
+What a column needs is told in words: `zero`, `sign`, `both_clocks` (of the two legs), or `parameter`: as the figure
+that its row tells of does. Where that is not to be had its cells are empty, and its status says withheld.
+"""
+
+import csv
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from app.reports.csv_report import write_table
+from core.body import Joint, Side
+from core.verdicts.quantities import PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
+
+COLUMNS = "columns.csv"
+HEADER = ("file", "column", "unit", "sign", "definition", "needs")
+UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_m": "m"}  # by the end of a name, longer ends first
+FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive"}
+HEIGHT = "zero sign"
+NEEDS = {QuantityClass.PEAK_TIME: "sign", QuantityClass.HEIGHT: HEIGHT, QuantityClass.BETWEEN: "both_clocks"}
+AS_PARAMETER, AS_ROW = "parameter", "as the parameter"
+
+
+class Column(NamedTuple):
+    """What a column means; `unit` None: as its name ends."""
+
+    definition: str
+    needs: str = ""
+    sign: str = ""
+    unit: str | None = None
+
+
+def _word(definition: str) -> Column:
+    """A column of words or counts."""
+    return Column(definition, unit="")
+
+
+def _of_stride(name: str) -> Column:
+    """A column that strides.csv has and the parameters of other tables are."""
+    needs, kind = NEEDS.get(QUANTITIES[name], ""), name.split("_")[0]
+    sign = FLEXION[kind] if QUANTITIES[name] is QuantityClass.HEIGHT else ""
+    if name in WINDOWS:
+        window = WINDOWS[name]
+        what = "largest" if window.is_maximum else "smallest"
+        return Column(f"{what} angle from {window.first} to {window.last} % of the stride", needs, sign)
+    return Column(OF_STRIDE[name], needs, sign)
+
+
+OF_STRIDE = {
+    "stride_time_s": "from an initial contact to the next of the same foot",
+    "step_time_s": "from the other foot's initial contact to this foot's, which ends the stride",
+    "stance_percent": "share of the stride from initial contact to toe-off",
+    "swing_percent": "share of the stride from toe-off to initial contact",
+    "stride_length_m": "how far the foot travels in the swing that ends the stride",
+    "speed_m_s": "stride length by stride time",
+    "clearance_m": "how high the foot's sensor rises in swing, not the toe",
+    "knee_at_initial_contact_deg": "angle at initial contact",
+    "knee_swing_peak_percent": "when in the stride the largest angle from 55 to 90 % comes",
+    "knee_range_deg": "largest less smallest angle of the stride",
+    "ankle_at_initial_contact_deg": "angle at initial contact",
+    "ankle_range_deg": "largest less smallest angle of the stride",
+}
+TIMES = {
+    "start_s": Column("initial contact that begins the stride"),
+    "full_contact_s": Column("the whole foot comes to the floor"),
+    "heel_rise_s": Column("the heel leaves the floor"),
+    "toe_off_s": Column("the foot leaves the floor"),
+    "end_s": Column("initial contact that ends the stride"),
+}
+ON_CLOCK = Column("on the recording's clock")
+SIDE = _word("left or right")
+USED = _word("true where the stride counts for averages")
+ANGLE_STATUS = _word(
+    "what may be said of the joint: read, care, withheld, range_only (its sign is not known) or no_zero (heights say "
+    "nothing)"
+)
+N = _word("strides behind the mean")
+STATUS = "read, care, withheld or not_measured: what may be said of "
+OF_PART = {
+    "part": _word("letter of the condition or visit"),
+    "name": _word("its name"),
+    "walks": _word("the walks whose strides are taken together"),
+}
+PARAMETER = _word("the column of strides.csv or figure of both legs that is compared")
+MEAN = {
+    "n": N,
+    "mean": Column("mean over the strides used", AS_PARAMETER, AS_ROW, AS_ROW),
+    "sd": Column("standard deviation between the strides used", AS_PARAMETER, "", AS_ROW),
+}
+BY_HAND = {"left_out_by_hand": _word("strides that a person left out")}
+JUDGED = {
+    "difference": Column("the first mean less the second", AS_PARAMETER, AS_ROW, AS_ROW),
+    "error": Column("what a difference has to exceed to be real, at 95 %", AS_PARAMETER, "", AS_ROW),
+    "error_sources": _word("what the error contains"),
+    "status": _word("the worse of what may be said of the two means"),
+    "verdict": _word("exceeds_error, inside_error, withheld, too_few_strides (under 10) or no_published_figure"),
+}
+PERCENT = {"percent": Column("of the stride, from initial contact to the next")}
+
+
+def _of_angles(joint: Joint) -> dict[str, Column]:
+    sign = FLEXION[joint.split("_")[1]]
+    return {
+        f"{joint}_deg": Column("angle: twist of the relative orientation about the joint's axis", HEIGHT, sign),
+        f"{joint}_sd_deg": Column("standard deviation of the angle, estimated"),
+        f"{joint}_published_deg": Column("angle by the published filter, on the same identification", HEIGHT, sign),
+        f"{joint}_orientation_deg": Column("angle from the two sensors' orientations", HEIGHT, sign),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+def _of_cycles(joint: Joint) -> dict[str, Column]:
+    sign = FLEXION[joint.split("_")[1]]
+    return {
+        f"{joint}_mean_deg": Column("mean angle over the strides used", HEIGHT, sign),
+        f"{joint}_stride_sd_deg": Column("standard deviation between the strides used"),
+        f"{joint}_n": N,
+        f"{joint}_shape_deg": Column("mean angle over the strides used, less its mean", "sign", sign),
+        f"{joint}_status": ANGLE_STATUS,
+    }
+
+
+def _prefixed(prefix: str, columns: Mapping[str, Column], whose: str) -> dict[str, Column]:
+    return {prefix + name: one._replace(definition=f"{one.definition}{whose}") for name, one in columns.items()}
+
+
+CYCLES = PERCENT | {name: column for joint in Joint for name, column in _of_cycles(joint).items()}
+DIFFERENCES = {
+    **OF_PART,
+    **_prefixed("against_", {**OF_PART, **MEAN, **BY_HAND}, ", of what it is compared with"),
+    "side": _word("left, right or both"),
+    "parameter": PARAMETER,
+    **MEAN,
+    **JUDGED,
+    **BY_HAND,
+}
+KNOWN: Mapping[str, Mapping[str, Column]] = {
+    "angles.csv": {
+        "time_s": ON_CLOCK,
+        **{name: column for joint in Joint for name, column in _of_angles(joint).items()},
+        **{f"{side}_phase": _word("loading, foot_flat, pre_swing or swing; empty: not known") for side in Side},
+    },
+    "events.csv": {
+        "time_s": ON_CLOCK,
+        "side": SIDE,
+        "event": _word("initial_contact, full_contact, heel_rise or toe_off"),
+    },
+    "strides.csv": {
+        "side": SIDE,
+        **TIMES,
+        **{name: _of_stride(name) for name in PARAMETERS},
+        "used": USED,
+        "reason": _word("why the stride does not count; empty where it does"),
+        "timing_status": _word(f"{STATUS}stride time, stance and swing"),
+        "between_status": _word(f"{STATUS}step time"),
+        "distance_status": _word(f"{STATUS}stride length, speed and clearance"),
+        **{f"{kind}_shape_status": _word(f"{STATUS}the {kind}'s range") for kind in FLEXION},
+        **{f"{kind}_height_status": _word(f"{STATUS}the {kind}'s angles") for kind in FLEXION},
+    },
+    "cycles.csv": CYCLES,
+    "peaks.csv": {
+        "recording": _word("its folder"),
+        "side": SIDE,
+        "start_s": TIMES["start_s"],
+        "used": USED,
+        **{
+            f"{window.name}_percent": Column(f"when the extremum from {window.first} to {window.last} % comes", "sign")
+            for window in WINDOWS.values()
+        },
+        **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks") for kind in FLEXION},
+    },
+    "sides.csv": {
+        **OF_PART,
+        "parameter": PARAMETER,
+        **{name: one for side in Side for name, one in _prefixed(f"{side}_", {**MEAN, **BY_HAND}, "").items()},
+        **JUDGED,
+        "symmetry_index_percent": Column("difference by the mean of both legs", AS_PARAMETER),
+    },
+    **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
+    **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),
+}
+LETTERED = ("compared_cycles.csv", "visits_cycles.csv")  # whose columns begin with the letter of a condition or visit
+
+
+def column_of(file: str, name: str) -> Column:
+    """What a column means.
+
+    Raises
+    ------
+    KeyError
+        No such file has such a column.
+    """
+    if file in LETTERED and name not in PERCENT:
+        letter, _, rest = name.partition("_")
+        return KNOWN[file][rest]._replace(definition=f"{KNOWN[file][rest].definition}, of {letter}")
+    return KNOWN[file][name]
+
+
+def write_columns(folder: Path, recordings: list[str]) -> None:
+    """Write what the columns of every table in `folder` mean, as the tables' first lines name them.
+
+    Parameters
+    ----------
+    recordings
+        The folders in it that hold tables too.
+
+    Raises
+    ------
+    OSError
+        A table cannot be read, or this one not written.
+    """
+    write_table(HEADER, _rows(folder, recordings), folder / COLUMNS)
+
+
+def _rows(folder: Path, recordings: list[str]) -> Iterator[tuple[str, ...]]:
+    for file in KNOWN:
+        places = [folder / file, *(folder / recording / file for recording in recordings)]
+        names = dict.fromkeys(name for place in places if place.is_file() for name in _header(place))
+        for name in names:
+            column = column_of(file, name)
+            unit = _unit(name) if column.unit is None else column.unit
+            yield file, name, unit, column.sign, column.definition, column.needs
+
+
+def _header(path: Path) -> list[str]:
+    with path.open(encoding="utf-8", newline="") as file:
+        return next(csv.reader(file), [])
+
+
+def _unit(name: str) -> str:
+    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "")
