@@ -5,8 +5,11 @@ are files of `resources`; this module is given their text.
 """
 
 import csv
+from bisect import bisect_right
 from collections.abc import Mapping
 from dataclasses import dataclass
+from enum import StrEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -14,7 +17,14 @@ from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
 from core.samples import FloatArray
 
-MAX_SPEED_DIFFERENCE_M_S = 0.15  # further from its speed, a band is not drawn without saying so
+MAX_SPEED_DIFFERENCE_M_S = 0.15  # further from its speed, the band of curves is not drawn
+SPEED_CLASSES = ("slow", "comfortable", "fast")
+FROUDE_LIMITS = (0.1304, 0.2306)  # where one class ends and the next begins: terciles of the source's walks
+GRAVITY_M_S2 = 9.81
+LEG_PER_HEIGHT = 0.53  # nobody types the length of a leg
+LEG_LENGTHS_M = (0.75, 1.00)  # of adults, where nobody typed a height either
+ADULT_FROM_YEARS = 18  # every band there is was measured on adults
+KNEE_OVERREAD = 1.09  # so much more flexion do we read than optical markers, 9 +- 4 %
 MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD = 3, 10
 
 SOURCE = (
@@ -30,14 +40,26 @@ class ReferenceCurves:
     source: str
     group: str
     n: int
+    ages_years: tuple[int, int]
     speed_m_s: float
+    leg_length_m: float
     knee_mean_deg: FloatArray
     knee_sd_deg: FloatArray
     ankle_mean_deg: FloatArray
     ankle_sd_deg: FloatArray
 
-    def fits(self, speed_m_s: float) -> bool:
+    @property
+    def speed_class(self) -> str:
+        return _class_of(froude_number(self.speed_m_s, self.leg_length_m))
+
+    def is_near(self, speed_m_s: float) -> bool:
         return abs(speed_m_s - self.speed_m_s) <= MAX_SPEED_DIFFERENCE_M_S
+
+    def mean_and_sd_deg(self, kind: str) -> tuple[FloatArray, FloatArray]:
+        """Of the knee or the ankle."""
+        if kind == "knee":
+            return self.knee_mean_deg, self.knee_sd_deg
+        return self.ankle_mean_deg, self.ankle_sd_deg
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +96,9 @@ def read_curves(text: str) -> ReferenceCurves:
         source=SOURCE.format(derivation="github VIONWILLIAMS/EXO-Forge-Studio"),
         group="young adults, barefoot, treadmill",
         n=24,
+        ages_years=(18, 39),  # "young adults", in the words of the source
         speed_m_s=1.245,
+        leg_length_m=0.878,
         knee_mean_deg=column("knee_mean"),
         knee_sd_deg=column("knee_sd"),
         ankle_mean_deg=column("ankle_mean"),
@@ -96,13 +120,106 @@ def read_time_distance(text: str) -> tuple[ReferenceValues, ...]:
                 for row in rows
             },
         )
-        for speed_class, n in (("slow", 34), ("comfortable", 32), ("fast", 19))
+        for speed_class, n in zip(SPEED_CLASSES, (34, 32, 19), strict=True)
     )
 
 
-def nearest_class(classes: tuple[ReferenceValues, ...], speed_m_s: float) -> ReferenceValues:
-    """The class whose mean speed is nearest; whether it is near enough is the reader's to see."""
-    return min(classes, key=lambda reference: abs(reference.speed_m_s - speed_m_s))
+class AgeAndHeight(NamedTuple):
+    """What of a patient chooses a band; None where nobody typed it."""
+
+    age_years: int | None = None
+    height_m: float | None = None
+
+
+class NoBand(StrEnum):
+    """Why no band stands beside a walk."""
+
+    CHILD = "child"
+    SPEED_UNKNOWN = "speed_unknown"
+    HEIGHT_MISSING = "height_missing"
+    OTHER_SPEED = "other_speed"
+
+
+@dataclass(frozen=True, slots=True)
+class Bands:
+    """The groups that a walk may stand beside: of curves and of time and distance, or why there is none.
+
+    `are_curves_of_other_ages`: the curves may be looked at, but nothing is said of a distance from them.
+    """
+
+    curves: ReferenceCurves | None
+    values: ReferenceValues | None
+    why_no_curves: NoBand | None = None
+    why_no_values: NoBand | None = None
+    are_curves_of_other_ages: bool = False
+
+
+def froude_number(speed_m_s: float, leg_length_m: float) -> float:
+    """Speed told in the length of the leg, so that short and tall people who walk alike have one number."""
+    return speed_m_s**2 / (GRAVITY_M_S2 * leg_length_m)
+
+
+def class_of_speed(speed_m_s: float, height_m: float | None) -> str | None:
+    """Slow, comfortable or fast; None where without a height the legs of adults leave both open."""
+    lengths_m = LEG_LENGTHS_M if height_m is None else (LEG_PER_HEIGHT * height_m,)
+    found = {_class_of(froude_number(speed_m_s, length_m)) for length_m in lengths_m}
+    return found.pop() if len(found) == 1 else None
+
+
+def choose_bands(
+    curves: ReferenceCurves, classes: tuple[ReferenceValues, ...], speed_m_s: float, who: AgeAndHeight
+) -> Bands:
+    """The bands of adults who walked as fast for their legs; of the curves those near in speed as well."""
+    if who.age_years is not None and who.age_years < ADULT_FROM_YEARS:
+        return Bands(None, None, NoBand.CHILD, NoBand.CHILD)
+    if not np.isfinite(speed_m_s):
+        return Bands(None, None, NoBand.SPEED_UNKNOWN, NoBand.SPEED_UNKNOWN)
+    name = class_of_speed(speed_m_s, who.height_m)
+    if name is None:
+        return Bands(None, None, NoBand.HEIGHT_MISSING, NoBand.HEIGHT_MISSING)
+    values = next(group for group in classes if group.speed_class == name)
+    if name != curves.speed_class or not curves.is_near(speed_m_s):
+        return Bands(None, values, NoBand.OTHER_SPEED)
+    youngest, oldest = curves.ages_years
+    is_of_other_ages = who.age_years is not None and not youngest <= who.age_years <= oldest
+    return Bands(curves, values, are_curves_of_other_ages=is_of_other_ages)
+
+
+def height_offset_deg(curve_deg: FloatArray, group_mean_deg: FloatArray) -> float:
+    """How much higher than the group's a curve (101,) lies as a whole: the median of their difference."""
+    return float(np.median(curve_deg - group_mean_deg))
+
+
+def peak_away_sd(
+    value_deg: float, curve_deg: FloatArray, band: tuple[FloatArray, FloatArray], at: int, kind: str
+) -> float:
+    """How many SD a peak lies from a band that is laid at the height of its curve.
+
+    The zero moves a whole curve, and laboratories differ by 5 to 7 deg in theirs: only what is left says something of
+    the walk. Since we read more knee flexion than optical markers, a knee lies as far as it does both as measured and
+    divided by what we read too much.
+
+    Parameters
+    ----------
+    curve_deg : (101,)
+        The mean curve that the peak is of.
+    band
+        Mean and SD of the group (101,), degrees.
+    at
+        Percent of the stride where the group's mean has this peak.
+    """
+    mean_deg, sd_deg = band
+
+    def away(divisor: float) -> float:
+        offset_deg = height_offset_deg(curve_deg / divisor, mean_deg)
+        return float((value_deg / divisor - offset_deg - mean_deg[at]) / sd_deg[at])
+
+    found = (away(1.0), away(KNEE_OVERREAD if kind == "knee" else 1.0))
+    return min(found, key=abs) if found[0] * found[1] > 0 else 0.0
+
+
+def _class_of(froude: float) -> str:
+    return SPEED_CLASSES[bisect_right(FROUDE_LIMITS, froude)]
 
 
 def _table(text: str) -> list[dict[str, str]]:

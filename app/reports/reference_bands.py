@@ -1,11 +1,34 @@
-"""Which cited groups does the program bring along? The reference bands, read from its own files once."""
+"""Which cited groups does the program bring along, and which of them may stand beside a walk?"""
 
 from functools import cache
 from importlib.resources import files
 
-from core.norms import ReferenceCurves, ReferenceValues, read_curves, read_time_distance
+from app.wording import later
+from core.body import Side
+from core.norms import (
+    AgeAndHeight,
+    Bands,
+    NoBand,
+    ReferenceCurves,
+    ReferenceValues,
+    choose_bands,
+    read_curves,
+    read_time_distance,
+)
+from core.results import Analysis, RecordingAnalysis
+from core.samples import Session
+from core.verdicts.quantities import both_sides
 
 FOLDER = files("resources") / "reference_bands"
+
+
+WHY_NO_BAND = {
+    NoBand.CHILD: later("No band: the groups at hand are adults."),
+    NoBand.SPEED_UNKNOWN: later("No band: it is chosen by walking speed, which is not known or withheld."),
+    NoBand.HEIGHT_MISSING: later("No band: the patient's height is missing, which says how fast this speed is."),
+    NoBand.OTHER_SPEED: later("No band at this speed."),
+}
+OTHER_AGES = later("The band is of other ages, so nothing is said of a distance from it.")
 
 
 @cache
@@ -18,6 +41,27 @@ def reference_curves() -> ReferenceCurves:
 def time_distance_classes() -> tuple[ReferenceValues, ...]:
     """Time and distance by class of speed, slow to fast."""
     return read_time_distance(_text("fukuchi2018_spatiotemporal_overground_by_froude_class.csv"))
+
+
+def age_and_height(session: Session) -> AgeAndHeight:
+    """What the clinic typed of who walked in a session; the age in the year of the visit."""
+    born, year = session.patient.birth_year, session.started[:4]
+    age_years = int(year) - born if born is not None and year.isdigit() else None
+    return AgeAndHeight(age_years, session.patient.height_m)
+
+
+def bands_of(recording: RecordingAnalysis, who: AgeAndHeight) -> Bands:
+    """The bands that may stand beside a walk, chosen by its speed."""
+    return choose_bands(reference_curves(), time_distance_classes(), both_sides(recording).speed_m_s, who)
+
+
+def sides_with_band(analysis: Analysis, recording: RecordingAnalysis) -> frozenset[Side]:
+    """Legs that may be compared with other people's: neither a prosthesis nor a foot that rolls on over its toe-off."""
+    return frozenset(
+        side
+        for side, gait in recording.gait.items()
+        if side not in analysis.prosthetic_sides and not gait.is_toe_off_biased
+    )
 
 
 def _text(name: str) -> str:

@@ -13,20 +13,21 @@ from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
-from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
+from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
 from core.gait.strides import Reason
-from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues, nearest_class
+from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import side_mean, used_cycles
+from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, used_cycles
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
     """One row: a figure of each side, or one of both sides together, and the group's mean less and plus 1 SD.
 
-    A side whose figure would say nothing is missing in `sides`, and `unknown` says why.
+    A side whose figure would say nothing is missing in `sides`, and `unknown` says why; `unknown_both` says it of a
+    figure of both sides. `with_care` are the sides whose figure is to be read with care.
     """
 
     name: str
@@ -36,6 +37,8 @@ class Figure:
     both: float | None = None
     band: tuple[float, float] | None = None
     unknown: Mapping[Side, str] = field(default_factory=dict)
+    unknown_both: str = ""
+    with_care: frozenset[Side] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,8 +128,11 @@ def side_cycle(recording: RecordingAnalysis, joint: Joint) -> SideCycle:
     return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off.mean)
 
 
-def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves) -> dict[str, tuple[Figure, ...]]:
-    """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve."""
+def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None) -> dict[str, tuple[Figure, ...]]:
+    """Rows of each kind of joint, degrees and percent of the stride; the band by the same windows on its mean curve.
+
+    The band stands where its source has it; None: none may stand beside this walk.
+    """
     found = {}
     for kind, joint_of, rows in (("knee", knee_of, KNEE_ROWS), ("ankle", ankle_of, ANKLE_ROWS)):
         joints = {side: joint_of(side) for side, gait in recording.gait.items() if joint_of(side) in gait.cycles}
@@ -139,29 +145,38 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves) -> di
             unknown = {side: doubts[side] for side, mean in means.items() if not mean.assessment.is_told}
             sides = {side: mean.found for side, mean in means.items() if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
-            band = band_of_peak(reference, kind, column, window)
-            figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown))
+            band = band_of_peak(reference, kind, column, window) if reference is not None else None
+            care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+            figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care))
         found[kind] = tuple(figures)
     return found
 
 
 def time_distance_figures(
-    recording: RecordingAnalysis, feet: BothFeet, classes: tuple[ReferenceValues, ...]
-) -> tuple[tuple[Figure, ...], ReferenceValues | None]:
-    """Rows of time and distance, and the class of speed whose band stands beside them; None without a speed.
+    recording: RecordingAnalysis, group: ReferenceValues | None, sides_with_band: frozenset[Side]
+) -> tuple[Figure, ...]:
+    """Rows of time and distance beside the group of this speed, None without one.
 
-    Parameters
-    ----------
-    feet
-        As `core.verdicts.quantities.both_sides` gives it.
+    What both legs make together stands beside it only where both may be compared with other people's.
     """
-    group = nearest_class(classes, feet.speed_m_s) if np.isfinite(feet.speed_m_s) else None
+    feet = both_sides(recording)
+    is_any, is_all = bool(sides_with_band), sides_with_band.issuperset(recording.gait)
 
     def row(label: str, name: str, unit: str, decimals: int, band: tuple[float, float] | None = None) -> Figure:
         means = {side: side_mean(recording, side, name) for side in recording.gait}
         told = {side: mean.found for side, mean in means.items() if mean.assessment.is_told}
         withheld = [side for side, mean in means.items() if mean.assessment.verdict is Verdict.WITHHELD]
-        return Figure(label, unit, decimals, told, band=band, unknown=dict.fromkeys(withheld, WITHHELD))
+        care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
+        unknown = dict.fromkeys(withheld, WITHHELD)
+        return Figure(label, unit, decimals, told, band=band if is_any else None, unknown=unknown, with_care=care)
+
+    def both(
+        label: str, name: str, unit: str, decimals: int, value: float, band: tuple[float, float] | None = None
+    ) -> Figure:
+        verdict = assessment_of_both(recording.verdicts, name).verdict
+        care = frozenset(recording.gait) if verdict is Verdict.CARE else frozenset()
+        why = WITHHELD if verdict is Verdict.WITHHELD else ""
+        return Figure(label, unit, decimals, {}, value, band if is_all else None, unknown_both=why, with_care=care)
 
     def band(name: str, factor: float = 1.0) -> tuple[float, float] | None:
         if group is None:
@@ -171,14 +186,15 @@ def time_distance_figures(
 
     return (
         # the class is chosen by speed, so its speed would be no comparison
-        Figure(tr("Walking speed"), "m/s", 2, {}, both=feet.speed_m_s),
-        Figure(tr("Cadence"), tr("steps/min"), 0, {}, both=feet.cadence_steps_min, band=band("cadence")),
+        both(tr("Walking speed"), "speed_m_s", "m/s", 2, feet.speed_m_s),
+        both(tr("Cadence"), "cadence_steps_min", tr("steps/min"), 0, feet.cadence_steps_min, band("cadence")),
         row(tr("Stride time"), "stride_time_s", "s", 2),
         # a subject's stride is the two steps of which the group's step length is the mean
         row(tr("Stride length"), "stride_length_m", "m", 2, band("step_length", 2.0)),
         row(tr("Stance"), "stance_percent", "%", 1, band("stance")),
-        Figure(tr("Double support"), "%", 1, {}, both=feet.double_support_percent, band=band("double_support_total")),
-    ), group
+        # it holds the biases of all four events, and nobody has yet looked how large these are
+        both(tr("Double support"), "double_support_percent", "%", 1, feet.double_support_percent),
+    )
 
 
 def doubt_of(recording: RecordingAnalysis, joint: Joint) -> str | None:
@@ -197,17 +213,19 @@ def band_of_peak(
     reference: ReferenceCurves, kind: str, column: str, window_name: str | None
 ) -> tuple[float, float] | None:
     """1 SD about the group's mean curve where its peak lies; None for what its mean curve cannot tell."""
-    mean, sd = (
-        (reference.knee_mean_deg, reference.knee_sd_deg)
-        if kind == "knee"
-        else (reference.ankle_mean_deg, reference.ankle_sd_deg)
-    )
-    if column == "at_initial_contact_deg":
-        at = 0
-    else:
-        windows = [window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS) if window.name == window_name]
-        percent = find_peak(mean[None, :], windows[0]).percent[0] if windows else np.nan
-        if not np.isfinite(percent):
-            return None
-        at = int(percent)
+    at = peak_place(reference, kind, column, window_name)
+    if at is None:
+        return None
+    mean, sd = reference.mean_and_sd_deg(kind)
     return float(mean[at] - sd[at]), float(mean[at] + sd[at])
+
+
+def peak_place(reference: ReferenceCurves, kind: str, column: str, window_name: str | None) -> int | None:
+    """Percent of the stride at which the group's mean curve has a peak; None where it has none, as of a range."""
+    if column == "at_initial_contact_deg":
+        return 0
+    windows = [window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS) if window.name == window_name]
+    if not windows:
+        return None
+    percent = find_peak(reference.mean_and_sd_deg(kind)[0][None, :], windows[0]).percent[0]
+    return int(percent) if np.isfinite(percent) else None

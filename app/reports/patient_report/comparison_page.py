@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.gates_in_words import verdict_word
 from app.reports.comparison import (
     MEASURES,
     Compared,
@@ -24,10 +25,12 @@ from app.reports.patient_report.dates import day
 from app.reports.patient_report.drawing import DASHES, MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import (
+    CARE,
     NOTHING,
     dagger_note,
     fixed,
     judged_in_words,
+    marked,
     signed,
     signed_error,
     spread,
@@ -39,6 +42,7 @@ from app.wording import capitalised, joined, tr
 from core.body import Side
 from core.samples import FloatArray
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.model import Verdict
 
 PLOT_WIDTH = 67 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
@@ -88,7 +92,11 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     items = [_legend_entry(comparison, k) for k in range(len(comparison.parts))]
     kinds = [kind for kind in KINDS if any(joint_of(kind, side) in comparison.joints for side in Side)]
     pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in comparison.sides]
-    band = panels.band_swatches() if any(_band(comparison, shown, kind) is not None for kind in kinds) else []
+    band = (
+        panels.band_swatches()
+        if any(_band(comparison, shown, kind, side) is not None for kind in kinds for side in comparison.sides)
+        else []
+    )
     return [
         heading(title),
         paragraph(_what_else_changed(comparison)),
@@ -117,7 +125,7 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         title=panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean),
         axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
         lines=tuple(lines),
-        band=_band(comparison, shown, kind),
+        band=_band(comparison, shown, kind, side),
         plot_width=PLOT_WIDTH,
         is_simulated=comparison.is_simulated,
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
@@ -157,8 +165,8 @@ def _alt(part: Part, side: Side, kind: str) -> str:
     return f"{part.letter}: {', '.join(numbers)}."
 
 
-def _band(comparison: Comparison, shown: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:
-    return panels.band_of(shown, kind) if comparison.has_one_zero_throughout else None
+def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> tuple[FloatArray, FloatArray] | None:
+    return panels.band_of(shown, kind, [side]) if comparison.has_one_zero_throughout else None
 
 
 def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block:
@@ -185,8 +193,10 @@ def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block
 def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | str]:
     cells: list[Cell | str] = [_measure(measure.column)]
     for part in comparison.parts:
-        value = part.value(side, measure.column)
-        shown = tr("no peak") if part.is_no_peak(side, measure.column) else spread(value, 1)
+        value, verdict = part.value(side, measure.column), part.assessment(side, measure.column).verdict
+        shown = tr("no peak") if part.is_no_peak(side, measure.column) else marked(spread(value, 1), verdict)
+        if verdict is Verdict.WITHHELD:
+            shown = verdict_word(verdict)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     for part in comparison.others:
         compared = comparison.compare(measure, side, part)
@@ -253,6 +263,17 @@ def _how_judged(comparison: Comparison) -> str:
     parts = [
         said.format(knee=knee, stance=stance),
         dagger_note(),
+        *([tr("{mark}: read with care.").format(mark=CARE)] if _has_care(comparison) else []),
         lines.format(letters=joined([p.letter for p in comparison.parts])),
     ]
     return " ".join(parts)
+
+
+def _has_care(comparison: Comparison) -> bool:
+    columns = [measure.column for measure in MEASURES]
+    return any(
+        part.assessment(side, column).verdict is Verdict.CARE
+        for part in comparison.parts
+        for side in part.sides
+        for column in columns
+    )

@@ -5,16 +5,18 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.gates_in_words import verdict_word
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
-from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.numbers_in_words import fixed, marked
 from app.reports.patient_report.small_charts import StrideValues, stride_strip
 from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
+from core.verdicts.model import Verdict
 from core.verdicts.quantities import values_of
 
 PLOT_WIDTH = 70 * MM
@@ -26,7 +28,7 @@ def consistency_page(facts: Facts) -> list[Block]:
     pictures = [
         _panel(facts, side, kind) for kind in kinds for side in sides if facts.is_measured(joint_of(kind, side))
     ]
-    has_band = any(panels.band_of(facts, kind) is not None for kind in kinds)
+    has_band = any(panels.band_of(facts, kind, sides) is not None for kind in kinds)
     items = [
         *panels.leg_swatches(facts),
         (panels.stride_swatch(), tr("Single strides (thin)")),
@@ -53,7 +55,7 @@ def _panel(facts: Facts, side: Side, kind: str) -> Picture:
         title=panels.title_with_side(facts, kind, side),
         axis=panels.axis_of(facts, kind),
         lines=(replace(own, strides_deg=facts.strides_deg(side, kind)),),
-        band=panels.band_of(facts, kind),
+        band=panels.band_of(facts, kind, [side]),
         plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
         alt=tr("Single strides and their mean.") + " " + panels.curve_alt(facts, kind, [side]),
@@ -63,12 +65,11 @@ def _panel(facts: Facts, side: Side, kind: str) -> Picture:
 
 def _strip(facts: Facts) -> Picture:
     has_zero = not facts.has_no_zero("knee")
+    band = facts.band("knee_swing_peak_deg") if has_zero and facts.sides_with_band.issuperset(facts.gait) else None
     column = "knee_swing_peak_deg" if has_zero else "knee_range_deg"
     title = (
         tr("Peak knee flexion in swing, degrees, every stride") if has_zero else tr("Knee range, degrees, every stride")
     )
-    if facts.is_band_two(column):
-        title += " " + tr("(band [2])")
     sides, numbers = {}, []
     for side, gait in facts.gait.items():
         found = facts.value(side, column)
@@ -84,7 +85,7 @@ def _strip(facts: Facts) -> Picture:
                 said.format(side=side_name(side).capitalize(), count=count, low=fixed(low, 0), high=fixed(high, 0))
             )
     alt = " ".join([tr("SIMULATED.")] * facts.is_simulated + [f"{title}.", *numbers])
-    return stride_strip(title, sides, 20, 80, facts.band(column), facts.is_simulated, alt)
+    return stride_strip(title, sides, 20, 80, band, facts.is_simulated, alt)
 
 
 def _table(facts: Facts, kinds: list[str]) -> Block:
@@ -98,18 +99,22 @@ def _table(facts: Facts, kinds: list[str]) -> Block:
     }
     rows: list[Row] = []
     for kind in kinds:
-        spreads = {side: facts.mean_stride_sd_deg(side, kind) for side in Side}
-        rows.append([names[kind], *(_cell(facts, side, spreads[side].mean, spreads[side].n) for side in Side)])
+        found = {side: facts.mean_stride_sd_deg(side, kind) for side in Side}
+        rows.append([names[kind], *(_cell(facts, s, f"{kind}_range_deg", found[s].mean, found[s].n) for s in Side)])
     for label, column in (
         (tr("Time of peak knee flexion: SD, % of stride"), "knee_swing_peak_percent"),
         (tr("Toe\u2011off: SD, % of stride"), "stance_percent"),
     ):
         found = {side: facts.value(side, column) for side in Side}
-        rows.append([label, *(_cell(facts, side, found[side].sd, found[side].n) for side in Side)])
+        rows.append([label, *(_cell(facts, s, column, found[s].sd, found[s].n) for s in Side)])
     return table(columns, rows, is_dense=True)
 
 
-def _cell(facts: Facts, side: Side, sd: float, n: int) -> Cell | str:
-    if side not in facts.gait:
+def _cell(facts: Facts, side: Side, column: str, sd: float, n: int) -> Cell | str:
+    """A spread, under the verdict of a column of strides.csv that needs the same."""
+    if side not in facts.gait or not facts.is_worn(side, column):
         return tr("not measured")
-    return fixed(sd if is_spread_enough(n) else None, 1)
+    verdict = facts.assessment(side, column).verdict
+    if verdict is Verdict.WITHHELD:
+        return verdict_word(verdict)
+    return marked(fixed(sd if is_spread_enough(n) else None, 1), verdict)

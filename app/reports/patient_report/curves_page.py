@@ -1,11 +1,15 @@
 """How do knee and ankle move over the stride? Both legs in one picture, large, with a read-out beside it."""
 
+import math
+
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, figure_with_words, heading, note, paragraph
 from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.drawing import MM
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
-from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.first_page import why_no_band
+from app.reports.patient_report.numbers_in_words import fixed, signed
+from app.reports.reference_bands import OTHER_AGES
 from app.reports.walk_figures import by_hand_in_words, is_mean_enough
 from app.wording import capitalised, joined, side_name, tr
 from core.body import Side
@@ -35,7 +39,7 @@ def _figure(facts: Facts, kind: str) -> Block:
         title=panels.title_of(facts, kind),
         axis=panels.axis_of(facts, kind),
         lines=tuple(panels.line_of(facts, side, kind, width=1.9, peaks=panels.PEAK_COLUMNS[kind]) for side in sides),
-        band=panels.band_of(facts, kind),
+        band=panels.band_of(facts, kind, sides),
         plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
         ticks=panels.other_foot(facts),
@@ -71,22 +75,33 @@ def _read_out(facts: Facts, kind: str) -> list[str]:
     ]
     if ranges:
         said.append(tr("Range over the stride: {values}.").format(values="; ".join(ranges)))
+    offsets = [
+        f"{side[0].upper()}\u00a0{signed(offset, 1)}°"
+        for side in Side
+        if math.isfinite(offset := facts.offset_deg(side, kind))
+    ]
+    if offsets:
+        said.append(tr("Height against the band: {values}.").format(values="; ".join(offsets)))
     return said
 
 
 def _band_in_words(facts: Facts) -> str:
     group = facts.curves_group
     if group is None:
-        return tr("No band: nobody of this age is in the group.")
+        return why_no_band(facts, facts.bands.why_no_curves)
     if all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
         return tr("No band: without a zero there is no height to compare.")
-    walk = (
-        tr("this walk: {speed} m/s").format(speed=fixed(facts.feet.speed_m_s, 2))
-        if facts.feet.speed_m_s == facts.feet.speed_m_s
-        else tr("the speed of this walk is not known")
-    )
-    said = tr("Band [1]: young adults, barefoot, on a treadmill at {speed} m/s; {walk}.")
-    return said.format(speed=fixed(group.speed_m_s, 2), walk=walk)
+    said = [
+        tr("Band [1]: young adults, barefoot, on a treadmill at {speed} m/s; this walk: {walk} m/s.").format(
+            speed=fixed(group.speed_m_s, 2), walk=fixed(facts.feet.speed_m_s, 2)
+        )
+    ]
+    if facts.bands.are_curves_of_other_ages:
+        said.append(tr(OTHER_AGES))
+    if not facts.sides_with_band.issuperset(facts.gait):
+        sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
+        said.append(tr("It is for the {side} leg alone.").format(side=sides))
+    return " ".join(said)
 
 
 def _why_missing(facts: Facts, kind: str) -> str:

@@ -11,13 +11,13 @@ import numpy as np
 from app.reports.comparison import Part, first_and_second
 from app.reports.patient_report.numbers_in_words import Band
 from app.reports.patient_report.request import Visit
-from app.reports.reference_bands import reference_curves, time_distance_classes
+from app.reports.reference_bands import age_and_height, bands_of, sides_with_band
 from app.reports.summary import summarise
 from app.reports.walk_figures import (
     Figure,
     band_of_peak,
-    doubt_of,
     is_mean_enough,
+    peak_place,
     side_cycle,
     strides_used,
     time_distance_figures,
@@ -26,19 +26,13 @@ from app.wording import side_name, tr
 from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
-from core.norms import MAX_SPEED_DIFFERENCE_M_S, ReferenceCurves, ReferenceValues
+from core.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
 from core.results import JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray
-from core.verdicts.quantities import WINDOWS, both_sides, mean_curve, peak_percent
+from core.verdicts.model import Assessment, Verdicts
+from core.verdicts.quantities import WINDOWS, assessment_of, both_sides, mean_curve, peak_percent
 
 KINDS = ("knee", "ankle")
-ADULT_FROM_YEARS = 18  # every band there is was measured on adults
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Bands:
-    curves: ReferenceCurves | None
-    values: ReferenceValues | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,11 +65,14 @@ class Facts:
 
     @cached_property
     def calibrated(self) -> Mapping[Joint, JointCalibration]:
-        spans = (span for span in self.visit.analysis.calibrations if self.walk.name in span.walks)
-        return {joint: found for span in spans for joint, found in span.joints.items()}
+        return self.visit.analysis.calibrated_for(self.walk)
+
+    @property
+    def verdicts(self) -> Verdicts:
+        return self.walk.verdicts
 
     @cached_property
-    def _alone(self) -> Part:
+    def alone(self) -> Part:
         """The walk as it would stand in a comparison."""
         return Part("", self.walk.name, (self.walk,), self.calibrated)
 
@@ -89,33 +86,28 @@ class Facts:
         return both_sides(self.walk)
 
     @cached_property
-    def _bands(self) -> _Bands:
-        age = self._age_years
-        if age is not None and age < ADULT_FROM_YEARS:
-            return _Bands(None, None)
-        group = time_distance_figures(self.walk, self.feet, time_distance_classes())[1]
-        is_near = group is not None and abs(group.speed_m_s - self.feet.speed_m_s) <= MAX_SPEED_DIFFERENCE_M_S
-        return _Bands(reference_curves(), group if is_near else None)
+    def bands(self) -> Bands:
+        return bands_of(self.walk, age_and_height(self.visit.session))
 
     @property
     def curves_group(self) -> ReferenceCurves | None:
-        """Band [1]; None where nobody of this age is in it."""
-        return self._bands.curves
+        """Band [1]; None where nobody of this age and speed is in it, or neither leg may be compared with it."""
+        return self.bands.curves if self.sides_with_band else None
 
     @property
     def values_group(self) -> ReferenceValues | None:
-        """Band [2]; None where nobody of this age or speed is in it."""
-        return self._bands.values
+        """Band [2]; None as of band [1]."""
+        return self.bands.values if self.sides_with_band else None
 
-    @property
-    def _age_years(self) -> int | None:
-        born, year = self.visit.session.patient.birth_year, self.visit.session.started[:4]
-        return int(year) - born if born is not None and year.isdigit() else None
+    @cached_property
+    def sides_with_band(self) -> frozenset[Side]:
+        """Legs that may be compared with other people's."""
+        return sides_with_band(self.visit.analysis, self.walk)
 
     @cached_property
     def time_distance(self) -> dict[str, Figure]:
         """Rows of time and distance by name, without the band where its group walked at another speed."""
-        return {row.name: row for row in time_distance_figures(self.walk, self.feet, time_distance_classes())[0]}
+        return {row.name: row for row in time_distance_figures(self.walk, self.values_group, self.sides_with_band)}
 
     def strides(self, side: Side) -> int:
         return strides_used(self.gait[side]) if side in self.gait else 0
@@ -130,12 +122,17 @@ class Facts:
     def is_measured(self, joint: Joint) -> bool:
         return joint.side in self.gait and joint in self.gait[joint.side].cycles
 
+    def is_worn(self, side: Side, column: str) -> bool:
+        """Whether a column of strides.csv is of the leg itself, or of a joint that was measured."""
+        kind = column.split("_")[0]
+        return kind not in KINDS or self.is_measured(joint_of(kind, side))
+
     def has_joint(self, kind: str) -> bool:
         return any(self.is_measured(joint_of(kind, side)) for side in Side)
 
-    def doubt(self, joint: Joint) -> str | None:
-        """Why no angle of this joint may be told; None where it may."""
-        return doubt_of(self.walk, joint) if self.is_measured(joint) else None
+    def assessment(self, side: Side, column: str) -> Assessment:
+        """What may be said of a column of strides.csv."""
+        return assessment_of(self.verdicts, side, column)
 
     def has_no_zero(self, kind: str) -> bool:
         """Whether a height of either leg's joint says nothing: both curves are then drawn about their own mean."""
@@ -145,11 +142,11 @@ class Facts:
 
     def value(self, side: Side, column: str) -> MeanAndSd:
         """Mean and SD of one column of strides.csv over the strides used."""
-        return self._alone.value(side, column)
+        return self.alone.value(side, column)
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
-        return self._alone.is_no_peak(side, column)
+        return self.alone.is_no_peak(side, column)
 
     def peak_percent(self, side: Side, column: str) -> MeanAndSd:
         """When in the stride a peak comes, as each stride of peaks.csv has it."""
@@ -188,25 +185,45 @@ class Facts:
         return MeanAndSd(math.degrees(float(np.mean(found.sd))), math.nan, found.n)
 
     def band(self, column: str) -> Band | None:
-        """1 SD about the group's mean for one column of strides.csv: band [2] of the swing peak, else [1]."""
-        if self.is_band_two(column) and self.values_group is not None:
-            value = self.values_group.values["peak_knee_flexion_swing"]
-            return value.mean - value.sd, value.mean + value.sd
+        """1 SD about the mean of band [1] for a joint's column of strides.csv, where its source has it."""
         group = self.curves_group
-        if group is None or column.endswith("_range_deg"):
+        if group is None:
             return None
-        kind, rest = column.split("_", 1)
-        return band_of_peak(group, kind, rest, WINDOWS[column].name if column in WINDOWS else None)
+        kind, rest, window = _parts_of(column)
+        return band_of_peak(group, kind, rest, window)
 
-    def is_band_two(self, column: str) -> bool:
-        return column == "knee_swing_peak_deg" and self.values_group is not None
+    def offset_deg(self, side: Side, kind: str) -> float:
+        """How much higher than band [1] a leg's curve lies as a whole; NaN where that is not to be told."""
+        group, joint = self.curves_group, joint_of(kind, side)
+        if group is None or side not in self.sides_with_band or not self.verdicts.joint(joint).height.is_told:
+            return math.nan
+        return height_offset_deg(self._curve_deg(joint), group.mean_and_sd_deg(kind)[0])
+
+    def away_sd(self, side: Side, column: str) -> float:
+        """How many SD a peak lies from band [1] laid at the curve's height; NaN where that is not judged."""
+        group, value, (kind, rest, window) = self.curves_group, self.value(side, column), _parts_of(column)
+        if group is None or self.bands.are_curves_of_other_ages or side not in self.sides_with_band:
+            return math.nan
+        at = peak_place(group, kind, rest, window)
+        if at is None or not is_mean_enough(value.n) or not math.isfinite(value.mean):
+            return math.nan
+        return peak_away_sd(value.mean, self._curve_deg(joint_of(kind, side)), group.mean_and_sd_deg(kind), at, kind)
+
+    def _curve_deg(self, joint: Joint) -> FloatArray:
+        return np.rad2deg(mean_curve(self.walk, joint).mean)
 
     def group_range_deg(self, kind: str) -> float | None:
         """The range of band [1]'s mean curve, which has no SD."""
         group = self.curves_group
         if group is None:
             return None
-        return float(np.ptp(group.knee_mean_deg if kind == "knee" else group.ankle_mean_deg))
+        return float(np.ptp(group.mean_and_sd_deg(kind)[0]))
+
+
+def _parts_of(column: str) -> tuple[str, str, str | None]:
+    """A joint's column of strides.csv as its kind, the rest of its name, and the window of its peak."""
+    kind, rest = column.split("_", 1)
+    return kind, rest, WINDOWS[column].name if column in WINDOWS else None
 
 
 def joint_of(kind: str, side: Side) -> Joint:

@@ -3,17 +3,20 @@
 import math
 from collections.abc import Mapping
 
+from app.gates_in_words import verdict_word
 from app.reports.comparison import Comparison
-from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
 from app.reports.patient_report.dates import moment
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
+    CARE,
     NOTHING,
     Band,
     against_band,
+    away_in_words,
     band_in_figures,
     fixed,
+    marked,
     sides_against_band,
     signed,
     spread,
@@ -21,12 +24,16 @@ from app.reports.patient_report.numbers_in_words import (
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.small_charts import gauge
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
+from app.reports.reference_bands import WHY_NO_BAND
+from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
 from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
+from core.norms import NoBand
+from core.verdicts.model import Verdict
 
 NOT_STATED = ("", "none")
+TOLD = ("stride_time_s", "stride_length_m")  # of these two kinds is the table, timing and distance
 
 
 def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
@@ -84,22 +91,8 @@ def measured(facts: Facts, comparison: Comparison | None) -> str:
     return " ".join(said)
 
 
-def quality_box(facts: Facts) -> Block:
-    verdict, sentences = quality.verdict_of(facts)
-    more = len(sentences) - quality.MAX_SENTENCES
-    shown = sentences[: quality.MAX_SENTENCES]
-    if more > 0:
-        said = tr_n("{count} more remark is in the file of results.", "{count} more are in the file of results.", more)
-        shown[-1] += " " + said.format(count=more)
-    return {
-        "heading": quality.verdict_in_words(verdict),
-        "sentences": shown,
-        "rows": [list(row) for row in quality.rows(facts)],
-    }
-
-
 def key_numbers(facts: Facts) -> list[dict[str, object]]:
-    """Three figures with their gauges."""
+    """Three figures with their gauges; a leg whose figure is withheld says so and has no mark."""
     knee = "knee_range_deg" if facts.has_no_zero("knee") else "knee_swing_peak_deg"
     push_off = "ankle_push_off_plantarflexion_deg"
     has_push_off = any(math.isfinite(facts.value(side, push_off).mean) for side in Side) and not any(
@@ -122,48 +115,65 @@ def key_numbers(facts: Facts) -> list[dict[str, object]]:
     for column in (knee, ankle):
         kind = column.split("_")[0]
         mean = facts.group_range_deg(kind) if column.endswith("_range_deg") else None
-        number = "[2]" if facts.is_band_two(column) else "[1]"
-        values = {side: facts.value(side, column) for side in Side}
-        found.append(_key_number(titles[column], "°", values, facts.band(column), mean, number, 1, scales[column]))
+        words = {side: away_in_words(away) for side in Side if math.isfinite(away := facts.away_sd(side, column))}
+        found.append(_key_number(facts, column, titles[column], "°", facts.band(column), mean, "[1]", words, scales))
     stance = facts.time_distance[tr("Stance")]
-    band = stance.band if facts.values_group is not None else None
-    values = {side: facts.value(side, "stance_percent") for side in Side}
-    stance_title = tr("Stance, share of the stride")
-    found.append(_key_number(stance_title, "\u00a0%", values, band, None, "[2]", 1, (50, 75, 5), shown_decimals=1))
-    return found
+    words = {side: against_band(stance.sides[side].mean, stance.band) for side in _judged(facts, stance)}
+    title = tr("Stance, share of the stride")
+    scales = {"stance_percent": (50, 75, 5)}
+    return [*found, _key_number(facts, "stance_percent", title, "\u00a0%", stance.band, None, "[2]", words, scales)]
+
+
+def _judged(facts: Facts, figure: Figure) -> list[Side]:
+    """Legs whose figure of time or distance is said to lie somewhere against its band."""
+    if figure.band is None:
+        return []
+    return [side for side, value in figure.sides.items() if side in facts.sides_with_band and is_mean_enough(value.n)]
 
 
 def _key_number(
+    facts: Facts,
+    column: str,
     title: str,
     unit: str,
-    values: Mapping[Side, MeanAndSd],
     band: Band | None,
     group_mean: float | None,
     number: str,
-    decimals: int,
-    scale: tuple[float, float, float],
-    shown_decimals: int = 0,
+    words: Mapping[Side, str],
+    scales: Mapping[str, tuple[float, float, float]],
 ) -> dict[str, object]:
+    values = {side: facts.value(side, column) for side in Side}
     known = {s: v.mean for s, v in values.items() if is_mean_enough(v.n) and math.isfinite(v.mean)}
-    parts = [(side[0].upper(), fixed(value, shown_decimals) + unit) for side, value in known.items()]
-    if band is not None:
-        words = [(side[0].upper(), against_band(value, band)) for side, value in known.items()]
-        source = f"{tr('Band')} {number}: {band_in_figures(band, decimals)}{unit}"
-    elif group_mean is not None:
-        words, source = [], f"{tr('Band')} {number}: {fixed(group_mean, decimals)}{unit}; {tr('band has no SD')}"
-    else:
-        words, source = [], tr("no band")
+    decimals = 1 if column == "stance_percent" else 0
+    parts = [(side[0].upper(), fixed(value, decimals) + unit) for side, value in known.items()]
+    verdicts = {side: facts.assessment(side, column).verdict for side in facts.gait if facts.is_worn(side, column)}
+    said = [(s[0].upper(), verdict_word(v)) for s, v in verdicts.items() if v is Verdict.WITHHELD]
+    said += [(s[0].upper(), verdict_word(v)) for s, v in verdicts.items() if v is Verdict.CARE and s in known]
+    said += [(side[0].upper(), where) for side, where in words.items() if side in known]
     if not known:
-        words, source = [], tr("not measured, or from too few strides")
+        band = group_mean = None
+    if band is not None:
+        source = f"{tr('Band')} {number}: {band_in_figures(band, 1)}{unit}{_whose_band(facts)}"
+    elif group_mean is not None:
+        source = f"{tr('Band')} {number}: {fixed(group_mean, 1)}{unit}{_whose_band(facts)}; {tr('band has no SD')}"
+    else:
+        source = tr("no band") if known else tr("not measured, or withheld")
     shown = ", ".join(f"{letter} {value}" for letter, value in parts)
     alt = f"{title}: {shown or NOTHING}. {source}."
     return {
         "title": title,
         "values": parts,
-        "gauge": gauge(known, *scale, band, group_mean, alt).as_data(),
-        "words": words,
+        "gauge": gauge(known, *scales[column], band, group_mean, alt).as_data(),
+        "words": said,
         "source": source,
     }
+
+
+def _whose_band(facts: Facts) -> str:
+    """Say which leg a band is for, where it is not for both."""
+    if facts.sides_with_band.issuperset(facts.gait):
+        return ""
+    return ", " + tr("for the {side} leg").format(side=joined([side_name(side) for side in facts.sides_with_band]))
 
 
 def time_distance_table(facts: Facts) -> list[Block]:
@@ -178,7 +188,7 @@ def time_distance_table(facts: Facts) -> list[Block]:
     rows: list[Row] = [
         _both_row(facts, tr("Walking speed"), tr("Walking speed, m/s")),
         _both_row(facts, tr("Cadence"), tr("Cadence, steps/min")),
-        _side_row(facts, "stride_time_s", tr("Stride time, s"), 2),
+        _side_row(facts, "stride_time_s", tr("Stride time, s"), 2, None),
         _side_row(facts, "stride_length_m", tr("Stride length, m"), 2, facts.time_distance[tr("Stride length")].band),
         _side_row(facts, "stance_percent", tr("Stance, % of stride"), 1, facts.time_distance[tr("Stance")].band),
         _side_row(facts, "swing_percent", tr("Swing, % of stride"), 1, _swing_band(facts)),
@@ -195,46 +205,58 @@ def time_distance_table(facts: Facts) -> list[Block]:
             speed_class=_speed_class(group.speed_class)
         )
         if group is not None
-        else tr("Mean ± SD over strides. No band: nobody of this age or speed is in the group.")
+        else " ".join([tr("Mean ± SD over strides."), why_no_band(facts, facts.bands.why_no_values)])
     )
     swing = [tr("Swing band = 100 − stance band.")] if group is not None else []
     said = [band, symmetry, *swing] if len(facts.gait) == len(Side) else [band, *swing]
     if group is not None or facts.curves_group is not None:
         said.append(tr("Whose bands these are: last page."))
+    if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column in TOLD):
+        said.append(tr("{mark}: read with care.").format(mark=CARE))
     return [heading(tr("Time and distance")), table(columns, rows), note(" ".join(said))]
+
+
+def why_no_band(facts: Facts, why: NoBand | None) -> str:
+    """Why no band stands beside this walk; empty where one does."""
+    if facts.gait and not facts.sides_with_band:
+        return tr("No band: a prosthetic leg is not compared with other people's.")
+    return tr(WHY_NO_BAND[why]) if why is not None else ""
 
 
 def _both_row(facts: Facts, name: str, label: str) -> list[Cell | str]:
     figure = facts.time_distance[name]
-    value = math.nan if figure.both is None else figure.both
-    band = figure.band if facts.values_group is not None else None
+    value, band = math.nan if figure.both is None else figure.both, figure.band
     is_known = math.isfinite(value) and any(is_mean_enough(facts.strides(side)) for side in facts.gait)
     is_grey = not any(is_spread_enough(facts.strides(side)) for side in facts.gait)
-    shown = fixed(value, figure.decimals) if is_known else tr("not measured")
+    verdict = Verdict.CARE if figure.with_care else Verdict.READ
+    unknown = tr(figure.unknown_both) if figure.unknown_both else tr("not measured")
+    shown = marked(fixed(value, figure.decimals), verdict) if is_known else unknown
     words = against_band(value, band) if band is not None and is_known else NOTHING
     in_band = band_in_figures(band, figure.decimals) if band is not None else NOTHING
     return [label, Cell(shown, is_grey=is_grey, span=2, is_centred=True), in_band, words, NOTHING]
 
 
-def _side_row(
-    facts: Facts, column: str, label: str, decimals: int, group: Band | None = None, symmetry: str | None = None
-) -> list[Cell | str]:
-    band = group if facts.values_group is not None else None
+def _side_row(facts: Facts, column: str, label: str, decimals: int, band: Band | None) -> list[Cell | str]:
     values = {side: facts.value(side, column) for side in Side}
-    cells = [_mean_cell(facts, side, value, decimals) for side, value in values.items()]
+    cells = [_mean_cell(facts, side, column, value, decimals) for side, value in values.items()]
     in_band = band_in_figures(band, decimals) if band is not None else NOTHING
-    words = sides_against_band({s: v for s, v in values.items() if is_mean_enough(v.n)}, band)
-    return [label, *cells, in_band, words, symmetry_in_words(facts, column) if symmetry is None else symmetry]
+    judged = {s: v for s, v in values.items() if is_mean_enough(v.n) and s in facts.sides_with_band}
+    return [label, *cells, in_band, sides_against_band(judged, band), symmetry_in_words(facts, column)]
 
 
-def _mean_cell(facts: Facts, side: Side, value: MeanAndSd, decimals: int) -> Cell | str:
+def _mean_cell(facts: Facts, side: Side, column: str, value: MeanAndSd, decimals: int) -> Cell | str:
     if side not in facts.gait:
         return tr("not measured")
-    return Cell(spread(value, decimals), is_grey=not is_spread_enough(value.n))
+    verdict = facts.assessment(side, column).verdict
+    if verdict not in (Verdict.READ, Verdict.CARE):
+        return verdict_word(verdict)
+    return Cell(marked(spread(value, decimals), verdict), is_grey=not is_spread_enough(value.n))
 
 
 def symmetry_in_words(facts: Facts, column: str) -> str:
-    """Give the symmetry of both legs as summary.json has it; a dash where there is none."""
+    """Give the symmetry of both legs as summary.json has it; a dash where there is none, or a toe-off is biased."""
+    if column in ("stance_percent", "swing_percent") and any(map(facts.alone.is_toe_off_biased, facts.gait)):
+        return NOTHING
     index = (facts.summary["both"].get("symmetry_index_percent") or {}).get(column)
     if index is None or not all(is_mean_enough(facts.strides(side)) for side in Side):
         return NOTHING
@@ -247,11 +269,16 @@ def _swing_band(facts: Facts) -> Band | None:
 
 
 def _single_support_row(facts: Facts) -> list[Cell | str]:
-    """A leg stands alone while the other swings; each in % of the swinging leg's stride."""
+    """A leg stands alone while the other swings; each in % of the swinging leg's stride.
+
+    As with double support, both legs' timing has to be beyond doubt.
+    """
+    is_withheld = bool(facts.time_distance[tr("Double support")].unknown_both)
     cells: list[Cell | str] = []
     for other in (Side.RIGHT, Side.LEFT):
         value = facts.value(other, "swing_percent")
-        shown = fixed(value.mean, 1) if is_mean_enough(value.n) and len(facts.gait) == 2 else NOTHING
+        is_known = is_mean_enough(value.n) and len(facts.gait) == len(Side) and not is_withheld
+        shown = verdict_word(Verdict.WITHHELD) if is_withheld else fixed(value.mean, 1) if is_known else NOTHING
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
     return [tr("Single support, % of stride"), *cells, NOTHING, NOTHING, NOTHING]
 
@@ -261,7 +288,7 @@ def _variation_row(facts: Facts) -> list[Cell | str]:
     for side in Side:
         value = facts.value(side, "stride_time_s")
         share = 100 * value.sd / value.mean if is_spread_enough(value.n) else math.nan
-        cells.append(fixed(share, 1))
+        cells.append(marked(fixed(share, 1), facts.assessment(side, "stride_time_s").verdict))
     return [tr("Variation of stride time (CV), %"), *cells, NOTHING, NOTHING, NOTHING]
 
 

@@ -7,14 +7,16 @@ from datetime import datetime
 
 from app.reports.patient_report.blocks import Block, bullets, heading, note
 from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.first_page import why_no_band
 from app.reports.patient_report.numbers_in_words import fixed, signed_error
 from app.reports.patient_report.plain_text import plain, plain_lines
-from app.reports.patient_report.quality import MAX_BEYOND_FLOOR_RAD
 from app.reports.patient_report.request import ReportRequest
 from app.wording import sentence, tr
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding, Severity
+from core.norms import KNEE_OVERREAD
 from core.results import AxisSource
+from core.verdicts.gates import LIMITS
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 
 # what was corrected by hand, and what changes how a number is read: told, however mild
@@ -74,7 +76,9 @@ def _texts(parts: Sequence[tuple[str, str]]) -> list[list[str]]:
         "stance": signed_error(sigma_of("stance_percent", ComparisonKind.ATTACHED)),
         "floor": fixed(math.degrees(AXIS_FLOOR_HUMAN_RAD), 0),
         "walking": fixed(math.degrees(AXIS_FLOOR_WALKING_RAD), 0),
-        "beyond": fixed(math.degrees(MAX_BEYOND_FLOOR_RAD), 0),
+        "care": fixed(LIMITS.axis_sd_deg[0], 1),
+        "most": fixed(LIMITS.axis_sd_deg[1], 0),
+        "overread": fixed(KNEE_OVERREAD, 2),
     }
     return [[title, said.format(**figures)] for title, said in parts]
 
@@ -84,15 +88,15 @@ def _sources(facts: Facts) -> list[str]:
     said = []
     if curves is not None:
         pattern = tr(
-            "[1] Curves, peaks but the knee's in swing, GVS: {n} {group}, {speed} m/s, optical markers. {source}. "
+            "[1] Curves, peaks, GVS: {n} {group}, {speed} m/s, optical markers. {source}. "
             "Values and SD are read from the mean curve, which has no SD of range."
         )
         speed = fixed(curves.speed_m_s, 2)
         said.append(pattern.format(n=curves.n, group=curves.group, speed=speed, source=curves.source))
     if values is not None:
         pattern = tr(
-            "[2] Time and distance, knee peak in swing: {group}, optical markers and force plates; the class of the "
-            "nearest walking speed, “{speed_class}” ({speed} m/s, n = {n}). {source}."
+            "[2] Time and distance: {group}, optical markers and force plates; class “{speed_class}” of the Froude "
+            "number ({speed} m/s, n = {n}). {source}."
         )
         said.append(
             pattern.format(
@@ -103,7 +107,7 @@ def _sources(facts: Facts) -> list[str]:
                 source=values.source,
             )
         )
-    return said or [tr("No band was used: nobody of this age or speed is in the groups at hand.")]
+    return said or [why_no_band(facts, facts.bands.why_no_values)]
 
 
 def _made(made_at: datetime) -> str:
@@ -160,8 +164,8 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
             tr("Certainty of joint axes"),
             tr(
                 "How far the axis that was found may lie from the true one (1 SD): for a human joint never told below "
-                "{floor}°, from walking alone below {walking}°. Up to {beyond}° more can be read; beyond, the height "
-                "of the curve is in doubt, its shape and timing are less."
+                "{floor}°, from walking alone below {walking}°. Up to {care}° the joint can be read, up to {most}° "
+                "with care; beyond, it is withheld."
             ),
         ),
         (
@@ -179,8 +183,10 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
             tr("Reading the band"),
             tr(
                 "The band shows other people, measured with optical markers, and is not a target. Laboratories "
-                "differ by 5–7° in the height of such curves, and by 2–3° in range. Knee flexion rises with speed. "
-                "Compare speed, age and footwear in the source below before reading a distance."
+                "differ by 5–7° in the height of such curves, so a peak is judged after laying the band at the height "
+                "of its curve. Knees are read 9 ± 4 % too flexed against optical markers: one lies below or above only "
+                "as measured and divided by {overread}. The band is chosen by speed and height (Froude number) and "
+                "left away at another speed; a prosthetic leg has none. Compare age and footwear in the source below."
             ),
         ),
     ]

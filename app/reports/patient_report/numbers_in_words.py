@@ -8,10 +8,12 @@ from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.verdicts.measurement_error import Z95, Difference, Judgement, Sigma
+from core.verdicts.model import Verdict
 
 MINUS = "\u2212"
 NOTHING = "–"
 DAGGER = "\u2020"
+CARE = "*"  # beside what is to be read with care
 Band = tuple[float, float]
 """Mean less and plus 1 SD of the group."""
 
@@ -46,23 +48,39 @@ def band_in_figures(band: Band, decimals: int) -> str:
 
 def against_band(value: float, band: Band) -> str:
     """Say how far a value lies from the group's mean, in its SD; never whether that is good."""
-    mean, sd = (band[0] + band[1]) / 2, (band[1] - band[0]) / 2
-    away = (value - mean) / sd
-    if abs(away) <= 1:
+    return away_in_words((value - (band[0] + band[1]) / 2) / ((band[1] - band[0]) / 2))
+
+
+def away_in_words(away_sd: float) -> str:
+    """Say how many SD something lies from the group's mean."""
+    if abs(away_sd) <= 1:
         return tr("inside\u00a01\u00a0SD")
-    if abs(away) <= 2:
-        return tr("1–2\u00a0SD\u00a0below") if away < 0 else tr("1–2\u00a0SD\u00a0above")
-    return tr("more than 2\u00a0SD\u00a0below") if away < 0 else tr("more than 2\u00a0SD\u00a0above")
+    if abs(away_sd) <= 2:
+        return tr("1–2\u00a0SD\u00a0below") if away_sd < 0 else tr("1–2\u00a0SD\u00a0above")
+    return tr("more than 2\u00a0SD\u00a0below") if away_sd < 0 else tr("more than 2\u00a0SD\u00a0above")
 
 
-def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
-    """Say where both legs lie; in one line where they agree."""
-    if band is None or not values:
-        return NOTHING
-    said = {side: against_band(value.mean, band) for side, value in values.items() if math.isfinite(value.mean)}
+def each_side(said: Mapping[Side, str]) -> str:
+    """Words for both legs, in one line where they agree."""
     if len(said) == len(Side) and len(set(said.values())) == 1:
         return f"L, R {said[Side.LEFT]}"
     return "\n".join(f"{side[0].upper()} {words}" for side, words in said.items()) or NOTHING
+
+
+def sides_against_band(values: Mapping[Side, MeanAndSd], band: Band | None) -> str:
+    """Say where both legs lie."""
+    if band is None:
+        return NOTHING
+    return each_side({s: against_band(v.mean, band) for s, v in values.items() if math.isfinite(v.mean)})
+
+
+def marked(said: str, verdict: Verdict) -> str:
+    """A figure with the mark of what is to be read with care."""
+    return f"{said}\u00a0{CARE}" if verdict is Verdict.CARE and said != NOTHING else said
+
+
+def care_note() -> str:
+    return tr("{mark}: read with care; page 1 says why.").format(mark=CARE)
 
 
 def in_words(verdict: Judgement) -> str:
@@ -92,14 +110,3 @@ def dagger_note() -> str:
 def signed_error(sigma: Sigma | None) -> str:
     """What a spread between walks or strappings alone makes of the error of a difference."""
     return NOTHING if sigma is None else fixed(Z95 * math.sqrt(2) * sigma.value, 1)
-
-
-def in_a_sentence(verdict: Judgement) -> str:
-    """Say the same within a sentence."""
-    return {
-        Judgement.EXCEEDS_ERROR: tr("larger than measurement error"),
-        Judgement.INSIDE_ERROR: tr("inside measurement error"),
-        Judgement.WITHHELD: tr("withheld"),
-        Judgement.TOO_FEW_STRIDES: tr("from too few strides to judge"),
-        Judgement.NO_PUBLISHED_FIGURE: tr("not judged"),
-    }[verdict]

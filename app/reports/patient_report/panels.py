@@ -24,12 +24,13 @@ from app.reports.patient_report.drawing import (
     picture,
     text,
 )
-from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
 from core.samples import FloatArray
+from core.verdicts.model import Verdict
 from core.verdicts.quantities import WINDOWS
 
 SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
@@ -76,12 +77,14 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
     return short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:]
 
 
-def band_of(facts: Facts, kind: str) -> tuple[FloatArray, FloatArray] | None:
-    """Mean and SD of band [1]; None where there is none, or no height to compare."""
+def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> tuple[FloatArray, FloatArray] | None:
+    """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare."""
     group = facts.curves_group
-    if group is None or facts.has_no_zero(kind):
+    if group is None or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
         return None
-    return (group.knee_mean_deg, group.knee_sd_deg) if kind == "knee" else (group.ankle_mean_deg, group.ankle_sd_deg)
+    if not any(np.isfinite(facts.mean_curve_deg(side, kind)).any() for side in sides if side in facts.sides_with_band):
+        return None
+    return group.mean_and_sd_deg(kind)
 
 
 def line_of(
@@ -193,7 +196,7 @@ def other_foot(facts: Facts) -> tuple[tuple[float, Side], ...]:
         step, stride = facts.value(side, "step_time_s"), facts.value(side, "stride_time_s")
         swing = facts.value(other, "swing_percent")
         if not all(is_mean_enough(value.n) for value in (step, stride, swing)):
-            continue
+            continue  # too few, or instants of both legs are not to be compared
         contact = 100 - 100 * step.mean / stride.mean  # the other foot's contact begins this foot's step
         ticks += [(contact, other), (contact - swing.mean, other)]
     return tuple((percent, side) for percent, side in ticks if 0 < percent < 100)
@@ -205,7 +208,10 @@ def not_drawn(facts: Facts, kind: str) -> list[str]:
     for side in Side:
         joint = f"{side_name(side)} " + (tr("knee") if kind == "knee" else tr("ankle"))
         if not np.isfinite(facts.mean_curve_deg(side, kind)).any() and not len(facts.strides_deg(side, kind)):
-            said.append(tr("Not drawn: {joint}.").format(joint=joint))
+            found = facts.verdicts.joint(joint_of(kind, side))
+            is_withheld = Verdict.WITHHELD in (found.shape.verdict, found.sign.verdict)
+            pattern = tr("Not drawn: {joint}, withheld.") if is_withheld else tr("Not drawn: {joint}.")
+            said.append(pattern.format(joint=joint))
     return said
 
 

@@ -2,6 +2,8 @@
 
 import math
 
+from app.gates_in_words import verdict_word
+from app.reports.comparison import compare_legs
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, if_room, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
@@ -9,11 +11,14 @@ from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
+    away_in_words,
     band_in_figures,
+    care_note,
     dagger_note,
+    each_side,
     fixed,
-    in_words,
-    sides_against_band,
+    judged_in_words,
+    marked,
     signed,
     signed_error,
     spread,
@@ -23,7 +28,9 @@ from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread
 from app.wording import capitalised, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
-from core.verdicts.measurement_error import ComparisonKind, Judgement, sigma_of
+from core.norms import KNEE_OVERREAD
+from core.verdicts.measurement_error import ComparisonKind, sigma_of
+from core.verdicts.model import Verdict
 from core.verdicts.quantities import WINDOWS
 
 COLUMNS = {
@@ -43,7 +50,6 @@ COLUMNS = {
         "ankle_range_deg",
     ),
 }
-WEAK = "\u2020"
 PLOT_WIDTH = 70 * MM
 
 
@@ -64,13 +70,11 @@ def peaks_page(facts: Facts) -> list[Block]:
         if not facts.has_joint(kind):
             continue
         rows.append(tr("Knee (flexion +)") if kind == "knee" else tr("Ankle (dorsiflexion +)"))
-        has_zero = not facts.has_no_zero(kind)
-        # without a zero its height, which is all there is to tell at initial contact, says nothing
-        rows += [_row(facts, column) for column in COLUMNS[kind] if has_zero or "initial_contact" not in column]
-        if facts.curves_group is not None and has_zero:
+        rows += [_row(facts, column) for column in COLUMNS[kind] if _is_any_told(facts, kind, column)]
+        if facts.curves_group is not None and _is_any_told(facts, kind, f"{kind}_at_initial_contact_deg"):
             rows.append(_score_row(facts, kind))
             has_score = True
-    said = []
+    said = quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES]
     if len(facts.gait) == len(Side):
         judged = tr(
             "Differences are formed before rounding; in words: against the measurement error between legs, at least "
@@ -82,12 +86,12 @@ def peaks_page(facts: Facts) -> list[Block]:
         said.append(
             tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero.")
         )
-    if _is_beside_band_two(facts, "knee_swing_peak_deg"):
-        said.append(tr("[2] marks what stands against band [2]."))
-    if any(quality.is_weak_axis(facts, joint) for joint in facts.calibrated):
-        said.append(tr("{mark}: the joint's axis is uncertain; read timing, not height.").format(mark=WEAK))
-    if any(facts.has_no_zero(kind) for kind in KINDS):
-        said.append(tr("Without a zero only ranges and times are given."))
+    shown = [(side, column) for side in facts.gait for kind in KINDS for column in COLUMNS[kind]]
+    if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
+        judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
+        said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
+    if any(_verdict(facts, side, column) is Verdict.CARE for side, column in shown):
+        said.append(care_note())
     if by_hand := by_hand_in_words(facts.walk):
         said.append(by_hand)
     opening = tr(
@@ -139,35 +143,40 @@ def _side_columns(facts: Facts, side: Side) -> list[Column]:
     return [Column(f"{said}\n{count}".strip()), Column(tr("at %"))]
 
 
-def measure(facts: Facts, column: str) -> str:
+def measure(column: str) -> str:
     """Name a row, with the window its peak is looked for in."""
     if column.endswith("_at_initial_contact_deg"):
         return tr("At initial contact")
     if column.endswith("_range_deg"):
         return tr("Range over the stride")
     window = WINDOWS[column]
-    number = " [2]" if _is_beside_band_two(facts, column) else ""
     name = capitalised(peak_name(column)).replace(", ", ",\n")  # else a line ends within the window
-    return f"{name} ({window.first}–{window.last}\u00a0%){number}"
+    return f"{name} ({window.first}–{window.last}\u00a0%)"
 
 
-def _is_beside_band_two(facts: Facts, column: str) -> bool:
-    return facts.is_band_two(column) and facts.has_joint("knee") and not facts.has_no_zero("knee")
+def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
+    if not facts.is_measured(joint_of(column.split("_")[0], side)):
+        return Verdict.NOT_MEASURED
+    return facts.assessment(side, column).verdict
+
+
+def _is_any_told(facts: Facts, kind: str, column: str) -> bool:
+    """Whether a row has anything to tell: at initial contact there is nothing but a height."""
+    return "initial_contact" not in column or any(
+        _verdict(facts, side, column) in (Verdict.READ, Verdict.CARE) for side in Side
+    )
 
 
 def _row(facts: Facts, column: str) -> list[Cell | str]:
-    cells: list[Cell | str] = [measure(facts, column)]
+    cells: list[Cell | str] = [measure(column)]
     for side in Side:
         cells += [value_cell(facts, side, column), fixed(_percent(facts, side, column), 0)]
-    band = facts.band(column)
-    kind = column.split("_")[0]
+    band, kind = facts.band(column), column.split("_")[0]
     group_range = facts.group_range_deg(kind) if column.endswith("_range_deg") else None
-    if facts.has_no_zero(kind) and group_range is None:
-        in_band = against = NOTHING
-    elif band is not None:
+    if band is not None:
         in_band = band_in_figures(band, 1)
-        known = {side: facts.value(side, column) for side in Side}
-        against = sides_against_band({side: v for side, v in known.items() if is_mean_enough(v.n)}, band)
+        away = {side: facts.away_sd(side, column) for side in Side}
+        against = each_side({side: away_in_words(sd) for side, sd in away.items() if math.isfinite(sd)})
     else:
         in_band = fixed(group_range, 1) if group_range is not None else tr("no band")
         against = tr("band has no SD") if group_range is not None else NOTHING
@@ -176,14 +185,13 @@ def _row(facts: Facts, column: str) -> list[Cell | str]:
 
 def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
     """Give mean ± SD, or why there is none."""
-    joint = joint_of(column.split("_")[0], side)
-    if not facts.is_measured(joint):
-        return tr("not measured")
+    verdict = _verdict(facts, side, column)
+    if verdict in (Verdict.WITHHELD, Verdict.NOT_MEASURED):
+        return verdict_word(verdict)
     if facts.is_no_peak(side, column):
         return tr("no peak")
     value = facts.value(side, column)
-    mark = WEAK if quality.is_weak_axis(facts, joint) and is_mean_enough(value.n) else ""
-    return Cell(spread(value, 1) + mark, is_grey=not is_spread_enough(value.n))
+    return Cell(marked(spread(value, 1), verdict), is_grey=not is_spread_enough(value.n))
 
 
 def _percent(facts: Facts, side: Side, column: str) -> float:
@@ -192,17 +200,19 @@ def _percent(facts: Facts, side: Side, column: str) -> float:
 
 
 def _difference_cells(facts: Facts, column: str) -> list[Cell | str]:
-    found = (facts.summary["both"].get("side_difference") or {}).get(column)
-    if found is None or found["difference_deg"] is None:
+    """Of what is withheld on either leg there is no difference."""
+    if not all(facts.value(side, column).n for side in Side):
         return [NOTHING, NOTHING]
-    verdict = Judgement(found["verdict"])
-    return [signed(found["difference_deg"], 1), Cell(in_words(verdict), is_bold=verdict is Judgement.EXCEEDS_ERROR)]
+    found = compare_legs(facts.alone, column, facts.first_and_second)
+    if not found.is_told:
+        return [NOTHING, NOTHING]
+    return [signed(found.difference, 1), Cell(judged_in_words(found), is_bold=found.exceeds)]
 
 
 def _score_row(facts: Facts, kind: str) -> list[Cell | str]:
     cells: list[Cell | str] = [tr("Distance from band mean (GVS)")]
     for side in Side:
         scores = facts.summary[str(side)].get("gait_variable_score_deg") or {}
-        is_shown = facts.curves_group is not None and is_mean_enough(facts.strides(side))
+        is_shown = side in facts.sides_with_band and is_mean_enough(facts.strides(side))
         cells += [fixed(scores.get(kind) if is_shown else None, 1), NOTHING]
     return [*cells, NOTHING, NOTHING, NOTHING, NOTHING]

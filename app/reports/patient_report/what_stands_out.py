@@ -1,229 +1,294 @@
-"""What does who reads page one only have to know? At most four sentences, all of them numbers."""
+"""What does who reads page one only have to know? At most three findings larger than their error, and one caveat."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from enum import IntEnum
 
-from app.reports.comparison import MEASURES, Compared, Comparison, Kind
+from app.reports.comparison import Compared, Comparison, Kind, compare_legs
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading
-from app.reports.patient_report.facts import Facts, joint_of, role
-from app.reports.patient_report.first_page import symmetry_in_words
-from app.reports.patient_report.numbers_in_words import (
-    Band,
-    against_band,
-    band_in_figures,
-    fixed,
-    in_a_sentence,
-    signed,
-)
+from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
+from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, signed
 from app.reports.patient_report.panels import peak_name
 from app.reports.patient_report.peaks_page import COLUMNS
-from app.reports.patient_report.plain_text import CONDITION_LENGTH, plain, typed
-from app.reports.walk_figures import is_mean_enough
-from app.wording import capitalised, name_of, sentence, tr, tr_n
-from core.body import Side
-from core.verdicts.measurement_error import Judgement
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
+from app.wording import capitalised, name_of, tr
+from core.body import Joint, Side
+from core.results import ZeroKind
+from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
+from core.verdicts.model import Verdict
+from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import joint_of as joint_of_column
 
-MAX_SENTENCES = 4
-MAX_BEYOND = 2  # peaks told with their numbers; the table has all
+MAX_FINDINGS = 3
+MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
+MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
+BETWEEN_LEGS = (
+    "knee_range_deg",
+    "knee_loading_peak_deg",
+    "knee_stance_minimum_deg",
+    "knee_swing_peak_deg",
+    "ankle_range_deg",
+    "ankle_stance_dorsiflexion_deg",
+    "ankle_push_off_plantarflexion_deg",
+    "stance_percent",
+    "step_time_s",
+)  # not the stride's length: in walking straight on both feet travel equally far
+
+
+class Rank(IntEnum):
+    """Which kind of finding is told first."""
+
+    SHAPE = 0
+    TIMING = 1
+    BETWEEN = 2
+    DISTANCE = 3
+    HEIGHT = 4
+
+
+_RANKS = {
+    QuantityClass.SHAPE: Rank.SHAPE,
+    QuantityClass.PEAK_TIME: Rank.SHAPE,
+    QuantityClass.TIMING: Rank.TIMING,
+    QuantityClass.BETWEEN: Rank.BETWEEN,
+    QuantityClass.DISTANCE: Rank.DISTANCE,
+    QuantityClass.HEIGHT: Rank.HEIGHT,
+}
+Topic = tuple[Joint | Side | None, Rank | None, bool]
+"""A joint, or a leg and a kind of figure, with the direction: of each, one finding is told."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed."""
+
+    rank: Rank
+    ratio: float
+    topics: tuple[Topic, ...]
+    said: str
 
 
 def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
-    """At most four sentences, all of them numbers; the last is the caveat that weighs most."""
-    said: list[str] = []
-    sides = [side for side in facts.first_and_second if side in facts.gait]
-    if comparison is not None:
-        said += _comparison_sentences(facts, comparison)
-    if len(said) < 2:
-        said += _knee_sentence(facts, sides)
-    said += _difference_sentence(facts)
-    for side in sides:
-        for column, name in (
-            ("ankle_push_off_plantarflexion_deg", tr("plantarflexion peak at push\u2011off")),
-            ("knee_loading_peak_deg", tr("flexion peak while loading")),
-        ):
-            if facts.is_no_peak(side, column):
-                sentence = tr("{joint}: no {peak} was found. This is printed as “no peak”, not as a number.")
-                joint = capitalised(name_of(joint_of(column.split("_")[0], side)))
-                said.append(sentence.format(joint=joint, peak=name))
-    said += _beyond_band_sentence(facts)
-    stance = _stance_sentence(facts)
-    caveat = _caveat(facts)
-    kept = said[: MAX_SENTENCES - len(stance) - len(caveat)]
-    # what weighs on every number is said last
-    return [heading(tr("What stands out")), bullets([*kept, *stance, *caveat] or [tr("Nothing can be told.")])]
+    """At most three findings and one caveat; without any, that there is none."""
+    found = findings(facts, comparison)
+    said = found or [_nothing_found(facts, comparison)]
+    return [heading(tr("What stands out")), bullets([*said, *caveat(facts, comparison)])]
 
 
-def _comparison_sentences(facts: Facts, comparison: Comparison) -> list[str]:
-    """The knee's swing peak of the first side that both have, the last part against the first; then what differs most.
-
-    Without a difference beyond the measurement error, the knee's range is told as second.
-    """
-    shown = comparison.parts[-1]
-    measures = {measure.column: measure for measure in MEASURES}
-    pairs = [
-        [comparison.compare(measures[column], side, shown) for column in ("knee_swing_peak_deg", "knee_range_deg")]
-        for side in facts.first_and_second
-    ]
-    swing, span = next((pair for pair in pairs if any(row.is_told for row in pair)), pairs[0])
-    beyond = [row for row in comparison.rows if row.exceeds and not _is_of(row, swing)]
-    most = max(beyond, key=lambda row: abs(row.difference.difference) / row.difference.error, default=span)
-    return [_compared(facts, comparison, row) for row in (swing, most) if row.is_told]
+def findings(facts: Facts, comparison: Comparison | None) -> list[str]:
+    """The sentences, the weightiest kind first, then what exceeds its error most; one per joint and direction."""
+    candidates = [*_changes(facts, comparison), *_between_legs(facts), *_beyond_band(facts), *_heights(facts)]
+    told: list[str] = []
+    known: set[Topic] = set()
+    for candidate in sorted(candidates, key=lambda one: (one.rank, -one.ratio)):
+        if known.isdisjoint(candidate.topics):
+            told.append(candidate.said)
+        known.update(candidate.topics)
+    return told[:MAX_FINDINGS]
 
 
-def _is_of(row: Compared, other: Compared) -> bool:
-    return (row.measure.column, row.side, row.part.letter) == (other.measure.column, other.side, other.part.letter)
-
-
-def _compared(facts: Facts, comparison: Comparison, row: Compared) -> str:
-    """One figure of one part, and how far it is from the first."""
-    names = {
-        "knee_loading_peak_deg": tr("{side}, knee while loading"),
-        "knee_swing_peak_deg": tr("{side}, knee in swing"),
-        "knee_range_deg": tr("{side}, knee range over the stride"),
-        "ankle_stance_dorsiflexion_deg": tr("{side}, ankle dorsiflexion in stance"),
-        "ankle_push_off_plantarflexion_deg": tr("{side}, ankle at push\u2011off"),
-        "ankle_range_deg": tr("{side}, ankle range over the stride"),
-        "stance_percent": tr("{side}, stance, share of the stride"),
-    }
-    is_angle = row.measure.unit == "°"
-    unit = "°" if is_angle else "\u00a0%"
-    is_visits = comparison.kind is Kind.VISITS
-    pattern = (
-        tr("{measure}: {value}; since the earlier visit {change}: {verdict}{error}.")
-        if is_visits
-        else tr("{measure} at {this} {value}; against {first} {change}: {verdict}{error}.")
-    )
-    named = {key: typed(part.name, CONDITION_LENGTH) for key, part in (("this", row.part), ("first", row.against))}
-    error = f" ({fixed(row.difference.error, 1)}{unit})" if math.isfinite(row.difference.error) else ""
-    return pattern.format(
-        measure=names[row.measure.column].format(side=capitalised(role(facts, row.side))),
-        value=fixed(row.value.mean, 0 if is_angle else 1) + unit,
-        change=signed(row.difference.difference, 1) + unit,
-        verdict=in_a_sentence(row.difference.judgement),
-        error=error,
-        **named,
-    )
-
-
-def _knee_sentence(facts: Facts, sides: Sequence[Side]) -> list[str]:
-    """Where the knees of these legs lie against the band, swing before range."""
-    for column, pattern in (
-        ("knee_swing_peak_deg", tr("Knee in swing: {values}.")),
-        ("knee_range_deg", tr("Knee range over the stride: {values}.")),
-    ):
-        band, told = facts.band(column), []
-        for side in sides:
-            value = facts.value(side, column)
-            if is_mean_enough(value.n):
-                words = [f"{role(facts, side)} {fixed(value.mean, 0)}°"]
-                told.append(", ".join([*words, against_band(value.mean, band)] if band is not None else words))
-        if told:
-            number = "[2]" if facts.is_band_two(column) else "[1]"
-            source = f" ({tr('band')} {number})" if band is not None else ""
-            return [pattern.format(values="; ".join(told) + source)]
-    return []
-
-
-def _beyond_band_sentence(facts: Facts) -> list[str]:
-    """The peaks that lie farthest from band [1], of those more than 2 SD away; not where the height is uncertain."""
-    found: dict[str, float] = {}
-    for column in (*COLUMNS["knee"], *COLUMNS["ankle"]):
-        band = facts.band(column)
-        if band is None or facts.is_band_two(column) or facts.has_no_zero(column.split("_")[0]):
-            continue
-        beyond = [away for side in facts.gait if (away := _away_sd(facts, side, column, band)) > 2]
-        if beyond:
-            found[column] = max(beyond)
-    if not found:
-        return []
-    farthest = sorted(found, key=lambda column: -found[column])
-    told = "; ".join(_beside_band(facts, column) for column in farthest[:MAX_BEYOND])
-    more = len(farthest) - MAX_BEYOND
-    if more > 0:
-        told += "; " + tr_n("{count} more on page 3", "{count} more on page 3", more).format(count=more)
-    return [tr("More than 2\u00a0SD from band [1]: {peaks}.").format(peaks=told)]
-
-
-def _away_sd(facts: Facts, side: Side, column: str, band: Band) -> float:
-    value, joint = facts.value(side, column), joint_of(column.split("_")[0], side)
-    is_told = is_mean_enough(value.n) and math.isfinite(value.mean) and not quality.is_weak_axis(facts, joint)
-    return abs(value.mean - (band[0] + band[1]) / 2) / ((band[1] - band[0]) / 2) if is_told else 0.0
-
-
-def _beside_band(facts: Facts, column: str) -> str:
-    """One peak of the legs that lie more than 2 SD away, and the band."""
-    band = facts.band(column)
-    if band is None:
-        return ""
-    values = [
-        f"{side[0].upper()}\u00a0{fixed(facts.value(side, column).mean, 0)}°"
-        for side in facts.gait
-        if _away_sd(facts, side, column, band) > 2
-    ]
-    peak = tr("at initial contact") if "initial_contact" in column else peak_name(column)
-    said = tr("{joint} {peak}, {values} ({band})")
-    joint = tr("knee") if column.startswith("knee") else tr("ankle")
-    in_band = tr("band {band}°").format(band=band_in_figures(band, 0))
-    return said.format(joint=joint, peak=peak, values=", ".join(values), band=in_band)
-
-
-def _difference_sentence(facts: Facts) -> list[str]:
-    """The largest difference between the knees that exceeds the measurement error."""
-    differences = facts.summary["both"].get("side_difference") or {}
-    names = {
-        "knee_loading_peak_deg": tr("Knee flexion while loading"),
-        "knee_stance_minimum_deg": tr("Least knee flexion in stance"),
-        "knee_swing_peak_deg": tr("Knee flexion in swing"),
-        "knee_range_deg": tr("Knee range"),
-    }
-    real = {
-        column: found
-        for column in names
-        if (found := differences.get(column)) is not None and found["verdict"] == Judgement.EXCEEDS_ERROR
-    }
-    if not real:
-        return []
-    column = max(real, key=lambda name: abs(real[name]["difference_deg"]))
-    values = {side: facts.value(side, column).mean for side in Side}
-    said = tr("{measure}: left {left}°, right {right}°; the difference of {difference}° is {verdict}.")
-    return [
-        said.format(
-            measure=names[column],
-            left=fixed(values[Side.LEFT], 0),
-            right=fixed(values[Side.RIGHT], 0),
-            difference=fixed(abs(real[column]["difference_deg"]), 1),
-            verdict=in_a_sentence(Judgement.EXCEEDS_ERROR),
+def _nothing_found(facts: Facts, comparison: Comparison | None) -> str:
+    judged = [row for row in _differences(facts, comparison) if row.is_told and row.error > 0]
+    away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
+    said = []
+    if judged:
+        is_any = any(row.exceeds for row in judged)
+        said.append(
+            tr("No difference is so much larger than its error that it is told here; the tables mark what exceeds it.")
+            if is_any
+            else tr("No difference is larger than its error.")
         )
+    if away and max(away) <= MAX_AWAY_SD:
+        said.append(tr("Every peak that could be judged lies within 2\u00a0SD of the band, at its curve's height."))
+    return " ".join(said) or tr("Nothing could be judged.")
+
+
+def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[Difference]:
+    if comparison is not None:
+        yield from (row.difference for row in comparison.rows if row.is_told)
+    if len(facts.gait) == len(Side):
+        yield from (compare_legs(facts.alone, column, facts.first_and_second) for column in BETWEEN_LEGS)
+
+
+def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]:
+    """What differs from the first part. A height is a finding only where both parts share one zero."""
+    for row in comparison.rows if comparison is not None else ():
+        is_height = row.measure.needs_height and comparison is not None and not comparison.is_same_attachment(row.part)
+        if row.is_told and row.difference.is_worth_a_sentence and not is_height:
+            topic = _topic(row.side, row.measure.column, row.difference.difference > 0)
+            rank = _RANKS[QUANTITIES[row.measure.column]]
+            yield Candidate(rank, row.difference.ratio, (topic,), _changed(facts, comparison, row))
+
+
+def _between_legs(facts: Facts) -> Iterator[Candidate]:
+    """What differs between the legs. Each has a zero of its own, so no height is among them."""
+    if len(facts.gait) < len(Side):
+        return
+    first, second = facts.first_and_second
+    for column in BETWEEN_LEGS:
+        found = compare_legs(facts.alone, column, (first, second))
+        if not (found.is_told and found.is_worth_a_sentence) or QUANTITIES[column] is QuantityClass.HEIGHT:
+            continue
+        is_more = found.difference > 0
+        topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
+        unit, decimals = _unit(column)
+        said = tr("{measure}: {first} {value}, {second} {other}; difference {difference}, error {error}.").format(
+            measure=capitalised(_measure(column)),
+            first=role(facts, first),
+            second=role(facts, second),
+            value=fixed(facts.value(first, column).mean, decimals) + unit,
+            other=fixed(facts.value(second, column).mean, decimals) + unit,
+            difference=signed(found.difference, decimals) + unit,
+            error=fixed(found.error, decimals) + unit,
+        )
+        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said)
+
+
+def _beyond_band(facts: Facts) -> Iterator[Candidate]:
+    """Peaks more than 2 SD from band [1] laid at their curve's height; stance and stride length, from band [2]."""
+    for side, column in _peaks(facts):
+        away, band, kind = facts.away_sd(side, column), facts.band(column), column.split("_")[0]
+        if not abs(away) > MAX_AWAY_SD or band is None:
+            continue
+        offset = facts.offset_deg(side, kind)
+        pattern = (
+            tr("{joint} {peak}: {value}°; band [1] at the curve's height {band}°: more than 2\u00a0SD below.")
+            if away < 0
+            else tr("{joint} {peak}: {value}°; band [1] at the curve's height {band}°: more than 2\u00a0SD above.")
+        )
+        said = pattern.format(
+            joint=capitalised(name_of(joint_of(kind, side))),
+            peak=tr("at initial contact") if "initial_contact" in column else peak_name(column),
+            value=fixed(facts.value(side, column).mean, 1),
+            band=band_in_figures((band[0] + offset, band[1] + offset), 1),
+        )
+        yield Candidate(Rank.SHAPE, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+    for name, column in ((tr("Stance"), "stance_percent"), (tr("Stride length"), "stride_length_m")):
+        figure = facts.time_distance[name]
+        for side in facts.sides_with_band.intersection(figure.sides):
+            value = facts.value(side, column)
+            if figure.band is None or not math.isfinite(value.mean):
+                continue
+            low, high = figure.band
+            away = (value.mean - (low + high) / 2) / ((high - low) / 2)
+            if abs(away) > MAX_AWAY_SD:
+                unit, decimals = _unit(column)
+                pattern = (
+                    tr("{measure}, {side}: {value}; band [2] {band}: more than 2\u00a0SD below.")
+                    if away < 0
+                    else tr("{measure}, {side}: {value}; band [2] {band}: more than 2\u00a0SD above.")
+                )
+                said = pattern.format(
+                    measure=capitalised(_measure(column)),
+                    side=role(facts, side),
+                    value=fixed(value.mean, decimals) + unit,
+                    band=band_in_figures(figure.band, decimals) + unit,
+                )
+                rank = _RANKS[QUANTITIES[column]]
+                yield Candidate(rank, abs(away) / MAX_AWAY_SD, (_topic(side, column, away > 0),), said)
+
+
+def _heights(facts: Facts) -> Iterator[Candidate]:
+    for side in facts.gait:
+        for kind in KINDS:
+            offset = facts.offset_deg(side, kind)
+            if abs(offset) > MAX_OFFSET_DEG:
+                said = tr("{joint}: the whole curve lies {offset}° from the band: look at the zero first.").format(
+                    joint=capitalised(name_of(joint_of(kind, side))), offset=signed(offset, 1)
+                )
+                topics: tuple[Topic, ...] = ((joint_of(kind, side), Rank.HEIGHT, offset > 0),)
+                yield Candidate(Rank.HEIGHT, abs(offset) / MAX_OFFSET_DEG, topics, said)
+
+
+def caveat(facts: Facts, comparison: Comparison | None) -> list[str]:
+    """The one that weighs most: the gravest of what is withheld, else speed, else height."""
+    if withheld := quality.caveats(facts, (Verdict.WITHHELD,)):
+        return withheld[:1]
+    speeds = _speeds_apart(comparison)
+    if speeds:
+        return [tr("Speed {speeds} m/s: part of a difference can come from speed.").format(speeds=speeds)]
+    if any(found.zero is ZeroKind.STANDING for found in facts.calibrated.values()):
+        return [tr("Zero is the standing posture: how the patient stood moves a whole curve up or down.")]
+    return []
+
+
+def _speeds_apart(comparison: Comparison | None) -> str:
+    """The speeds of what is compared, where one differs from the first by more than its error."""
+    if comparison is None:
+        return ""
+    speeds = {part.letter: part.of_both("speed_m_s") for part in comparison.parts}
+    first = speeds[comparison.against.letter]
+    if not all(map(math.isfinite, speeds.values())):
+        return ""
+    for part in comparison.others:
+        error = _speed_error(comparison.error_kind(part), (first + speeds[part.letter]) / 2)
+        if abs(speeds[part.letter] - first) > error:
+            return ", ".join(f"{letter}: {fixed(speed, 2)}" for letter, speed in speeds.items())
+    return ""
+
+
+def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
+    """What lies between two walks makes of the error of their speeds' difference."""
+    sigma = sigma_of("speed_m_s", kind)
+    if sigma is None:
+        return math.inf
+    return Z95 * math.sqrt(2) * sigma.value * (0.01 * mean_m_s if sigma.is_relative else 1.0)
+
+
+def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
+    """One figure of one part beside that of the first."""
+    unit, decimals = _unit(row.measure.column)
+    is_visits = comparison is not None and comparison.kind is Kind.VISITS
+    pattern = (
+        tr("{side}, {measure}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
+        if is_visits
+        else tr("{side}, {measure}: {value} at {this}, {other} at {first}; difference {difference}, error {error}.")
+    )
+    return pattern.format(
+        side=capitalised(role(facts, row.side)),
+        measure=_measure(row.measure.column),
+        value=fixed(row.value.mean, decimals) + unit,
+        other=fixed(row.other.mean, decimals) + unit,
+        this=typed(row.part.name, CONDITION_LENGTH),
+        first=typed(row.against.name, CONDITION_LENGTH),
+        difference=signed(row.difference.difference, decimals) + unit,
+        error=fixed(row.difference.error, decimals) + unit,
+    )
+
+
+def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:
+    return [
+        (side, column)
+        for side in facts.gait
+        for kind in KINDS
+        if facts.is_measured(joint_of(kind, side))
+        for column in COLUMNS[kind]
     ]
 
 
-def _stance_sentence(facts: Facts) -> list[str]:
-    left, right = (facts.value(side, "stance_percent") for side in Side)
-    if not (is_mean_enough(left.n) and is_mean_enough(right.n)):
-        return []
-    symmetry = symmetry_in_words(facts, "stance_percent")
-    band = facts.time_distance[tr("Stance")].band if facts.values_group is not None else None
-    against = [f", {against_band(value.mean, band)}" if band is not None else "" for value in (left, right)]
-    each = [f"{fixed(value.mean, 1)}{words}" for value, words in zip((left, right), against, strict=True)]
-    said = tr("Stance, % of the stride: left {left}; right {right} (symmetry {symmetry}).")
-    sentence = said.format(left=each[0], right=each[1], symmetry=symmetry)
-    double = facts.time_distance[tr("Double support")]
-    if double.both is not None and math.isfinite(double.both) and double.band and facts.values_group is not None:
-        more = tr("Double support: {value} %, {against}.")
-        sentence += " " + more.format(value=fixed(double.both, 1), against=against_band(double.both, double.band))
-    return [sentence]
+def _topic(side: Side, column: str, is_more: bool) -> Topic:
+    joint = joint_of_column(column, side)
+    return (joint, None, is_more) if joint is not None else (side, _RANKS[QUANTITIES[column]], is_more)
 
 
-def _caveat(facts: Facts) -> list[str]:
-    _, reasons = quality.verdict_of(facts)
-    if reasons:
-        return reasons[:1]
-    late = [finding for finding in facts.visit.analysis.findings if finding.key == "prosthetic_toe_off"]
-    if late:
-        return [plain(sentence(late[0]))]
-    group = facts.curves_group
-    if group is not None and math.isfinite(facts.feet.speed_m_s) and not group.fits(facts.feet.speed_m_s):
-        said = tr("This walk: {speed} m/s, band [1]: {group} m/s. Part of a distance from the band comes from speed.")
-        return [said.format(speed=fixed(facts.feet.speed_m_s, 2), group=fixed(group.speed_m_s, 2))]
-    return []
+def _unit(column: str) -> tuple[str, int]:
+    """A column's unit as it follows a number, and its decimals."""
+    if column.endswith("_deg"):
+        return "°", 1
+    return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
+
+
+def _measure(column: str) -> str:
+    """A column's name inside a sentence."""
+    names = {
+        "stance_percent": tr("stance, share of the stride"),
+        "step_time_s": tr("step time"),
+        "stride_length_m": tr("stride length"),
+        "knee_range_deg": tr("knee range over the stride"),
+        "ankle_range_deg": tr("ankle range over the stride"),
+    }
+    if column in names:
+        return names[column]
+    kind = tr("knee") if column.startswith("knee") else tr("ankle")
+    return f"{kind} {peak_name(column)}"
