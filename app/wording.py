@@ -131,6 +131,10 @@ SENTENCES = {
         "the farther sensor's clock is {lag_ms:+.0f} ms off here and was not in the others. It has been "
         "corrected; with one receiver for all sensors it does not happen."
     ),
+    "clock_drifts": (
+        "this sensor's clock runs {drift_percent:+.1f} % faster than the others' of its leg, so its samples are paired "
+        "with the wrong ones. Check its sample rate, or use one receiver for all sensors, and record the walk again."
+    ),
     "lag_corrected": "the farther sensor's clock was {lag_ms:+.0f} ms off. It has been corrected.",
     "not_the_same_joint": (
         "the two sensors do not move as neighbours (margin {margin:.2f}). Check which sensor is where, or use one "

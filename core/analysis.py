@@ -13,6 +13,7 @@ from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.chosen_strides import leave_out
+from core.clock_drift import about_clocks
 from core.findings import Finding, Severity
 from core.gait.clocks import leg_clocks
 from core.gait.strides import Reason
@@ -22,7 +23,7 @@ from core.measure import Twist, measure
 from core.placement.labels import about_labels
 from core.published.angles import DEFAULT_TAU_S
 from core.quality import look_at, lost_percent
-from core.rate_kind import find_rate_kind
+from core.rate_kind import tracks_of_kind
 from core.results import (
     Analysis,
     Calibration,
@@ -90,10 +91,10 @@ def analyse(
     has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
-        rate_kind, told = find_rate_kind(session, span, quality.unusable)
+        tracks, told = tracks_of_kind(session, span, quality.unusable)
         findings += told
-        tracks = SensorTracks(session, span, quality.unusable, rate_kind)
         findings += about_labels(tracks)
+        findings += about_clocks(tracks)
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)

@@ -21,7 +21,7 @@ from core.published.figures import CostOverSphere, ProjectedRates, TwoWays, cost
 from core.published.identify import data_sets
 from core.published.joint_axis import identify_axes
 from core.quality import look_at
-from core.rate_kind import find_rate_kind
+from core.rate_kind import tracks_of_kind
 from core.results import JointCalibration
 from core.robust import robust_sd
 from core.rotations import angle_between
@@ -97,8 +97,7 @@ def how_found(
         return None
     recording = next(r for r in span if r.name == recording_name)
     joint = calibration.joint
-    unusable = look_at(session).unusable
-    tracks = SensorTracks(session, span, unusable, find_rate_kind(session, span, unusable)[0])
+    tracks, _ = tracks_of_kind(session, span, look_at(session).unusable)
     if not tracks.is_usable(recording, joint.proximal, joint.distal):
         return None
     basis = basis_of(span, recording, joint, tracks.is_usable)

@@ -40,6 +40,10 @@ class JointForce:
     terms: FloatArray
     heard: FloatArray
 
+    @property
+    def end_s(self) -> float:
+        return self.start_s + self.step_s * (len(self.heard) - 1)
+
     def at(self, time_s: FloatArray) -> FloatArray:
         """Terms (n, 3, 7) at any instants (n,), on this sensor's clock."""
         found = at_positions(self.terms.reshape(-1, 21), (time_s - self.start_s) / self.step_s)

@@ -8,9 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from core.body import Joint, Site
-from core.rate_kind import find_rate_kind
+from core.rate_kind import tracks_of_kind
 from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
-from core.sensors import SensorTracks
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
 
 JOINTS = (Joint.LEFT_KNEE, Joint.LEFT_ANKLE)
@@ -104,11 +103,10 @@ def _of_two_sensors(session: Session, joint: Joint) -> Session:
 
 def _trial(group: str, joint: Joint, session: Session, truth: Truth) -> Trial:
     (recording,) = (r for r in session.recordings if r.kind is not RecordingKind.STANDING)
-    found_kind, _ = find_rate_kind(session, session.recordings, frozenset())
+    tracks, _ = tracks_of_kind(session, session.recordings, frozenset())
     told_kind = {info.rate_kind for info in session.sensors.values()} - {None}
-    rate_kind = told_kind.pop() if told_kind else found_kind
+    rate_kind = told_kind.pop() if told_kind else tracks.rate_kind
     assert rate_kind is not None
-    tracks = SensorTracks(session, session.recordings, frozenset(), rate_kind)
     one, two = (recording.imu[site] for site in (joint.proximal, joint.distal))
     down: list[FloatArray | None] = [None, None]
     for standing in session.recordings:

@@ -1,0 +1,49 @@
+"""How often is the kind of the rates mistaken on the project's own patient, when no sensor tells it?
+
+    python -m tests.benchmarks.rate_kind --seeds 12
+
+One line per tissue and sample rate: sessions of instants called averaged, sessions of averages called instants.
+"""
+
+import argparse
+from dataclasses import replace
+
+from core.rate_kind import tracks_of_kind
+from core.samples import RateKind, Session
+from devices.walker import Tissue, WalkerSettings, simulate
+
+RATES_HZ = (60.0, 100.0, 200.0)
+
+
+def untold_session(settings: WalkerSettings) -> Session:
+    """A session whose sensors do not say what their rates stand for."""
+    session = simulate(settings).session
+    sensors = {site: replace(info, rate_kind=None) for site, info in session.sensors.items()}
+    return replace(session, sensors=sensors)
+
+
+def is_mistaken(settings: WalkerSettings) -> bool:
+    session = untold_session(settings)
+    tracks, _ = tracks_of_kind(session, session.recordings, frozenset())
+    return tracks.rate_kind is not settings.rate_kind
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", type=int, default=12)
+    seeds = range(parser.parse_args().seeds)
+    for tissue in Tissue:
+        for rate_hz in RATES_HZ:
+            wrong = {
+                kind: sum(
+                    is_mistaken(WalkerSettings(seed=seed, tissue=tissue, rate_hz=rate_hz, rate_kind=kind))
+                    for seed in seeds
+                )
+                for kind in RateKind
+            }
+            cells = ", ".join(f"{kind}: {count} of {len(seeds)} mistaken" for kind, count in wrong.items())
+            print(f"{tissue:6s} {rate_hz:4.0f} Hz  {cells}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
