@@ -1,0 +1,95 @@
+"""How much is withheld, and why? Of healthy simulated walks, and of the walks of strangers.
+
+    GAITWRIGHT_TEST_DATA=... python -m tests.benchmarks.withheld [--seeds 20]
+
+Wanted: at most 5 % of the joints of healthy simulated walks, walks without free motion included.
+"""
+
+import argparse
+import os
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+from core.analysis import analyse
+from core.samples import RecordingKind, Session
+from core.verdicts.model import Assessment
+from devices.walker import PEOPLE, FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+from tests.benchmarks.null_differences import real_walks
+
+WALK = Walk(strides=16)
+MOTIONS = {
+    "all three recordings": (Standing(), FreeMotion(), WALK),
+    "no free motion": (Standing(), WALK),
+}
+PARTS = ("shape", "height", "timing", "distance", "between")
+
+Said = tuple[str, str, tuple[str, ...]]
+"""Part, verdict, and the gates that decided it."""
+
+
+def said_of(session: Session) -> list[Said]:
+    """Every verdict of every walk of a session."""
+    found: list[Said] = []
+    for recording in analyse(session).recordings:
+        if recording.kind is not RecordingKind.WALKING:
+            continue
+        verdicts = recording.verdicts
+        for joint in verdicts.joints.values():
+            found += [_said("shape", joint.shape), _said("height", joint.height)]
+        for leg in verdicts.legs.values():
+            found += [_said("timing", leg.timing), _said("distance", leg.distance)]
+        found.append(_said("between", verdicts.between))
+    return found
+
+
+def _said(part: str, found: Assessment) -> Said:
+    gates = {reason.gate for reason in found.reasons if reason.verdict is found.verdict}
+    return part, str(found.verdict), tuple(sorted(gates))
+
+
+def of_seed(seed: int, tissue: Tissue, motions: str, rate_hz: float) -> list[Said]:
+    settings = WalkerSettings(seed=seed, tissue=tissue, rate_hz=rate_hz, variation=PEOPLE, recordings=MOTIONS[motions])
+    session = simulate(settings).session
+    # as a recording of strangers comes: nothing is known of its clocks
+    sensors = {site: replace(info, clock="") for site, info in session.sensors.items()}
+    return said_of(replace(session, sensors=sensors))
+
+
+def lines(name: str, found: Iterable[Said]) -> Iterator[str]:
+    everything = list(found)
+    for part in PARTS:
+        mine = [said for said in everything if said[0] == part]
+        if not mine:
+            continue
+        counts = Counter(verdict for _, verdict, _ in mine)
+        share = {verdict: 100.0 * counts[verdict] / len(mine) for verdict in ("read", "care", "withheld")}
+        gates = Counter(gate for _, verdict, why in mine if verdict in ("care", "withheld") for gate in why)
+        why = ", ".join(f"{gate} {count}" for gate, count in gates.most_common(5))
+        figures = " | ".join(f"{share[verdict]:.0f} %" for verdict in share)
+        yield f"| {name} | {part} | {len(mine)} | {figures} | {why} |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seeds", type=int, default=20)
+    parser.add_argument("--workers", type=int, default=1)
+    wanted = parser.parse_args()
+    print("| walks | part | n | read | care | withheld | gates |")
+    told = os.environ.get("GAITWRIGHT_TEST_DATA")
+    if told:
+        for name, session in real_walks(Path(told)):
+            print(*lines(name, said_of(session)), sep="\n")
+    with ProcessPoolExecutor(wanted.workers) as pool:
+        for motions in MOTIONS:
+            for tissue in Tissue:
+                one = partial(of_seed, tissue=tissue, motions=motions, rate_hz=100.0)
+                found = [said for of_one in pool.map(one, range(wanted.seeds)) for said in of_one]
+                print(*lines(f"{tissue}, {motions}", found), sep="\n", flush=True)
+
+
+if __name__ == "__main__":
+    main()
