@@ -86,11 +86,12 @@ def gait_in(
 def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: float) -> list[FootEvents]:
     """Events of one side, stretch by stretch; long recordings block by block, the seams within a stretch closed."""
     found: list[FootEvents] = []
+    is_rigid = site.side in prosthetic_sides(tracks.session.patient)
     for block in tracks.blocks(recording):
         for foot in tracks.oriented(recording, site, block):
             if foot.track.end_s < block.core_from_s or foot.track.start_s >= block.core_to_s:
                 continue  # another block's, seen in the overlap
-            events = gait_of(foot) if site.segment is Segment.FOOT else gait_of_shank(foot)
+            events = gait_of(foot, is_rigid) if site.segment is Segment.FOOT else gait_of_shank(foot)
             events = _rows(events, events.initial_contact_s < block.core_to_s)
             if found and foot.track.start_s < block.core_from_s:
                 found[-1] = _continued(found[-1], events, block.core_from_s)

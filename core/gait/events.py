@@ -11,33 +11,56 @@ One definition of each event, for any speed and sampling rate; levels follow eac
 A foot that lands with its forefoot is turned the other way by the floor: toes up, by a heel that comes down. Its full
 contact is where it ceases to sink, be the heel on the floor or not.
 
-
-Where a foot hardly rolls, or comes down flat while it goes on (shuffling), the pitch says nothing; its speed does, and
-the events are marked.
+Where a foot hardly rolls, or comes down flat while it goes on (shuffling, dragging), the pitch says nothing of contact
+and toe-off; how the sole travels over the floor does (`core.gait.sole`). What neither tells stays unknown, that event
+alone. Each event carries its source and a standard deviation.
 Where the sensor shakes on its foot, the rate of one swing says little; the foot's mean swing does.
 """
 
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
+from core.gait.crossings import Onset, first_crossing, last_crossing, onset
 from core.gait.foot import FootMotion, follow
+from core.gait.sole import SoleTravel, travel_of
 from core.pair import OrientedTrack
-from core.samples import BoolArray, FloatArray
+from core.samples import BoolArray, FloatArray, IntArray
 
 TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
 LANDED_S = 0.02  # after half the peak of loading a foot has landed, whatever then shakes the sensor
 STILL_SHARE, MIN_STILL_RAD_S = 0.05, 0.09  # of the peak of push-off: below, the foot is flat; the share at 0.3 m/s
-ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
 LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
 FOREFOOT_RAD = np.deg2rad(3.0)  # heels first, real feet go 2 deg below their rest
-FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up may come down in the air: the foot then goes on at more than
-LANDED_SHARE = 0.25  # of its greatest speed
+FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up before landing may come down in the air
+MIN_LOWERED_RAD = np.deg2rad(17.0)  # a foot that turns its toes down less on leaving is lifted; healthy ones turn 50
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
 MIN_SWINGS_TO_AVERAGE = 4
-FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor
+FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor; for the live events
+
+
+class EventSource(StrEnum):
+    """What told when an event was."""
+
+    UNKNOWN = ""
+    PITCH = "pitch"
+    SOLE = "sole"
+    SHANK = "shank"
+
+
+SOURCES = tuple(EventSource)
+EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")  # the order of columns
+# Standard deviations, s, of EVENTS by what told them. Pitch: initial contact and toe-off against optics and force
+# plates (10-14 and 3-8 ms), the others' besides what was extrapolated; sole: simulated flat and dragging feet
+SD_S = {
+    EventSource.PITCH: (0.015, 0.007, 0.012, 0.015),
+    EventSource.SOLE: (np.nan, 0.020, 0.020, np.nan),
+    EventSource.SHANK: (np.nan, 0.020, 0.015, np.nan),
+}
+REACH_SHARE = 0.5  # of an extrapolated time is its standard deviation
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +76,12 @@ class Usual:
 class Landing:
     """A foot that comes down: its pitch rate (n,) from index `begin` on to rest, which the floor makes negative.
 
-    With the forefoot first that is toes up. A flat landing hardly has the toes up before.
+    With the forefoot first that is toes up.
     """
 
     begin: int
     rate_rad_s: FloatArray
     is_forefoot: bool = False
-    is_flat: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,15 +100,19 @@ class MeanRate:
 class FootEvents:
     """The events of one foot, one row per swing: heel rise, toe-off, then initial contact and full contact. All (k,).
 
+    Heel rise and full contact are NaN where they are not known.
+
     Attributes
     ----------
     length_m, height_m, turn_rad
         How far the swing carried the foot over the floor, how high the sensor (not the toe) rose, how far the foot
         turned about the vertical; NaN from a shank.
     is_certain
-        False where the foot hardly rolled or came down flat while it went on, or its pitch contradicts its way.
+        False where the contacts themselves are in doubt: the foot's pitch contradicts its way.
     is_measured
         False where samples were missing between heel rise and full contact.
+    source, sd_s : (k, 4)
+        What told each event, an index into SOURCES, and its standard deviation; columns as EVENTS, NaN where unknown.
     """
 
     heel_rise_s: FloatArray
@@ -98,94 +124,153 @@ class FootEvents:
     turn_rad: FloatArray
     is_certain: BoolArray
     is_measured: BoolArray
+    source: IntArray
+    sd_s: FloatArray
     is_from_shank: bool = False
 
     def __len__(self) -> int:
         return len(self.toe_off_s)
 
 
-def gait_of(foot: OrientedTrack) -> FootEvents:
-    """Events of one foot over one stretch without gaps, in any mounting. Its gyroscope bias must have been removed."""
-    return detect_events(follow(foot), foot.track.is_measured)
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Events of every swing as they are timed: indices of samples, sources and extrapolated samples, (k, 4) each."""
+
+    index: FloatArray
+    source: IntArray
+    reach: FloatArray
+
+    def put(self, k: int, event: int, found: Onset, source: EventSource) -> None:
+        self.index[k, event], self.reach[k, event] = found.index, found.reach
+        self.source[k, event] = SOURCES.index(source) if np.isfinite(found.index) else 0
 
 
-def detect_events(motion: FootMotion, is_measured: BoolArray) -> FootEvents:
+HEEL_RISE, TOE_OFF, CONTACT, FULL_CONTACT = range(4)
+
+
+def gait_of(foot: OrientedTrack, is_rigid: bool = False) -> FootEvents:
+    """Events of one foot over one stretch without gaps, in any mounting. Its gyroscope bias must have been removed.
+
+    Parameters
+    ----------
+    is_rigid
+        The foot does not bend at its toes, as a prosthetic one: it goes on turning when its toes have left the floor.
+    """
+    return detect_events(follow(foot), foot.track.is_measured, is_rigid)
+
+
+def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = False) -> FootEvents:
     """Events of every swing of `motion`.
 
     Parameters
     ----------
     is_measured : (n,)
         As `Track.is_measured`.
+    is_rigid
+        As `gait_of`.
     """
-    rate, swings = motion.pitch_rate_rad_s, motion.swings
-    speed = np.linalg.norm(motion.velocity_m_s, axis=1)
+    rate, swings, sole = motion.pitch_rate_rad_s, motion.swings, travel_of(motion)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
     leaving = [rate[a : m + 1] for a, m, _ in spans]
-    landings = [_landing_of(motion, m, b) for _, m, b in spans]
+    landings = [_landing_of(motion, m, b, sole.lands[k]) for k, (_, m, b) in enumerate(spans)]
     is_heel_first = np.array([not landing.is_forefoot for landing in landings], dtype=bool)
     push, load = (-np.array([part.min() for part in parts]) for parts in (leaving, [x.rate_rad_s for x in landings]))
-    is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S)
     usual = _usual(push, load)
-    rows = np.full((len(spans), 4), np.nan)
-    for k, (a, m, b) in enumerate(spans):
-        rows[k, :2] = _leaving(leaving[k], usual) + a
-        rows[k, 2:] = _landing(landings[k], usual, motion.step_s)
-        flat = FLAT_SHARE * speed[m]
-        if not np.isfinite(rows[k, 1]):
-            rows[k, 1] = last_crossing(speed, a, m, flat)
-        if landings[k].is_flat and np.isfinite(rows[k, 2]) and speed[int(rows[k, 2])] > LANDED_SHARE * speed[m]:
-            rows[k, 2], is_rolling[k] = np.nan, False
-        if not np.isfinite(rows[k, 2]):
-            rows[k, 2] = first_crossing(speed, m, b, flat)
+    size = (len(spans), len(EVENTS))
+    timing = Timing(np.full(size, np.nan), np.zeros(size, dtype=np.int64), np.zeros(size))
+    for k, (a, _, _) in enumerate(spans):
+        for event, found in enumerate((*_leaving(leaving[k], usual, a), *_landing(landings[k], usual, motion.step_s))):
+            timing.put(k, event, found, EventSource.PITCH)
+    is_flat = np.array([motion.pitch_rad[m : b + 1].max() < FLAT_LANDING_RAD for _, m, b in spans], dtype=bool)
+    is_landed = sole.is_landing(timing.index[:, CONTACT], is_flat, motion.step_s)
+    is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S) & is_landed
     is_usual = is_rolling & is_heel_first & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
-    _steady(rows, motion, spans, is_usual, usual)
-    rows[:, 0] = np.minimum(rows[:, 0], rows[:, 1])
-    rows[:, 3] = np.maximum(rows[:, 3], rows[:, 2])
-    is_whole = np.isfinite(rows).all(axis=1)
-    times = motion.time_of(rows[is_whole])
+    _steady(timing.index, motion, spans, is_usual, usual)
+    lowered = [-float(motion.pitch_rad[a : m + 1].min()) for a, m, _ in spans]
+    is_lifted = is_rigid or bool(len(spans) and np.median(lowered) < MIN_LOWERED_RAD)
+    _time_by_sole(timing, sole, is_lifted, is_landed)
+    for k in np.flatnonzero(~(timing.index[:, FULL_CONTACT] >= timing.index[:, CONTACT])).tolist():
+        timing.put(k, FULL_CONTACT, _settled(rate, timing.index[k, CONTACT], spans[k][2], usual), EventSource.PITCH)
+    return _told(motion, timing, is_measured)
+
+
+def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: BoolArray) -> None:
+    """Time toe-offs of a foot that is lifted, and contacts that the pitch does not tell, by the sole; in place.
+
+    A heel rise that comes later than its toe-off is not known.
+    """
+    for k in range(len(sole.lands)):
+        if is_lifted or not np.isfinite(timing.index[k, TOE_OFF]):
+            timing.put(k, TOE_OFF, Onset(sole.leaves[k], sole.leaves_reach[k]), EventSource.SOLE)
+        if not is_landed[k]:
+            timing.put(k, CONTACT, Onset(sole.lands[k], sole.lands_reach[k]), EventSource.SOLE)
+        if timing.index[k, HEEL_RISE] > timing.index[k, TOE_OFF]:
+            timing.put(k, HEEL_RISE, Onset(np.nan, 0.0), EventSource.UNKNOWN)
+
+
+def _settled(rate: FloatArray, contact: float, rest: int, usual: Usual) -> Onset:
+    """Full contact of a foot that has landed, whatever way it then turns; NaN: it hardly turns."""
+    first = min(int(np.ceil(contact)), rest)
+    turning = np.abs(rate[first : rest + 1])
+    fastest = int(np.argmax(turning))
+    if turning[fastest] <= MIN_ROLL_RAD_S:
+        return Onset(np.nan, 0.0)
+    full = onset(turning, fastest, rest - first, LANDING_RATIO * usual.still_rad_s)
+    return Onset(full.index + first, full.reach)
+
+
+def _told(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> FootEvents:
+    swings = motion.swings
+    times = motion.time_of(timing.index)
     missing = np.concatenate([[0], np.cumsum(~is_measured)])
-    is_heard = missing[swings.anchor_after + 1] == missing[swings.anchor_before]
+    by_source = np.array([SD_S.get(source, (np.nan,) * len(EVENTS)) for source in SOURCES])
+    sd_s = np.hypot(by_source[timing.source, np.arange(len(EVENTS))], REACH_SHARE * motion.step_s * timing.reach)
     return FootEvents(
-        heel_rise_s=times[:, 0],
-        toe_off_s=times[:, 1],
-        initial_contact_s=times[:, 2],
-        full_contact_s=times[:, 3],
-        length_m=np.linalg.norm(motion.travel_m, axis=1)[is_whole],
-        height_m=motion.height_m[is_whole],
-        turn_rad=motion.turn_rad[is_whole],
-        is_certain=(is_rolling & motion.is_direction_certain)[is_whole],
-        is_measured=is_heard[is_whole],
+        heel_rise_s=times[:, HEEL_RISE],
+        toe_off_s=times[:, TOE_OFF],
+        initial_contact_s=times[:, CONTACT],
+        full_contact_s=times[:, FULL_CONTACT],
+        length_m=np.linalg.norm(motion.travel_m, axis=1),
+        height_m=motion.height_m,
+        turn_rad=motion.turn_rad,
+        is_certain=np.full(len(swings), motion.is_direction_certain),
+        is_measured=missing[swings.anchor_after + 1] == missing[swings.anchor_before],
+        source=timing.source,
+        sd_s=sd_s,
     )
 
 
-def _landing_of(motion: FootMotion, fastest: int, rest: int) -> Landing:
+def _landing_of(motion: FootMotion, fastest: int, rest: int, lands: float) -> Landing:
     """How a foot comes down between two indices; with its forefoot first, its toes are further down than in stance."""
     rate, pitch = motion.pitch_rate_rad_s, motion.pitch_rad
-    highest = fastest + int(np.argmax(pitch[fastest : rest + 1]))
+    until = min(rest, max(fastest, int(np.ceil(lands))))
+    highest = fastest + int(np.argmax(pitch[fastest : until + 1]))
     lowest = highest + int(np.argmin(pitch[highest : rest + 1]))
     if pitch[lowest] > -FOREFOOT_RAD:
-        return Landing(fastest, rate[fastest : rest + 1], False, bool(pitch[highest] < FLAT_LANDING_RAD))
+        return Landing(fastest, rate[fastest : rest + 1])
     lowered = highest + int(np.argmin(rate[highest : lowest + 1]))
-    return Landing(lowered, -rate[lowered : rest + 1], True, False)
+    return Landing(lowered, -rate[lowered : rest + 1], is_forefoot=True)
 
 
-def _leaving(rate: FloatArray, usual: Usual) -> FloatArray:
-    """Heel rise and toe-off as indices of a pitch rate (n,) from rest to mid-swing; NaN: hardly rolled."""
+def _leaving(rate: FloatArray, usual: Usual, begin: int = 0) -> tuple[Onset, Onset]:
+    """Heel rise and toe-off of a pitch rate (n,) from rest, at index `begin`, to mid-swing; NaN: hardly rolled."""
     push = int(np.argmin(rate))
     if -rate[push] <= MIN_ROLL_RAD_S:
-        return np.array([_onset(-rate, push, 0, usual.still_rad_s), np.nan])
+        return Onset(np.nan, 0.0), Onset(np.nan, 0.0)
+    rise = onset(-rate, push, 0, usual.still_rad_s)
     off = first_crossing(rate, push, len(rate) - 1, TOE_OFF_SHARE * rate[push])
-    return np.array([_onset(-rate, push, 0, usual.still_rad_s), off])
+    return Onset(rise.index + begin, rise.reach), Onset(off + begin, 0.0)
 
 
-def _landing(landing: Landing, usual: Usual, step_s: float) -> FloatArray:
-    """Initial and full contact as indices; NaN: hardly rolled."""
+def _landing(landing: Landing, usual: Usual, step_s: float) -> tuple[Onset, Onset]:
+    """Initial and full contact; NaN: hardly rolled."""
     rate = landing.rate_rad_s
     load = int(np.argmin(rate))
-    full = _onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
-    level = -CONTACT_SHARE * min(-rate[load], usual.load_rad_s)
-    on = _contact(rate, load, level, step_s) if -rate[load] > MIN_ROLL_RAD_S else np.nan
-    return np.array([on, full]) + landing.begin
+    if -rate[load] <= MIN_ROLL_RAD_S:
+        return Onset(np.nan, 0.0), Onset(np.nan, 0.0)
+    full = onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
+    on = _contact(rate, load, -CONTACT_SHARE * min(-rate[load], usual.load_rad_s), step_s)
+    return Onset(on + landing.begin, 0.0), Onset(full.index + landing.begin, full.reach)
 
 
 def _steady(
@@ -209,8 +294,8 @@ def _steady(
     if unrest < SHAKING_SHARE * usual.still_rad_s:
         return
     usual = replace(usual, still_rad_s=max(usual.still_rad_s, 3.0 * unrest / np.sqrt(len(chosen))))
-    leaving = _leaving(leave.rate_rad_s, usual) - leave.before
-    landing = _landing(Landing(-land.before, land.rate_rad_s), usual, motion.step_s)
+    leaving = np.array([found.index for found in _leaving(leave.rate_rad_s, usual, -leave.before)])
+    landing = np.array([f.index for f in _landing(Landing(-land.before, land.rate_rad_s), usual, motion.step_s)])
     if np.isfinite(leaving).all() and np.isfinite(landing).all():
         rows[chosen, :2] = marks[chosen, :1] + leaving
         rows[chosen, 2:] = marks[chosen, 1:] + landing
@@ -250,25 +335,6 @@ def _mean_rate(rates: list[FloatArray], marks: FloatArray, usual: Usual) -> Mean
     return MeanRate(mean, before, unrest)
 
 
-def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) first passes `level`; NaN where it does not."""
-    return _crossing(signal, first, last, level, 0)
-
-
-def last_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
-    """Fractional index in first..last where `signal` (n,) last passes `level`; NaN where it does not."""
-    return _crossing(signal, first, last, level, -1)
-
-
-def _crossing(signal: FloatArray, first: int, last: int, level: float, which: int) -> float:
-    above = signal[first : last + 1] - level
-    passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
-    if not len(passes):
-        return float("nan")
-    k = int(passes[which])
-    return first + k + float(above[k] / (above[k] - above[k + 1]))
-
-
 def _contact(rate: FloatArray, load: int, level: float, step_s: float) -> float:
     """Where the rate, on its last way down to the peak of loading, reaches `level`, LANDED_S after its half at most."""
     falls = last_crossing(rate, 0, load, 0.0)
@@ -276,13 +342,3 @@ def _contact(rate: FloatArray, load: int, level: float, step_s: float) -> float:
         return float("nan")
     half, whole = (first_crossing(rate, int(falls), load, share * level) for share in (0.5 / CONTACT_SHARE, 1.0))
     return float(np.fmin(whole, half + LANDED_S / step_s))
-
-
-def _onset(rate: FloatArray, peak: int, rest: int, still: float) -> float:
-    """Where a rate that is zero at index `rest` begins to grow towards its peak, extrapolated from two low levels."""
-    first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
-    low, high = (_crossing(rate, first, last, level, which) for level in (still, 2.0 * still))
-    if not np.isfinite(low):
-        return float(rest)
-    reach = ONSET_RATIO * (low - high) if np.isfinite(high) else 0.0
-    return float(np.clip(low + reach, min(rest, low), max(rest, low)))

@@ -19,7 +19,10 @@ GRAVITY_M_S2 = 9.81
 CALM_RAD_S, CALM_M_S2 = 0.3, 0.6  # how much a foot still moves in the middle of an ordinary stance
 CALM_WINDOW_S = 0.1
 MIN_CALM_RATIO = 15.0  # a step moves the foot so much more than the stances around it (mean squares)
-MAX_CALM = 30.0  # a foot that moves more than this, in units of CALM squared, is not standing; loose straps come near
+MAX_CALM = 30.0  # a foot that moves more than this, in units of CALM squared, is not standing,
+MAX_CALM_SHARE = 1.0 / 40.0  # nor one that moves more than this share of what its livelier moments reach, if fast or
+LIVELY_QUANTILE = 0.9  # strapped loosely: of the restlessness above MAX_CALM
+HOVER_RATIO, HOVER_CALM = 50.0, 10.0  # so much livelier than the stance beside it, and lively, a foot hovers
 CALM_FLOOR = 0.03  # the sensors' own noise
 REST_TILT_RAD = np.deg2rad(
     2.2
@@ -33,6 +36,7 @@ MIN_SWING_M = 0.08  # shorter is fidgeting, not a step
 MIN_SWING_M_S = 0.25
 MAX_TILT_RAD = np.deg2rad(30.0)  # a foot that stands stands as it mostly does; ramps and kerbs included
 MOVING_RAD_S = 1.0
+MIN_HEEL_UP_RAD = np.deg2rad(1.0)  # mean pitch of swings that tells where the toes are; shuffling feet have 1.2 deg
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +78,7 @@ class FootMotion:
         In sensor axes; turning about it lifts the toes.
     pitch_rate_rad_s, pitch_rad : (n,)
         Toes up positive; the pitch is zero in the rest of each stance.
-    velocity_m_s : (n, 3)
+    velocity_m_s, acceleration_m_s2 : (n, 3)
         Of the sensor, in earth axes.
     travel_m : (k, 2)
         How far each swing carried the foot over the floor.
@@ -93,6 +97,7 @@ class FootMotion:
     pitch_rate_rad_s: FloatArray
     pitch_rad: FloatArray
     velocity_m_s: FloatArray
+    acceleration_m_s2: FloatArray
     travel_m: FloatArray
     height_m: FloatArray
     turn_rad: FloatArray
@@ -113,6 +118,9 @@ def follow(foot: OrientedTrack) -> FootMotion:
     anchors = _anchors(restless, up)
     shaking = max(0.0, float(np.median(restless[anchors])) - 1.0) if len(anchors) else 0.0
     rough = _velocity(acceleration, _instants(anchors, len(up), step_s), step_s)
+    standing = _without_hovering(anchors, restless, _integral(rough, step_s))
+    if len(standing) < len(anchors):
+        anchors, rough = standing, _velocity(acceleration, _instants(standing, len(up), step_s), step_s)
     rests = _stances(anchors, up, np.linalg.norm(rough, axis=1), step_s, np.sqrt(shaking) * REST_TILT_RAD)
     velocity = _velocity(acceleration, rests, step_s)
     path = _integral(velocity, step_s)
@@ -130,6 +138,7 @@ def follow(foot: OrientedTrack) -> FootMotion:
         pitch_rate_rad_s=gyr @ axis,
         pitch_rad=_pitch(up @ forward, rests),
         velocity_m_s=velocity,
+        acceleration_m_s2=acceleration,
         travel_m=path[after, :2] - path[before, :2],
         height_m=_heights(path[:, 2], swings),
         turn_rad=headings[after] - headings[before],
@@ -149,12 +158,28 @@ def _anchors(restless: FloatArray, up: FloatArray) -> IntArray:
     edge = [calm.min() - 1.0]  # a recording may begin and end in standing
     found, _ = find_peaks(np.concatenate([edge, calm, edge]), prominence=np.log(MIN_CALM_RATIO))
     found = found - 1
-    found = found[restless[found] < MAX_CALM]
+    found = found[restless[found] < _most_calm(restless)]
     if not len(found):
         return found
     usual = np.median(up[found], axis=0)
     tilt = up[found] @ (usual / max(float(np.linalg.norm(usual)), 1e-9))
     return found[tilt > np.cos(MAX_TILT_RAD)]
+
+
+def _most_calm(restless: FloatArray) -> float:
+    """How restless the calmest instant of a stance may be."""
+    lively = restless[restless > MAX_CALM]
+    return max(MAX_CALM, MAX_CALM_SHARE * float(np.quantile(lively, LIVELY_QUANTILE))) if len(lively) else MAX_CALM
+
+
+def _without_hovering(anchors: IntArray, restless: FloatArray, path: FloatArray) -> IntArray:
+    """Leave out where a foot that is about to land, or has just left, goes along with the floor for a moment."""
+    unrest = restless[anchors]
+    is_beside = np.linalg.norm(np.diff(path[anchors, :2], axis=0), axis=1) < MIN_SWING_M  # no step lies between
+    calmest = np.full(len(anchors), np.inf)
+    calmest[:-1][is_beside] = unrest[1:][is_beside]
+    calmest[1:][is_beside] = np.minimum(calmest[1:], unrest[:-1])[is_beside]
+    return anchors[(unrest < HOVER_CALM) | (unrest < HOVER_RATIO * calmest)]
 
 
 def _integral(rate: FloatArray, step_s: float) -> FloatArray:
@@ -249,7 +274,8 @@ def _pitch_axis(
 ) -> tuple[FloatArray, bool]:
     """The axis the foot mostly turns about, signed so that toes up is positive, and whether both signs agree.
 
-    A foot leaves with its heel first: in the swings its pitch is mostly toes down. And a foot travels toes first.
+    A foot leaves with its heel first: in the swings its pitch is mostly toes down. And a foot travels toes first, which
+    alone tells where the foot hardly rolls.
     """
     if not len(swings):
         return np.array([1.0, 0.0, 0.0]), False
@@ -262,7 +288,9 @@ def _pitch_axis(
     right = (earth_from_sensor[before] + earth_from_sensor[after]) @ axis
     travel = path[after] - path[before]
     toes_first = float(np.sum(travel[:, 1] * right[:, 0] - travel[:, 0] * right[:, 1]))
-    return axis * (1.0 if heel_up > 0 else -1.0), bool(heel_up * toes_first > 0)
+    is_rolling = abs(heel_up) > MIN_HEEL_UP_RAD
+    sign = 1.0 if (heel_up if is_rolling else toes_first) > 0 else -1.0
+    return axis * sign, not is_rolling or bool(heel_up * toes_first > 0)
 
 
 def _spans(swings: Swings) -> list[tuple[int, int]]:

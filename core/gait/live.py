@@ -22,6 +22,7 @@ from enum import StrEnum
 from itertools import pairwise
 from statistics import median
 
+from core.gait.crossings import ONSET_RATIO
 from core.gait.events import (
     CONTACT_SHARE,
     FLAT_SHARE,
@@ -29,7 +30,6 @@ from core.gait.events import (
     LANDING_RATIO,
     MIN_ROLL_RAD_S,
     MIN_STILL_RAD_S,
-    ONSET_RATIO,
     STILL_SHARE,
     TOE_OFF_SHARE,
 )

@@ -23,11 +23,14 @@ class Phase(StrEnum):
 
 
 PHASES = tuple(Phase)
+AFTER = (Phase.PRE_SWING, Phase.SWING, Phase.LOADING, Phase.FOOT_FLAT)  # heel rise, toe-off, initial and full contact
 
 
 def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
-    """Index (n,) into PHASES at each of the ascending instants; 0, unknown, before the first and after the last event;
-    in stance too where only the shank wore a sensor.
+    """Index (n,) into PHASES at each of the ascending instants; 0, unknown, before the first and after the last event.
+
+    A phase that begins or ends with an event that is not known is unknown: in stance all of them where only the shank
+    wore a sensor.
 
     Parameters
     ----------
@@ -41,12 +44,12 @@ def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
         if not len(events):
             continue
         rows = [events.heel_rise_s, events.toe_off_s, events.initial_contact_s, events.full_contact_s]
-        after = [Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING, Phase.LOADING]
-        if events.is_from_shank:
-            rows, after = rows[1:3], [Phase.UNKNOWN, Phase.SWING]
-        edges = np.maximum.accumulate(np.stack(rows, axis=1).ravel())
+        edges = np.stack(rows, axis=1).ravel()
+        begins = np.tile([PHASES.index(p) for p in AFTER], len(events))
+        is_known = np.isfinite(edges)
+        begins[:-1][~is_known[1:]] = 0  # it ends with what is not known
+        edges, begins = np.maximum.accumulate(edges[is_known]), begins[is_known]
         passed = np.searchsorted(edges, time_s, side="right")
-        names = np.array([PHASES.index(p) for p in after])[passed % len(after)]
         is_inside = (passed > 0) & (passed < len(edges))
-        phase[is_inside] = names[is_inside]
+        phase[is_inside] = begins[passed[is_inside] - 1]
     return phase

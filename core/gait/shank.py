@@ -8,7 +8,8 @@ from where the shank ceases to swing forward. What the foot does in between stay
 import numpy as np
 from scipy.signal import find_peaks
 
-from core.gait.events import FootEvents, first_crossing
+from core.gait.crossings import first_crossing
+from core.gait.events import SD_S, SOURCES, EventSource, FootEvents
 from core.gait.foot import MOVING_RAD_S
 from core.pair import OrientedTrack
 from core.rotations import matrix_from_quaternion
@@ -36,6 +37,7 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
     heading = np.unwrap(np.arctan2(pointing[:, 1], pointing[:, 0]))
     unknown = np.full(len(peaks), np.nan)
     missing = np.concatenate([[0], np.cumsum(~track.is_measured)])
+    is_told = np.isfinite(SD_S[EventSource.SHANK])
     return FootEvents(
         heel_rise_s=unknown,
         toe_off_s=track.start_s + step_s * off,
@@ -46,6 +48,8 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
         turn_rad=np.diff(heading, prepend=heading[:1]),
         is_certain=np.ones(len(peaks), dtype=bool),
         is_measured=missing[np.ceil(on).astype(int) + 1] == missing[np.floor(off).astype(int)],
+        source=np.tile(np.where(is_told, SOURCES.index(EventSource.SHANK), 0), (len(peaks), 1)),
+        sd_s=np.tile(SD_S[EventSource.SHANK], (len(peaks), 1)),
         is_from_shank=True,
     )
 

@@ -108,6 +108,8 @@ def true_events(truth: FootTruth) -> FootEvents:
         turn_rad=np.zeros_like(nothing),
         is_certain=certain,
         is_measured=certain,
+        source=np.zeros((len(certain), 4), dtype=np.int64),
+        sd_s=np.zeros((len(certain), 4)),
     )
 
 

@@ -11,7 +11,8 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.events import FootEvents, first_crossing, gait_of
+from core.gait.crossings import first_crossing, onset
+from core.gait.events import SOURCES, EventSource, FootEvents, gait_of
 from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
@@ -85,10 +86,40 @@ def test_shuffling_and_walking_on_toes_gain_and_lose_no_event(manner: Manner, sp
     np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=0.05)
 
 
-def test_a_foot_that_comes_down_flat_while_it_goes_on_leaves_doubt() -> None:
+def late_s(found: FootEvents, truth: FootTruth, name: str) -> FloatArray:
+    """Of all but the first and the last swing, which begin and end in standing."""
+    assert len(found) == len(truth.events.toe_off_s)
+    return np.asarray((getattr(found, name) - getattr(truth.events, name))[1:-1])
+
+
+def test_a_foot_that_comes_down_flat_while_it_goes_on_is_timed_by_its_sole() -> None:
     walk = Walk(speed_m_s=1.0, manner=Manner.SHUFFLING)
-    found, _ = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk)))
-    assert not found.is_certain[1:-1].any()
+    found, truth = walk_of(WalkerSettings(seed=1, recordings=(Standing(), walk)))
+    assert found.is_certain.all()
+    assert np.abs(late_s(found, truth, "initial_contact_s")).max() < 0.015
+    assert np.abs(late_s(found, truth, "toe_off_s")).max() < 0.015
+    by_sole = SOURCES.index(EventSource.SOLE)
+    assert (found.source[1:-1, [1, 2]] == by_sole).all()
+    assert (found.sd_s[1:-1, [1, 2]] >= 0.02).all()
+
+
+def test_a_foot_that_rolls_is_timed_by_its_pitch_and_is_surer() -> None:
+    found, _ = walk_of(walking())
+    assert (found.source[:-1] == SOURCES.index(EventSource.PITCH)).all()  # the last lands flat, beside the other foot
+    assert (found.sd_s[:-1, [1, 2]] < 0.015).all()
+    assert np.isfinite(found.sd_s).all()
+
+
+@pytest.mark.parametrize("speed_m_s", [0.3, 1.19])
+def test_a_prosthetic_foots_toe_off_is_timed_by_its_sole(speed_m_s: float) -> None:
+    settings = replace(walking(speed_m_s), prosthetic_side=Side.LEFT)
+    made = simulate(replace(settings, sites=(FOOT,)))
+    rest = rest_of(made.session.recordings[0].imu[FOOT])
+    assert rest is not None
+    track = track_of(made.session.recordings[1].imu[FOOT], rest.gyr_rad_s)
+    truth = made.truth.recordings["walk 1"].feet[Side.LEFT]
+    assert np.abs(late_s(gait_of(track, is_rigid=True), truth, "toe_off_s")).max() < 0.020
+    assert late_s(gait_of(track), truth, "toe_off_s").min() > 0.025  # the pitch tells it late
 
 
 def test_a_forefoot_that_lands_first_is_turned_up_by_the_floor() -> None:
@@ -118,6 +149,15 @@ def test_a_turn_is_measured() -> None:
 def test_the_first_crossing_lies_between_samples() -> None:
     assert first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 2.0) == pytest.approx(1.5)
     assert np.isnan(first_crossing(np.array([0.0, 1.0, 3.0]), 0, 2, 5.0))
+
+
+@pytest.mark.parametrize("is_reversed", [False, True])
+def test_a_growth_is_followed_back_to_where_it_began(is_reversed: bool) -> None:
+    signal = np.maximum(np.arange(60) - 20.0, 0.0) ** 1.75
+    signal = signal[::-1] if is_reversed else signal
+    found = onset(signal, 0 if is_reversed else 59, 59 if is_reversed else 0, 20.0)
+    assert found.index == pytest.approx(39.0 if is_reversed else 20.0, abs=0.3)
+    assert found.reach == pytest.approx(20.0 ** (1.0 / 1.75), abs=0.3)
 
 
 def test_optics_and_events_agree(test_data: Callable[[str], Path]) -> None:

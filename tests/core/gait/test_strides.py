@@ -25,6 +25,8 @@ def feet_events(contacts: int = 12, first_s: float = 1.0, length_m: float = 1.3)
         turn_rad=np.zeros(contacts),
         is_certain=np.ones(contacts, dtype=bool),
         is_measured=np.ones(contacts, dtype=bool),
+        source=np.ones((contacts, 4), dtype=np.int64),
+        sd_s=np.full((contacts, 4), 0.01),
     )
 
 
@@ -101,6 +103,23 @@ def test_a_stride_unlike_the_others_is_an_outlier() -> None:
     length = events.length_m.copy()
     length[6] = 1.8
     assert reasons(strides_of([replace(events, length_m=length)])) == {5: Reason.OUTLIER}
+
+
+def test_an_unknown_heel_rise_costs_its_phases_and_no_stride() -> None:
+    events = feet_events()
+    rise, full = events.heel_rise_s.copy(), events.full_contact_s.copy()
+    rise[4] = full[6] = np.nan
+    told = replace(events, heel_rise_s=rise, full_contact_s=full)
+    strides = strides_of([told])
+    assert strides.is_used.all()
+    assert np.flatnonzero(np.isnan(strides.heel_rise_s)).tolist() == [3]
+    assert np.flatnonzero(np.isnan(strides.full_contact_s)).tolist() == [6]
+    values = parameters_of(strides, None)
+    assert mean_and_sd(values["stance_percent"]).n == mean_and_sd(values["stride_time_s"]).n == len(strides)
+    # in the stride without heel rise: loading, then unknown until swing; in that without full contact: unknown first
+    at_s = events.initial_contact_s[[3, 3, 3, 6, 6, 6]] + [0.05, 0.3, 0.8, 0.05, 0.5, 0.8]
+    expected = [Phase.LOADING, Phase.UNKNOWN, Phase.SWING, Phase.UNKNOWN, Phase.PRE_SWING, Phase.SWING]
+    assert [PHASES[k] for k in phases_at(at_s, [told])] == expected
 
 
 def test_strides_do_not_reach_over_a_gap_between_stretches() -> None:

@@ -1,0 +1,50 @@
+"""Where does a signal pass a level, and where does it begin to grow? Between samples, as indices."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.samples import FloatArray
+
+ONSET_RATIO = 2.05  # time to a level over time from there to its double: growth with the power 1.75 of time
+
+
+@dataclass(frozen=True, slots=True)
+class Onset:
+    """Where a signal begins to grow, an index, and how many samples before its first level that was extrapolated."""
+
+    index: float
+    reach: float
+
+
+def first_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
+    """Fractional index in first..last where `signal` (n,) first passes `level`; NaN where it does not."""
+    return _crossing(signal, first, last, level, 0)
+
+
+def last_crossing(signal: FloatArray, first: int, last: int, level: float) -> float:
+    """Fractional index in first..last where `signal` (n,) last passes `level`; NaN where it does not."""
+    return _crossing(signal, first, last, level, -1)
+
+
+def _crossing(signal: FloatArray, first: int, last: int, level: float, which: int) -> float:
+    above = signal[first : last + 1] - level
+    passes = np.flatnonzero((above[1:] > 0) != (above[:-1] > 0))
+    if not len(passes):
+        return float("nan")
+    k = int(passes[which])
+    return first + k + float(above[k] / (above[k] - above[k + 1]))
+
+
+def onset(signal: FloatArray, peak: int, rest: int, level: float) -> Onset:
+    """Where a signal (n,) that is next to zero at index `rest` begins to grow towards its peak.
+
+    Extrapolated from where it passes `level` and its double.
+    """
+    first, last, which = (rest, peak, -1) if rest < peak else (peak, rest, 0)
+    low, high = (_crossing(signal, first, last, one, which) for one in (level, 2.0 * level))
+    if not np.isfinite(low):
+        return Onset(float(rest), 0.0)
+    reach = ONSET_RATIO * (low - high) if np.isfinite(high) else 0.0
+    found = float(np.clip(low + reach, min(rest, low), max(rest, low)))
+    return Onset(found, abs(found - low))
