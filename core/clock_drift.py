@@ -19,6 +19,7 @@ from core.tracks import Track, at_positions
 STEP_S = 0.02
 WINDOW_S = 4.0  # some three strides
 WINDOW_STEP_S = 1.0
+MAX_WINDOWS = 30
 MAX_JUMP_S = 0.2  # from one window to the next; steps are 0.5 s apart and look alike
 MIN_WINDOWS = 4
 TEMPLATE_S = 1.2  # about a stride
@@ -66,7 +67,9 @@ def _track(tracks: SensorTracks, recording: Recording, site: Site) -> Track | No
 def drift_between(one: Track, two: Track) -> float | None:
     """How much faster the second clock runs, as a share of time; 0 where it does not, None where nothing tells."""
     time_s = np.arange(max(one.start_s, two.start_s), min(one.end_s, two.end_s), STEP_S)
-    width, step = round(WINDOW_S / STEP_S), round(WINDOW_STEP_S / STEP_S)
+    width = round(WINDOW_S / STEP_S)
+    # in a long walk windows stand apart, but so near that a clock runs off by less than a step's time between two
+    step = round(min(WINDOW_S, max(WINDOW_STEP_S, STEP_S * len(time_s) / MAX_WINDOWS)) / STEP_S)
     if len(time_s) < 2 * width:
         return None
     like_1, like_2 = (_likeness(track, time_s) for track in (one, two))

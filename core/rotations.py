@@ -26,16 +26,28 @@ def joint_frame(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
         Unit vectors.
     """
     c = np.eye(3)[np.argmin(np.abs(axis), axis=-1)]
-    x = np.cross(axis, c)
-    x /= np.linalg.norm(x, axis=-1, keepdims=True)
-    return x, np.cross(axis, x)
+    x = cross(axis, c)
+    x /= np.sqrt(np.sum(x**2, axis=-1, keepdims=True))
+    return x, cross(axis, x)
+
+
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """a x b of vectors (..., 3); several times faster than NumPy's on a few of them."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return product
 
 
 def turn_about_vertical(heading_rad: FloatArray, v: FloatArray) -> FloatArray:
     """Rz(heading) v for headings (...,) and vectors (..., 3)."""
     c, s = np.cos(heading_rad), np.sin(heading_rad)
-    x = c * v[..., 0] - s * v[..., 1]
-    return np.stack([x, s * v[..., 0] + c * v[..., 1], np.broadcast_to(v[..., 2], x.shape)], axis=-1)
+    turned = np.empty((*np.broadcast_shapes(c.shape, v.shape[:-1]), 3))
+    turned[..., 0] = c * v[..., 0] - s * v[..., 1]
+    turned[..., 1] = s * v[..., 0] + c * v[..., 1]
+    turned[..., 2] = v[..., 2]
+    return turned
 
 
 def matrix_from_quaternion(q: FloatArray) -> FloatArray:

@@ -5,6 +5,7 @@ import numpy as np
 from core.calibration.joint_axis import (
     NEUTRAL_SCALE_RAD,
     RATE_SCALE_RAD_S,
+    MIN_STEP_RAD,
     SCAN_STEP_RAD,
     Candidates,
     heading_from_axes,
@@ -94,7 +95,10 @@ def _fitted(
             slope, bend = slope + by_force[0], bend + by_force[1]
         matrix = shares.T @ (shares * bend[:, None]) + prior
         matrix += 1e-6 * (1 + np.trace(matrix) / len(matrix)) * np.eye(len(matrix))
-        knots = knots - np.linalg.solve(matrix, shares.T @ slope + prior @ knots)
+        change = np.linalg.solve(matrix, shares.T @ slope + prior @ knots)
+        knots = knots - change
+        if step >= STEPS // 2 and np.max(np.abs(change)) < MIN_STEP_RAD:
+            break
         if step == STEPS // 2 - 1:
             fit = Candidates(axis_1[None], axis_2[None], knots[None], np.zeros(1))
             rate_scale, neutral_scale = residual_scales(data, fit)

@@ -21,13 +21,17 @@ ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
 MIN_SCALE_RAD_S = 0.002
 MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum
 STEPS = 8
+MIN_STEP = 1e-6
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
     """|g1 x j1| - |g2 x j2| (n,), rad/s: zero on a hinge (eq 3)."""
-    length_1 = np.linalg.norm(np.cross(data.g1, axis_1), axis=1)
-    length_2 = np.linalg.norm(np.cross(data.g2, axis_2), axis=1)
-    return np.asarray(length_1 - length_2)
+    return _in_plane_length(data.g1, axis_1) - _in_plane_length(data.g2, axis_2)
+
+
+def _in_plane_length(rate: FloatArray, axis: FloatArray) -> FloatArray:
+    """|g x j| (n,)."""
+    return np.sqrt(np.sum((rate @ np.stack(joint_frame(axis), axis=1)) ** 2, axis=1))
 
 
 def hinge_residual(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
@@ -68,6 +72,8 @@ def hinge_axes(
         step = -np.linalg.solve(information, score)
         j1, j2 = moved(j1[None], step[None, :2])[0], moved(j2[None], step[None, 2:4])[0]
         bias += step[4]
+        if np.max(np.abs(step)) < MIN_STEP:
+            break
     if max(angle_between(j1, axis_1), angle_between(j2, axis_2)) > MAX_MOVE_RAD:
         return None
     return j1, j2, np.concatenate([slope[..., :4], value[..., None]], axis=2)
@@ -82,7 +88,7 @@ def _residuals(
     slope[:, 1, 4] = -1.0
     value[:, 0] = in_plane_difference(data, j1, j2)
     for sign, rate, shifted, axis, at in ((1, data.g1, shifted_1, j1, 0), (-1, data.g2, shifted_2, j2, 2)):
-        length = np.maximum(np.linalg.norm(np.cross(rate, axis), axis=1), 1e-6)
+        length = np.maximum(_in_plane_length(rate, axis), 1e-6)
         tangents = np.stack(joint_frame(axis), axis=1)
         slope[:, 0, at : at + 2] = -sign * ((rate @ axis) / length)[:, None] * (rate @ tangents)
         slope[:, 1, at : at + 2] = sign * ACCELERATION_WEIGHT_S_M * (shifted @ tangents)

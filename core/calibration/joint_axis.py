@@ -24,6 +24,7 @@ RATE_SCALE_RAD_S = 0.3  # off-axis rate of a human joint
 NEUTRAL_SCALE_RAD = np.deg2rad(5.0)  # how far the two axes part in a human joint
 CORRELATION_S = 0.5  # residuals nearer in time tell nothing new
 MAX_AXIS_STEP_RAD = 0.4
+MIN_STEP_RAD = 1e-5  # nothing is told so finely
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,11 +168,11 @@ def residuals(
     """Residuals at axes (c, 3) and headings (c, n)."""
     x1, y1 = joint_frame(axis_1)
     x2, y2 = joint_frame(axis_2)
-    seen_1 = np.einsum("nij,ckj->kcni", data.earth_from_1, np.stack([x1, y1, axis_1], axis=1))
-    seen_2 = np.einsum("nij,ckj->kcni", data.earth_from_2, np.stack([x2, y2, axis_2], axis=1))
+    seen_1 = _in_earth(data.earth_from_1, np.stack([x1, y1, axis_1]))
+    seen_2 = _in_earth(data.earth_from_2, np.stack([x2, y2, axis_2]))
     seen_2 = turn_about_vertical(heading, seen_2)  # now in the earth of sensor 1
-    rate_1 = np.einsum("nij,nj->ni", data.earth_from_1, data.g1)
-    rate_2 = turn_about_vertical(heading, np.einsum("nij,nj->ni", data.earth_from_2, data.g2)[None])
+    rate_1 = (data.earth_from_1 @ data.g1[..., None])[..., 0]
+    rate_2 = turn_about_vertical(heading, (data.earth_from_2 @ data.g2[..., None])[..., 0][None])
     relative = rate_2 - rate_1
     value = np.empty((*heading.shape, 7))
     by_axes = np.zeros((*heading.shape, 7, 4))
@@ -193,6 +194,13 @@ def residuals(
     by_heading[..., 5] = -seen_2[2][..., 0] / neutral_scale
     by_heading[..., 6] = 0.0
     return Residuals(value, by_axes, by_heading)
+
+
+def _in_earth(earth_from: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Vectors (k, c, 3) of a sensor as its earth sees them at each of n instants, (k, c, n, 3)."""
+    k, c = vectors.shape[:2]
+    seen = earth_from.reshape(-1, 3) @ vectors.reshape(-1, 3).T
+    return np.ascontiguousarray(seen.T).reshape(k, c, -1, 3)
 
 
 def _turned_component(turning: FloatArray, fixed: FloatArray) -> FloatArray:
@@ -231,6 +239,8 @@ def polish(
         step = _step(r, weight * information, weights_of_knots, prior, knots, is_axis_fixed)
         axis_1, axis_2 = moved(axis_1, step[:, :2]), moved(axis_2, step[:, 2:4])
         knots = knots + step[:, 4:]
+        if np.max(np.abs(step)) < MIN_STEP_RAD:
+            break
     r = residuals(data, axis_1, axis_2, data.heading(knots), rate_scale, neutral_scale)
     cost = loss_and_weights(r.value)[0].mean(axis=1)
     return Candidates(axis_1, axis_2, knots, cost)

@@ -19,6 +19,7 @@ from core.samples import FloatArray
 
 BIAS_PRIOR_M_S2 = 0.1
 STEPS = 6
+MIN_STEP = 1e-6
 MAX_CENTRE_STEP_M = 0.05  # a larger move means that the start was wrong, and the fit is not believed
 
 
@@ -52,6 +53,8 @@ def refine_on_hinge(data: Datasets, j1: FloatArray, j2: FloatArray, start: Joint
         information = slope.T @ weighted + prior
         step = np.linalg.solve(information, weighted.T @ error.ravel() - prior @ np.concatenate([x, knots]))
         x, knots = x + step[:12], knots + step[12:]
+        if np.max(np.abs(step)) < MIN_STEP:
+            break
     if np.max(np.abs(x[:6] - start.unknowns[:6])) > MAX_CENTRE_STEP_M:
         return None
     return JointCentre(x, np.linalg.inv(information)[:12, :12])
