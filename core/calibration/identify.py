@@ -29,6 +29,8 @@ from core.samples import FloatArray
 CANDIDATE_SAMPLES = 200
 DECISION_SAMPLES = 400
 POLISH_SAMPLES = 1500
+AXIS_SAMPLES = 800
+HEADING_STEPS = 2  # from axes that hardly moved
 CANDIDATE_STEPS = 5
 POLISH_STEPS = 6
 MIN_MOVING_S = 2.0  # less movement than this identifies nothing
@@ -221,19 +223,21 @@ def _refined(
     downs: Downs | None,
 ) -> Identification:
     many, start = data.thinned(POLISH_SAMPLES), decision.best
-    scales = residual_scales(many, start)
+    enough = data.thinned(AXIS_SAMPLES)
     # what dominates the motion would pull a flatter axis back
-    fit = polish(many, start, POLISH_STEPS if decision.did_flexion_dominate else 0, *scales)
+    steps = POLISH_STEPS if decision.did_flexion_dominate else 0
+    fit = polish(enough, start, steps, *residual_scales(enough, start))
     j1, j2 = fit.axis_1[0], fit.axis_2[0]
     seen = [many] if others is None else [many, others.thinned(POLISH_SAMPLES)]
     residual = max(hinge_residual(one, j1, j2) for one in seen)
     # lengths alone can agree by chance: what a hinge does not do at all is turn across its axis
-    off_axis, _ = residual_scales(many, fit)
+    scales = residual_scales(many, fit)
+    off_axis, _ = scales
     is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S
     centre = centre_by_vectors(many, fit.knots_rad[0])
     loose = certainty.looseness(many, j1, many.heading(fit.knots_rad[0]))
     floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
-    axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit), floor)
+    axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, scales), floor)
     if is_hinge:
         better = hinge_axes(many, j1, j2, centre.unknowns)
         if better is not None:
@@ -245,8 +249,8 @@ def _refined(
             again = polish(
                 many,
                 Candidates(j1[None], j2[None], fit.knots_rad, fit.cost),
-                POLISH_STEPS,
-                *residual_scales(many, fit),
+                HEADING_STEPS,
+                *scales,
                 is_axis_fixed=True,
             )
             centre = centre_by_vectors(many, again.knots_rad[0])
@@ -278,8 +282,7 @@ def _disagreement(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> flo
     return disagreement(forces, heading[0], fit_forces(forces, heading).unknowns[0])
 
 
-def _axis_covariance(data: Datasets, fit: Candidates) -> FloatArray:
-    scales = residual_scales(data, fit)
+def _axis_covariance(data: Datasets, fit: Candidates, scales: tuple[float, float]) -> FloatArray:
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), *scales)
     _, weight = loss_and_weights(r.value)
     # the heading is a nuisance: one slope per sample is taken out of the axes' slopes
