@@ -164,12 +164,13 @@ SENTENCES = {
         "the foot has no usable sensor, so steps come from the shank. Contact and toe-off are known, distances are not."
     ),
     "doubtful_strides": (
-        "strides whose landing is in doubt: {count}. The foot hardly rolled or went another way than its toes point, "
-        "so averages leave them out."
+        "strides whose landing is in doubt: {count}. The foot went another way than its toes point, so averages leave "
+        "them out."
     ),
     "foot_against_shank": "the foot has no ankle joint. Its angle is that of the foot against the shank.",
     "prosthetic_toe_off": (
-        "toe-off of a prosthetic foot is found about 30 ms late. Its stance reads 2 to 3 % of a stride too long."
+        "toe-off of a prosthetic foot is timed by when its sole begins to move, tried on simulated feet only. Its stance "
+        "is not judged."
     ),
     "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
     "side_without_strides": (
@@ -177,8 +178,8 @@ SENTENCES = {
         "then walk once more."
     ),
     "strides_all_left_out": (
-        "all strides found ({count}) were left out, most of them {reason}, so there are no averages. Put that right "
-        "and record the walk again."
+        "all strides found ({count}) were left out: {reasons}. So there are no averages; put that right and record the "
+        "walk again."
     ),
     "strides_left_out_by_hand": "{count} of {of} {side} strides left out by hand.",
     "no_mean": (
@@ -302,12 +303,21 @@ def sentence(finding: Finding) -> str:
     A finding whose sentence is missing, or lacks a figure, is still told, by its key and its figures.
     """
     known = {name: _said(name, value) for name, value in finding.numbers.items() if _is_known(value)}
+    if reasons := _reasons(finding):
+        known["reasons"] = reasons
     try:
         said = tr(SENTENCES[finding.key]).format_map(known)
     except (KeyError, ValueError):  # ValueError: a name where the sentence wants a figure
         figures = ", ".join(f"{name} {value}" for name, value in known.items())
         said = " ".join(filter(None, [finding.key.replace("_", " "), figures])) + "."
     return capitalised(f"{place(finding.where)}: {said}" if finding.where not in ("", WHOLE_SESSION) else said)
+
+
+def _reasons(finding: Finding) -> str:
+    """Say why strides were left out, most of them first, where the finding counts them: "8 turning, 3 stopping"."""
+    counts = {name: value for name, value in finding.numbers.items() if name in NAMES["reason"]}
+    ordered = sorted(counts, key=lambda name: -float(counts[name]))
+    return ", ".join(f"{counts[name]} {tr(NAMES['reason'][name])}" for name in ordered)
 
 
 def name_of(part: Site | Joint) -> str:

@@ -116,8 +116,8 @@ class SideGait:
     phase : (n,)
         Index into `core.gait.phases.PHASES` at each sample of the recording.
     is_toe_off_biased
-        The side's toe-offs are late, alike in every stride, so its stance and swing are neither to be judged against a
-        band nor compared with another side's: a prosthetic foot rolls on where a heel would rise.
+        The side's toe-offs may be early or late, alike in every stride, so its stance and swing are neither to be
+        judged against a band nor compared with another side's: a prosthetic foot rolls on where a heel would rise.
     """
 
     events: tuple[FootEvents, ...]

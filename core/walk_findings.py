@@ -32,7 +32,7 @@ def about_walk(walk: RecordingAnalysis, sites: Mapping[Side, Site | None]) -> li
 
 
 def about_prosthesis(recordings: Iterable[RecordingAnalysis]) -> list[Finding]:
-    """A prosthetic foot rolls on where a heel would rise, so its toe-off is found late, alike in every stride."""
+    """A prosthetic foot rolls on where a heel would rise: its toe-off is timed by its sole, untried on real ones."""
     late = {
         side
         for recording in recordings
@@ -51,10 +51,8 @@ def _about_events(where: str, gait: SideGait) -> Iterator[Finding]:
     if not reasons:
         yield Finding("side_without_strides", Severity.WARNING, where)
     elif not reasons[Reason.USED]:
-        reason, _ = reasons.most_common(1)[0]
-        yield Finding(
-            "strides_all_left_out", Severity.WARNING, where, {"count": reasons.total(), "reason": str(reason)}
-        )
+        each = {str(reason): count for reason, count in reasons.most_common()}
+        yield Finding("strides_all_left_out", Severity.WARNING, where, {"count": reasons.total(), **each})
 
 
 def _about_counts(walk: RecordingAnalysis) -> Iterator[Finding]:

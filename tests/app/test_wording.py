@@ -134,9 +134,9 @@ def test_a_column_that_is_named_as_a_reason_keeps_its_name() -> None:
         ),
         (
             "strides_all_left_out",
-            {"count": 7, "reason": "turn"},
-            "Walk 1: all strides found (7) were left out, most of them turning, so there are no averages. "
-            "Put that right and record the walk again.",
+            {"count": 11, "stop": 3, "turn": 8},
+            "Walk 1: all strides found (11) were left out: 8 turning, 3 stopping. "
+            "So there are no averages; put that right and record the walk again.",
         ),
         (
             "no_peak",

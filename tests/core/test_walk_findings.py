@@ -59,7 +59,10 @@ def test_all_strides_left_out_say_why(walk: RecordingAnalysis) -> None:
     left, right = walk.gait[Side.LEFT], with_used(walk.gait[Side.RIGHT], 10)
     (found,) = told(walk, with_used(left, 0, Reason.TURN), right)
     assert (found.key, found.where) == ("strides_all_left_out", "walk 1, left_foot")
-    assert found.numbers == {"count": len(left.strides), "reason": "turn"}
+    assert found.numbers == {"count": len(left.strides), "turn": len(left.strides)}
+    reason = (Reason.START, *(Reason.TURN,) * (len(left.strides) - 2), Reason.STOP)
+    (each,) = told(walk, replace(left, strides=replace(left.strides, reason=reason)), right)
+    assert each.numbers == {"count": len(reason), "turn": len(reason) - 2, "start": 1, "stop": 1}
     doubt = told(walk, with_used(left, 0, Reason.DOUBT), right)
     assert [finding.key for finding in doubt] == ["doubtful_strides", "strides_all_left_out"]
 
