@@ -169,8 +169,8 @@ SENTENCES = {
     ),
     "foot_against_shank": "the foot has no ankle joint. Its angle is that of the foot against the shank.",
     "prosthetic_toe_off": (
-        "toe-off of a prosthetic foot is timed by when its sole begins to move, tried on simulated feet only. Its stance "
-        "is not judged."
+        "toe-off of a prosthetic foot is timed by when its sole begins to move, tried on simulated feet only. Its "
+        "stance is not judged."
     ),
     "no_strides": "no whole stride was found. Check that this is a walk, and that the sensors sit on feet or shanks.",
     "side_without_strides": (
