@@ -14,9 +14,8 @@ MAX_STILL_GAP_S = 0.25  # and this long where the sensor hardly turns
 STILL_RAD_S = 0.5
 MAX_RATE_RAD_S, MAX_FORCE_M_S2 = 100.0, 1000.0  # no sensor worn by a patient measures more
 MAX_HELD_S = 0.25  # a sensor that repeats itself for longer is stuck,
-# but for a coarse one that lies still: it reads next to no rate and goes on from where it was
-HELD_STILL_RAD_S, HELD_STILL_M_S2 = 0.05, 0.5
-MAX_HELD_STILL_S = 2.0  # at an end of the recording, where only one side tells
+# but for a coarse one that lies still for not too long: it reads next to no rate and goes on from where it was
+MAX_HELD_STILL_S, HELD_STILL_RAD_S, HELD_STILL_M_S2 = 2.0, 0.05, 0.5
 QUATERNION_TOLERANCE = 0.1  # of its length
 MIN_STRETCH_SAMPLES = 10
 MIN_STRETCH_S = 1.0  # below, an orientation filter has not found the vertical
@@ -138,17 +137,16 @@ def is_stuck(time_s: FloatArray, gyr: FloatArray, acc: FloatArray) -> BoolArray:
     edges = np.flatnonzero(np.diff(np.concatenate([[0], is_same.astype(np.int8), [0]])))
     for first, last in zip(edges[::2], edges[1::2], strict=True):
         held_s = time_s[last - 1] - time_s[first - 1]
-        if held_s > MAX_HELD_S and not _lies_still(gyr, acc, first - 1, last, held_s):
+        if held_s > MAX_HELD_STILL_S or (held_s > MAX_HELD_S and not _lies_still(gyr, acc, first - 1, last)):
             stuck[first:last] = True
     return stuck
 
 
-def _lies_still(gyr: FloatArray, acc: FloatArray, first: int, end: int, held_s: float) -> bool:
+def _lies_still(gyr: FloatArray, acc: FloatArray, first: int, end: int) -> bool:
     """Whether equal rows from `first` to before `end` are those of a coarse sensor at rest."""
     beside = [i for i in (first - 1, end) if 0 <= i < len(gyr)]
-    if np.any(np.abs(gyr[first]) > HELD_STILL_RAD_S) or not beside or (len(beside) == 1 and held_s > MAX_HELD_STILL_S):
-        return False
-    return all(
+    is_quiet = bool(np.all(np.abs(gyr[first]) < HELD_STILL_RAD_S)) and bool(beside)
+    return is_quiet and all(
         np.all(np.abs(gyr[i] - gyr[first]) < HELD_STILL_RAD_S) and np.all(np.abs(acc[i] - acc[first]) < HELD_STILL_M_S2)
         for i in beside
     )

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from core.samples import FloatArray, ImuBlock
+from core.samples import BoolArray, FloatArray, ImuBlock
 from core.tracks import (
     BLOCK_S,
     MAX_BRIDGED_GAP_S,
@@ -17,6 +17,7 @@ from core.tracks import (
     blocks_of,
     continuous,
     even_tracks,
+    is_stuck,
     nominal_step_s,
 )
 
@@ -225,3 +226,26 @@ def test_a_missing_orientation_holds_the_last_one_heard() -> None:
     assert track.q_device is not None
     np.testing.assert_allclose(np.delete(track.q_device, [0, 1, 200], axis=0), np.delete(q, [0, 1, 200], axis=0))
     np.testing.assert_allclose(track.q_device[[0, 1, 200]], q[[2, 2, 199]])
+
+
+def held(for_s: float, rate_rad_s: float, is_left_where_it_was: bool) -> BoolArray:
+    """What is stuck of a sensor that repeats itself for a while, at 100 Hz, between other samples."""
+    n, count = 600, round(100 * for_s)
+    rng = np.random.default_rng(0)
+    gyr = rate_rad_s + 0.01 * rng.standard_normal((n, 3))
+    acc = np.array([0.0, 0.0, 9.81]) + 0.02 * rng.standard_normal((n, 3))
+    gyr[100 : 100 + count], acc[100 : 100 + count] = rate_rad_s, [0.0, 0.0, 9.81]
+    if not is_left_where_it_was:
+        gyr[100 + count :] += 1.0
+    return is_stuck(np.arange(n) / 100.0, gyr, acc)
+
+
+def test_a_coarse_sensor_that_lies_still_is_not_stuck() -> None:
+    assert not held(1.0, 0.0, is_left_where_it_was=True).any()
+
+
+@pytest.mark.parametrize(("for_s", "rate_rad_s", "is_left"), [(1.0, 0.5, True), (1.0, 0.0, False), (3.0, 0.0, True)])
+def test_a_sensor_that_repeats_itself_in_motion_or_for_long_is_stuck(
+    for_s: float, rate_rad_s: float, is_left: bool
+) -> None:
+    assert np.count_nonzero(held(for_s, rate_rad_s, is_left)) == round(100 * for_s) - 1
