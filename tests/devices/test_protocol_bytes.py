@@ -16,6 +16,7 @@ from devices.shimmer3 import Shimmer3, Shimmer3Framer
 from devices.source import SourceInfo
 from devices.stream import Framer
 from devices.witmotion import WitFramer, WitMotion
+from devices.xbus import values
 from devices.ximu3 import Ximu3, Ximu3Framer
 from devices.xsens_mti import MtiFramer, XsensMti
 from tests.devices.scripted import ScriptedChannel
@@ -275,6 +276,51 @@ def test_every_format_of_xsens_numbers_is_understood(bits: int, numbers: str) ->
     body = bytes([0xFF, 0x36, len(data)]) + data
     row = row_of(MtiFramer(MTI), b"\xfa" + body + bytes([-sum(body) % 256]))
     assert row == pytest.approx((0.001, 0.25, -0.5, 0.75, 1.0, 2.0, 3.0))
+
+
+@pytest.mark.parametrize(
+    ("identifier", "count"),
+    [
+        (0x0810, 1),  # temperature
+        (0x2010, 4),  # quaternion
+        (0x2020, 9),  # rotation matrix
+        (0x2030, 3),  # Euler angles
+        (0x4010, 3),  # velocity change
+        (0x4020, 3),  # acceleration
+        (0x4030, 3),  # free acceleration
+        (0x5020, 1),  # altitude
+        (0x5030, 3),  # position
+        (0x5040, 2),  # latitude and longitude
+        (0x8020, 3),  # rate of turn
+        (0x8030, 4),  # orientation change
+        (0xC020, 3),  # magnetic field
+        (0xD010, 3),  # velocity
+    ],
+)
+def test_every_item_of_real_numbers_has_its_many(identifier: int, count: int) -> None:
+    numbers = tuple(0.5 * k for k in range(count))
+    data = struct.pack(f">{count}f", *numbers)
+    assert values(identifier, data) == numbers
+    assert values(identifier | 3, struct.pack(f">{count}d", *numbers)) == numbers
+    assert values(identifier, data + bytes(4)) == values(identifier, data[:-1]) == ()
+
+
+@pytest.mark.parametrize(
+    ("identifier", "data", "numbers"),
+    [
+        (0x1020, "01 02", (258,)),
+        (0x1060, "00 01 00 00", (65536,)),
+        (0x1070, "00 00 00 07", (7,)),
+        (0x3010, "00 01 8B CD", (101325,)),
+        (0xE010, "05", (5,)),
+        (0xE020, "00 40 00 03", (0x400003,)),
+        (0x1010, "00 00 03 E8 07 EA 0B 16 0E 24 05 07", (1000, 2026, 11, 22, 14, 36, 5, 7)),
+        (0x7020, "00 00 00 2A 02 00 00 00 00 05 1E 03 00 07 28 01", (42, 2, 0, 0, 0, 0, 5, 30, 3, 0, 7, 40, 1)),
+        (0xFFF0, "00 00 00 01", ()),
+    ],
+)
+def test_items_of_whole_numbers_are_understood(identifier: int, data: str, numbers: tuple[int, ...]) -> None:
+    assert values(identifier, bytes.fromhex(data)) == numbers
 
 
 def test_an_xsens_sensor_is_asked_for_rate_acceleration_and_orientation() -> None:
