@@ -3,15 +3,20 @@
 Angles stand where such programs look for them: as points of the kind ANGLES, LKneeAngles and so on, of which the first
 component bends; the two others were not measured and are 0. A C3D has one rate and no stamps, so each frame holds the
 row of angles.csv nearest to it, at most half a frame away; a frame without one, or in a gap, has residual -1.
+
+A joint that is withheld, or whose sign is not known, is left out. One without a zero is named as its shape, such as
+LKneeAngles_SHAPE, and its mean is taken away, so that nothing reads a height from it. PROCESSING:STATUS says why.
 """
 
 from pathlib import Path
+from textwrap import shorten
 
 import ezc3d
 import numpy as np
 
-from app.exports.figures import SIMULATED, as_in_csv_deg
+from app.exports.figures import SIMULATED, status_in_ascii, told_deg
 from app.reports.gait_csv import events_of
+from app.reports.status import NO_ZERO, WITH_HEIGHT, joint_status
 from core.body import Joint
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, IntArray
@@ -31,6 +36,9 @@ EVENTS = {
     "full_contact": "Full Contact",
     "heel_rise": "Heel Rise",
 }
+SHAPE = "_SHAPE"  # behind the name of an angle whose mean was taken away
+TOLD = (*WITH_HEIGHT, NO_ZERO)
+LONGEST_TEXT = 250  # the format counts a text's letters in 8 bits
 MOST_FRAMES = 65535  # the format counts them in 16 bits
 MOST_ENTRIES = 255  # and the entries of a list in 8, so a longer one goes on in LABELS2 and so on
 HALF_A_FRAME = 0.5 + 1e-6
@@ -46,7 +54,8 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     OSError
         The file cannot be written.
     """
-    joints = [joint for joint in POINTS if joint in recording.joints]
+    status = {joint: joint_status(recording, joint) for joint in POINTS if joint in recording.joints}
+    joints = [joint for joint, said in status.items() if said in TOLD]
     rows, step_s = _rows_of_frames(recording)
     if len(rows) > MOST_FRAMES:
         raise FileRefusedError(
@@ -59,19 +68,25 @@ def write_c3d(recording: RecordingAnalysis, is_simulated: bool, path: Path) -> N
     values = np.zeros((4, len(joints), len(rows)))
     values[3] = 1.0
     for k, joint in enumerate(joints):
-        values[0, k] = np.append(as_in_csv_deg(recording.joints[joint].angle_rad), np.nan)[rows]
+        angle_deg = told_deg(recording, joint)
+        if status[joint] == NO_ZERO and np.isfinite(angle_deg).any():
+            angle_deg = angle_deg - np.nanmean(angle_deg)
+        values[0, k] = np.append(angle_deg, np.nan)[rows]  # a frame without a row is the last, which is missing
     is_missing = ~np.isfinite(values[0])
     values[:3, is_missing] = np.nan
     c3d = ezc3d.c3d()
     point = c3d["parameters"]["POINT"]
     point["RATE"]["value"] = [1.0 / step_s]
-    point["LABELS"]["value"] = [POINTS[joint] for joint in joints]
-    point["DESCRIPTIONS"]["value"] = [_description(joint) for joint in joints]
+    labels = [POINTS[joint] + (SHAPE if status[joint] == NO_ZERO else "") for joint in joints]
+    point["LABELS"]["value"] = labels
+    point["DESCRIPTIONS"]["value"] = [_description(joint, status[joint]) for joint in joints]
     point["UNITS"]["value"] = ["deg"] * len(joints)
     c3d.add_parameter("POINT", "TYPE_GROUPS", ["ANGLES"])
-    c3d.add_parameter("POINT", "ANGLES", [POINTS[joint] for joint in joints])
+    c3d.add_parameter("POINT", "ANGLES", labels)
     c3d.add_parameter("POINT", "ANGLE_UNITS", ["deg"])
     c3d.add_parameter("MANUFACTURER", "SOFTWARE", ["gaitwright"])
+    said = [f"{joint}: {status_in_ascii(recording, joint)}" for joint in status]
+    c3d.add_parameter("PROCESSING", "STATUS", [shorten(text, LONGEST_TEXT, placeholder=" ...") for text in said])
     c3d.add_parameter("SUBJECTS", "IS_SIMULATED", [int(is_simulated)])
     if is_simulated:
         c3d.add_parameter("SUBJECTS", "NOTE", [SIMULATED])
@@ -98,9 +113,10 @@ def _rows_of_frames(recording: RecordingAnalysis) -> tuple[IntArray, float]:
     return np.where(is_near, nearest, -1), step_s
 
 
-def _description(joint: Joint) -> str:
+def _description(joint: Joint, status: str) -> str:
     bends = "knee flexion" if joint.is_knee else "ankle dorsiflexion"
-    return f"x: {bends}; y, z not measured"
+    shape = " less its mean, for there is no zero" if status == NO_ZERO else ""
+    return f"x: {bends}{shape}; y, z not measured"
 
 
 def _add_events(c3d: ezc3d.c3d, recording: RecordingAnalysis) -> None:

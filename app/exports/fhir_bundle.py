@@ -1,5 +1,7 @@
 """How does a hospital's system read the averages? A FHIR R4 Bundle of Observations, one per figure of summary.json.
 
+A figure that is to be read with care, or that fewer than ten strides made, is preliminary and says why. One that is
+withheld has no value and its reason in place of it; nothing is ever called high, low or normal.
 Our figures have no codes of their own in LOINC or SNOMED CT that say how they were measured, so each is coded by its
 column's name; sides are coded. Simulated figures carry the label that HL7 gives to test data.
 """
@@ -11,10 +13,13 @@ from pathlib import Path
 from typing import Any
 from uuid import NAMESPACE_URL, uuid5
 
-from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, software, unit_of, walk_figures
+from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
+from app.gates_in_words import gate_sentence
 from core.body import Side
+from core.norms import MIN_STRIDES_FOR_SD
 from core.results import Analysis
 from core.samples import Session
+from core.verdicts.model import Verdict
 
 PARAMETERS = "urn:x-gaitwright:parameter"
 CODES = "urn:x-gaitwright:patient"
@@ -32,6 +37,11 @@ TEST_DATA = {
     "code": "HTEST",
     "display": "test health data",
 }
+ABSENT = "http://terminology.hl7.org/CodeSystem/data-absent-reason"
+WITHHELD = {"system": ABSENT, "code": "error", "display": "Error"}
+NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
+ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
+FEW = f"Fewer than {MIN_STRIDES_FOR_SD} strides."
 GENDERS = ("male", "female", "other")
 
 
@@ -81,14 +91,21 @@ def _patient(session: Session) -> dict[str, Any]:
 
 def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:
     yield "resourceType", "Observation"
-    yield "status", "final"
+    yield "status", _status(one)
     yield "category", [{"coding": [{"system": ACTIVITY, "code": "activity", "display": "Activity"}]}]
     yield "code", _code(one.name)
     yield "subject", {"reference": patient_url}
     if when:
         yield "effectiveDateTime", when
-    yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
-    yield "note", [{"text": text} for text in notes]
+    if one.mean is None:
+        is_worn = one.assessment.verdict is Verdict.WITHHELD
+        why_not = {"coding": [WITHHELD if is_worn else NOT_PERFORMED], "text": reason_of(one.assessment)}
+        yield "dataAbsentReason", why_not
+    else:
+        yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
+    few = [FEW] if _status(one) == "preliminary" and not one.assessment.reasons else []
+    doubts = [gate_sentence(reason) for reason in one.assessment.reasons] + few
+    yield "note", [{"text": text} for text in dict.fromkeys([*notes, *doubts])]
     if one.side is not None:
         yield "bodySite", {"coding": [LEG], "text": f"{one.side} leg"}
     yield "device", {"display": software()}
@@ -98,10 +115,21 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
     if one.sd is not None:
         sd = _quantity(one.sd, unit_of(one.name))
         components.append({"code": _code("stride_sd", "standard deviation between strides"), "valueQuantity": sd})
+    if one.error is not None:
+        error = _quantity(one.error, unit_of(one.name))
+        components.append({"code": _code("error", ERROR), "valueQuantity": error})
     if one.strides is not None:
         components.append({"code": _code("strides_used"), "valueInteger": one.strides})
     if components:
         yield "component", components
+
+
+def _status(one: WalkFigure) -> str:
+    """Final only where nothing is in doubt, over ten strides or more; what was not worn came to nothing."""
+    if one.assessment.verdict is Verdict.NOT_MEASURED:
+        return "cancelled"
+    is_few = one.strides is not None and one.strides < MIN_STRIDES_FOR_SD
+    return "final" if one.assessment.verdict is Verdict.READ and not is_few else "preliminary"
 
 
 def _notes(walk: str, condition: str) -> Iterator[str]:

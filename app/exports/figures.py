@@ -1,5 +1,6 @@
 """Which numbers leave, and in what unit? Those of summary.json and of the CSV files, to their last digit."""
 
+import unicodedata
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
@@ -8,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from app.reports.csv_report import DECIMALS
+from app.reports.status import is_slipped, joint_status, why, why_status
 from app.reports.summary import summarise
-from core.body import Side
-from core.results import Analysis
+from core.body import Joint, Side
+from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray
-from core.verdicts.quantities import PARAMETERS
+from core.verdicts.model import Assessment, Verdict
+from core.verdicts.quantities import OF_BOTH, PARAMETERS, assessment_of, assessment_of_both
 
 RESEARCH = "Research use. Not a medical device."
 SIMULATED = "SIMULATED: nobody was measured."
@@ -24,19 +27,30 @@ UNITS = {  # by the end of a name, longer ends first
     "_s": "s",
     "_m": "m",
 }
-OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 
 
 @dataclass(frozen=True, slots=True)
 class WalkFigure:
-    """One average of one walk, as summary.json has it; `side` None: of both sides together. SD None: there is none."""
+    """One average of one walk, as summary.json has it; `side` None: of both sides together.
+
+    Attributes
+    ----------
+    mean
+        None where it is withheld or was not measured.
+    sd, strides, error
+        None where there is none; `error` is half of what a difference of two walks has to exceed.
+    assessment
+        What may be said of it.
+    """
 
     walk: str
     side: Side | None
     name: str
-    mean: float
+    mean: float | None
     sd: float | None
     strides: int | None
+    error: float | None
+    assessment: Assessment
 
 
 def software() -> str:
@@ -53,20 +67,47 @@ def unit_of(name: str) -> str:
 
 
 def walk_figures(analysis: Analysis) -> Iterator[WalkFigure]:
-    """Every average over strides that is known, walk by walk."""
+    """Every average over strides, walk by walk: those that are known, withheld, or were not measured.
+
+    What can be read and has no figure all the same, as a peak that no stride has, is no figure.
+    """
     walks: dict[str, dict[str, Any]] = summarise(analysis)["walks"]
+    said = {recording.name: recording.verdicts for recording in analysis.recordings}
     for walk, figures in walks.items():
         for side in Side:
             of_side = figures[side]
             for name in PARAMETERS:
-                if of_side.get(f"{name}_mean") is not None:
-                    mean, sd = of_side[f"{name}_mean"], of_side[f"{name}_sd"]
-                    yield WalkFigure(walk, side, name, mean, sd, of_side["strides_used"])
+                mean, sd, error = (of_side.get(f"{name}_{what}") for what in ("mean", "sd", "error"))
+                found = assessment_of(said[walk], side, name)
+                if mean is not None or not found.is_told:
+                    yield WalkFigure(walk, side, name, mean, sd, of_side.get("strides_used"), error, found)
         for name in OF_BOTH:
-            if figures["both"][name] is not None:
-                yield WalkFigure(walk, None, name, figures["both"][name], None, None)
+            mean, found = figures["both"][name], assessment_of_both(said[walk], name)
+            if mean is not None or not found.is_told:
+                yield WalkFigure(walk, None, name, mean, None, None, None, found)
+
+
+def reason_of(found: Assessment) -> str:
+    """Why a figure is no better than it is, in sentences; empty where it can be read."""
+    if found.verdict is Verdict.NOT_MEASURED:
+        return why(found) or "Not measured."
+    return why(found)
 
 
 def as_in_csv_deg(angle_rad: FloatArray) -> FloatArray:
     """Degrees with the decimals of angles.csv; NaN in gaps."""
     return np.round(np.rad2deg(angle_rad), DECIMALS) + 0.0  # no minus before zero
+
+
+def told_deg(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
+    """The joint's angle as in angles.csv (n,), for formats whose samples have no status: NaN once a strap slipped."""
+    found = as_in_csv_deg(recording.joints[joint].angle_rad)
+    return np.where(is_slipped(recording, joint.side), np.nan, found)
+
+
+def status_in_ascii(recording: RecordingAnalysis, joint: Joint) -> str:
+    """A joint's status and why, in letters that every format takes."""
+    status, reasons = joint_status(recording, joint) or "not_measured", why_status(recording, joint)
+    told = f"{status}: {reasons}" if reasons else status
+    plain = unicodedata.normalize("NFKD", told.replace("\N{DEGREE SIGN}", " deg").replace("\N{SUPERSCRIPT TWO}", "2"))
+    return plain.encode("ascii", "ignore").decode("ascii")

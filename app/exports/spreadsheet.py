@@ -1,6 +1,7 @@
 """What does a spreadsheet say? Summary, strides, mean cycles and events of all recordings, one sheet each.
 
-Rows and numbers are those of summary.json and the CSV files, with the recording before them. What somebody typed is
+Rows and numbers are those of summary.json and the CSV files, with the recording before them. The first sheet holds
+every verdict with its reasons, and a figure that is withheld says so where its number would be. What somebody typed is
 text whatever it begins with, so that it is never worked out as a formula.
 """
 
@@ -8,7 +9,7 @@ import datetime
 import io
 import re
 import zipfile
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
 from openpyxl import Workbook
@@ -17,11 +18,15 @@ from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
-from app.exports.figures import RESEARCH, SIMULATED, software, unit_of, walk_figures
+from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
 from app.reports.gait_csv import gait_tables
+from app.reports.status import WITHHELD, all_that_is_said, why
 from app.wording import sentence
-from core.results import Analysis
+from core.body import Side
+from core.results import Analysis, RecordingAnalysis
 from core.samples import Session
+from core.verdicts.model import Assessment, Verdict, together
+from core.verdicts.quantities import PARAMETERS, assessment_of
 
 Value = str | float | int | None
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
@@ -43,6 +48,7 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
     book.properties.creator, book.properties.created = "gaitwright", NO_TIME
     _sheet(book, "About", ["what", "value"], _about(session, analysis))
     of_summary = ["recording", "condition", "side", "parameter", "mean", "stride_sd", "unit", "strides_used"]
+    of_summary += ["error", "status", "reasons"]
     _sheet(book, "Summary", of_summary, _summary(session, analysis))
     columns: dict[str, None] = dict.fromkeys(of_summary)
     for name in ("strides", "cycles", "events"):
@@ -79,7 +85,15 @@ def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
         ["software", software()],
         ["use", RESEARCH],
     ]
-    return [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
+    told = [row for row in rows if row[1] not in ("", None) or row[0] == SIMULATED]
+    return [*told, ["What may be read", None], *_verdicts(analysis)]
+
+
+def _verdicts(analysis: Analysis) -> Iterator[list[Value]]:
+    """Every verdict of every recording, and why it is no better."""
+    for one in all_that_is_said(analysis):
+        verdict, reasons = one.assessment.verdict.replace("_", " "), why(one.assessment)
+        yield [f"{one.recording}, {one.subject}, {one.quantity}", f"{verdict}: {reasons}" if reasons else verdict]
 
 
 def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
@@ -87,21 +101,43 @@ def _summary(session: Session, analysis: Analysis) -> Iterable[list[Value]]:
     for one in walk_figures(analysis):
         side = str(one.side) if one.side else "both"
         condition = conditions.get(one.walk, "")
-        yield [one.walk, condition, side, one.name, one.mean, one.sd, unit_of(one.name), one.strides]
+        mean = WITHHELD if one.assessment.verdict is Verdict.WITHHELD else one.mean
+        status, reasons = str(one.assessment.verdict), reason_of(one.assessment) or None
+        figures = [mean, one.sd, unit_of(one.name), one.strides, one.error]
+        yield [one.walk, condition, side, one.name, *figures, status, reasons]
 
 
 def _joined(analysis: Analysis, name: str) -> tuple[list[str], Iterable[list[Value]]]:
     """One table of all recordings; a recording has empty cells where it lacks a column."""
-    tables = {recording.name: gait_tables(recording)[name] for recording in analysis.recordings}
-    header = list(dict.fromkeys(column for columns, _ in tables.values() for column in columns))
+    tables = [(recording, *gait_tables(recording)[name]) for recording in analysis.recordings]
+    header = list(dict.fromkeys(column for _, columns, _ in tables for column in columns))
 
     def rows() -> Iterable[list[Value]]:
-        for recording, (columns, cells) in tables.items():
+        for recording, columns, cells in tables:
             for row in cells:
                 told = dict(zip(columns, row, strict=True))
-                yield [recording, *(_value(told.get(column, "")) for column in header)]
+                withheld = _withheld_columns(recording, name, told.get("side", ""))
+                values = [WITHHELD if column in withheld else _value(told.get(column, "")) for column in header]
+                yield [recording.name, *values]
 
     return ["recording", *header], rows()
+
+
+def _withheld_columns(recording: RecordingAnalysis, table: str, side: str) -> set[str]:
+    """Columns of one row whose cells are empty in the CSV file because nothing may be said of them."""
+    if table == "strides":
+        return {name for name in PARAMETERS if _is_withheld(assessment_of(recording.verdicts, Side(side), name))}
+    found = set()
+    for joint, said in recording.verdicts.joints.items() if table == "cycles" else ():
+        curve = together((said.shape, said.sign))
+        found |= {f"{joint}_mean_deg"} if _is_withheld(together((curve, said.height))) else set()
+        found |= {f"{joint}_shape_deg"} if _is_withheld(curve) else set()
+        found |= {f"{joint}_stride_sd_deg"} if _is_withheld(said.shape) else set()
+    return found
+
+
+def _is_withheld(found: Assessment) -> bool:
+    return found.verdict is Verdict.WITHHELD
 
 
 def _value(cell: str) -> Value:
