@@ -2,7 +2,8 @@
 
 Every recording is a timeline of its own, named by its kind and number (`walking_1`); choosing another timeline shows
 another recording in the same views. Nothing is left out between samples, and nobody's words are inside. Beside them
-two legs walk, which are drawn and say so.
+two legs walk, which are drawn and say so. What may be read stands in a view of its own, and what may not is not shown
+until it is looked for (`may_be_read`).
 
 The same session gives the same bytes: Rerun numbers its chunks and rows by the clock and by chance, so they are
 numbered here, and `rrd_file` does the rest.
@@ -24,10 +25,11 @@ from rerun_bindings import PyMemorySinkStorage, new_blueprint, save
 from app.colours import DARK
 from app.reports.gait_csv import events_of
 from app.review.drawn_legs import FRAMES_HZ, HIPS, SHANK, THIGH, DrawnLeg, draw_legs, height_of
+from app.review.may_be_read import Place, document, is_pose, name_of_view, pieces_of, places
 from app.review.rrd_file import remove_chance
 from core.body import Joint, Side, Site, ankle_of, knee_of
 from core.gait.phases import PHASES
-from core.results import Analysis, JointAngle, RecordingAnalysis
+from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind, Session
 
 APPLICATION = "gaitwright"
@@ -73,14 +75,16 @@ def _timelines(session: Session) -> dict[str, str]:
 
 def _chunks(session: Session, analysis: Analysis, timelines: dict[str, str]) -> Iterator[Chunk]:
     yield from _labels(session, analysis)
+    if analysis.recordings:
+        yield _document("/may_be_read", document(analysis, timelines), rr.MediaType.MARKDOWN)
     for recording in session.recordings:
         for site in recording.imu if recording.is_kept else ():
             yield from _raw_chunks(timelines[recording.name], site, recording.imu[site])
     for analysed in analysis.recordings:
-        for joint, angle in analysed.joints.items():
-            yield from _angle_chunks(timelines[analysed.name], joint, analysed.time_s, angle)
+        for joint in analysed.joints:
+            yield from _angle_chunks(timelines[analysed.name], joint, analysed)
         for side, leg in draw_legs(session, analysis, analysed).items():
-            yield from _leg_chunks(timelines[analysed.name], side, leg)
+            yield from _leg_chunks(timelines[analysed.name], side, leg, analysed)
         for side, gait in analysed.gait.items():
             yield from _phase_chunk(timelines[analysed.name], side, analysed.time_s, gait.phase)
             yield from _event_chunk(timelines[analysed.name], side, analysed)
@@ -92,9 +96,12 @@ def _labels(session: Session, analysis: Analysis) -> Iterator[Chunk]:
         yield _label(f"/raw/{site}/specific_force", [f"{axis} m/s²" for axis in "xyz"])
     for joint in _joints(analysis):
         looks = {"result": (SIDE_COLOUR[joint.side], 2.5), "published": (COLOURS.ink2, 1.0)}
-        for curve, (colour, width) in (looks | {"orientation": (COLOURS.control, 1.0)}).items():
-            yield _label(f"/angles/{joint}/{curve}", [f"{curve} °"], colour, width)
-        yield _label(f"/angles/{joint}/certainty", ["2 sd below °", "2 sd above °"], PALE_COLOUR[joint.side])
+        for place in places(analysis, joint):
+            grey = COLOURS.control if place is Place.WITHHELD else None
+            for curve, (colour, width) in (looks | {"orientation": (COLOURS.control, 1.0)}).items():
+                yield _label(place.entity(joint, curve), [f"{curve}{place} °"], grey or colour, width)
+            names = [f"2 sd below{place} °", f"2 sd above{place} °"]
+            yield _label(place.entity(joint, "certainty"), names, grey or PALE_COLOUR[joint.side])
     words = [str(phase) for phase in PHASES if phase]
     columns = rr.StateConfiguration.columns(values=words, labels=[word.replace("_", " ") for word in words])
     for side in _sides_with_gait(analysis):
@@ -120,8 +127,9 @@ def _rgba(colour: str) -> int:
     return int(f"{colour.removeprefix('#')}FF", 16)
 
 
-def _document(entity: str, text: str) -> Chunk:
-    return Chunk.from_columns(entity, indexes=[], columns=rr.TextDocument.columns(text=[text]))
+def _document(entity: str, text: str, media_type: str = rr.MediaType.TEXT) -> Chunk:
+    columns = rr.TextDocument.columns(text=[text], media_type=[media_type])
+    return Chunk.from_columns(entity, indexes=[], columns=columns)
 
 
 def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
@@ -136,9 +144,10 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
     yield Chunk.from_columns("/legs/hips", indexes=[], columns=hips)
     for side in sides:
         colours, radii = [_rgba(SIDE_COLOUR[side])], [LEG_RADIUS_M]
-        for part in ("leg", "foot"):
-            looks = rr.LineStrips3D.columns(colors=colours, radii=radii)
-            yield Chunk.from_columns(f"/legs/{side}/{part}", indexes=[], columns=looks)
+        for part, grey in (("leg", "withheld_leg"), ("foot", "withheld_foot")):
+            for name, colour in ((part, colours), (grey, [_rgba(COLOURS.control)])):
+                looks = rr.LineStrips3D.columns(colors=colour, radii=radii)
+                yield Chunk.from_columns(f"/legs/{side}/{name}", indexes=[], columns=looks)
         hip_m = (0.0, aside_m if side is Side.LEFT else -aside_m, up_m)
         letter = rr.Points3D.columns(
             positions=[hip_m], colors=colours, radii=radii, labels=[side[0].upper()], show_labels=[True]
@@ -151,20 +160,24 @@ def _leg_labels(session: Session, sides: list[Side]) -> Iterator[Chunk]:
         f"sensor was; thigh, foot and hips are shares of a height of {height_m:.2f} m"
         f"{'' if is_typed else ', which nobody typed'} (Drillis & Contini 1966), as is the shank where the centres of "
         f"knee and ankle are not both known. The hips stay side by side in one place, and every knee's axis points "
-        f"sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a second at most.",
+        f"sideways: where the patient walked to is not known. {FRAMES_HZ:.0f} pictures a second at most. A leg or foot "
+        f"is grey where the angle that bends it is withheld, has no zero, or may be mirrored.",
     )
 
 
-def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg) -> Iterator[Chunk]:
-    """Yield what of a leg is known at each frame; nothing is drawn where it is not."""
+def _leg_chunks(timeline: str, side: Side, leg: DrawnLeg, recording: RecordingAnalysis) -> Iterator[Chunk]:
+    """Yield what of a leg is known at each frame, grey where it is no pose; nothing is drawn where it is not."""
     index = rr.TimeColumn(timeline, duration=leg.time_s)
-    for part, points_m in (("leg", leg.leg_m), ("foot", leg.foot_m)):
+    is_bent = is_pose(recording, knee_of(side), leg.time_s)
+    is_lifted = is_bent & is_pose(recording, ankle_of(side), leg.time_s)
+    for part, points_m, is_told in (("leg", leg.leg_m, is_bent), ("foot", leg.foot_m, is_lifted)):
         is_known = np.isfinite(points_m).all(axis=(1, 2))
-        if is_known.any():
-            columns = rr.LineStrips3D.columns(strips=points_m[is_known].astype(np.float32))
-            yield Chunk.from_columns(
-                f"/legs/{side}/{part}", indexes=[index], columns=columns.partition(is_known.astype(np.int64))
-            )
+        for name, is_here in ((part, is_known & is_told), (f"withheld_{part}", is_known & ~is_told)):
+            if is_here.any():
+                columns = rr.LineStrips3D.columns(strips=points_m[is_here].astype(np.float32))
+                yield Chunk.from_columns(
+                    f"/legs/{side}/{name}", indexes=[index], columns=columns.partition(is_here.astype(np.int64))
+                )
 
 
 def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
@@ -172,12 +185,18 @@ def _raw_chunks(timeline: str, site: Site, block: ImuBlock) -> Iterator[Chunk]:
     yield from _series(f"/raw/{site}/specific_force", timeline, block.time_s, block.acc_m_s2)
 
 
-def _angle_chunks(timeline: str, joint: Joint, time_s: FloatArray, angle: JointAngle) -> Iterator[Chunk]:
+def _angle_chunks(timeline: str, joint: Joint, recording: RecordingAnalysis) -> Iterator[Chunk]:
+    """Yield a joint's curves where what may be said of them lets them lie; a shape has its mean taken away."""
+    angle, time_s = recording.joints[joint], recording.time_s
     band_rad = angle.angle_rad[:, None] + BAND_SD * angle.sd_rad[:, None] * np.array([-1.0, 1.0])
     curves = {"result": angle.angle_rad, "published": angle.published_rad, "orientation": angle.orientation_rad}
     for curve, values_rad in (curves | {"certainty": band_rad}).items():
-        if values_rad is not None:
-            yield from _series(f"/angles/{joint}/{curve}", timeline, time_s, np.rad2deg(values_rad))
+        for place, rows in pieces_of(recording, joint):
+            if values_rad is not None:
+                values_deg = np.rad2deg(values_rad[rows])
+                if place is Place.SHAPE and np.isfinite(values_deg).any():
+                    values_deg = values_deg - np.nanmean(values_deg)
+                yield from _series(place.entity(joint, curve), timeline, time_s[rows], values_deg)
 
 
 def _phase_chunk(timeline: str, side: Side, time_s: FloatArray, phase: IntArray) -> Iterator[Chunk]:
@@ -237,6 +256,8 @@ def _blueprint(session: Session, analysis: Analysis, timeline: str | None) -> rr
         legs = _leg_view(session, analysis) if _sides_with_knee(analysis) else None
         shares = [LEGS_HEIGHT, CURVES_HEIGHT]
         tabs += [rrb.Vertical(legs, curves, row_shares=shares, name=name) if legs else rrb.Vertical(curves, name=name)]
+    if analysis.recordings:
+        tabs += [rrb.TextDocumentView(origin="/may_be_read", name="What may be read")]
     if _sides_with_gait(analysis):
         tabs += [rrb.TextLogView(origin="/events", name="Events")]
     for signal in ("angular_rate", "specific_force"):
@@ -271,7 +292,8 @@ def _side_views(analysis: Analysis, side: Side) -> rrb.Vertical | None:
     axis = rrb.archetypes.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
     joints = [joint for joint in (knee_of(side), ankle_of(side)) if joint in _joints(analysis)]
     views: list[rrb.View] = [
-        rrb.TimeSeriesView(origin=f"/angles/{joint}", name=joint.replace("_", " "), axis_x=axis) for joint in joints
+        rrb.TimeSeriesView(origin=f"/angles/{joint}", name=name_of_view(analysis, joint), axis_x=axis)
+        for joint in joints
     ]
     heights = [CURVE_HEIGHT] * len(views)
     if side in _sides_with_gait(analysis):

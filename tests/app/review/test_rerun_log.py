@@ -23,6 +23,7 @@ from core.body import Joint, Side, Site
 from core.gait.phases import PHASES
 from core.results import Analysis, JointAngle, Method, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, Patient, Recording, RecordingKind, Session
+from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, Verdicts, assess
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 
@@ -49,6 +50,7 @@ def visit(n: int = 50) -> tuple[Session, Analysis]:
             r.kind,
             r.imu[thigh].time_s,
             {Joint.LEFT_KNEE: JointAngle(rng.normal(size=n), np.full(n, 0.1), rng.normal(size=n), None)},
+            verdicts=Verdicts({Joint.LEFT_KNEE: JointVerdicts(READ, READ, READ)}),
         )
         for r in recordings
         if r.kind is RecordingKind.WALKING and r.is_kept
@@ -82,6 +84,99 @@ def test_every_sample_and_angle_comes_back(tmp_path: Path, monkeypatch: pytest.M
     np.testing.assert_array_equal(result_deg[:, 0], np.rad2deg(angle.angle_rad))
     _, band_deg = curve(tmp_path / "session.rrd", "/angles/left_knee/certainty", "walking_1")
     np.testing.assert_allclose(band_deg[:, 1] - band_deg[:, 0], 4 * np.rad2deg(angle.sd_rad))
+
+
+GOOD, BAD = READ, assess([GateReason("zero", Verdict.WITHHELD)])
+SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
+NOBODYS = {"/angles/left_knee/result", "/angles/left_knee/result_shape", "/withheld/left_knee/result"}
+
+
+def judged_visit(
+    shape: Assessment, height: Assessment, sign: Assessment, slipped_from_s: float = np.inf
+) -> tuple[Session, Analysis]:
+    """The visit above with other verdicts of its first walk; the second can be read."""
+    session, analysis = visit()
+    first, second = analysis.recordings
+    first = replace(
+        first,
+        verdicts=Verdicts({Joint.LEFT_KNEE: JointVerdicts(shape, height, sign)}),
+        slipped_from_s={Side.LEFT: slipped_from_s},
+    )
+    return session, replace(analysis, recordings=(first, second))
+
+
+def lies_at(path: Path, timeline: str) -> set[str]:
+    return {
+        chunk.entity_path
+        for chunk in RrdReader(path).stream()
+        if timeline in chunk.timeline_names and chunk.entity_path in NOBODYS
+    }
+
+
+@pytest.mark.parametrize(
+    ("said", "entity", "name"),
+    [
+        ((GOOD, GOOD, GOOD), "/angles/left_knee/result", "result °"),
+        (
+            (assess([GateReason("drift", Verdict.CARE, 4.0, 3.0, "deg")]), GOOD, GOOD),
+            "/angles/left_knee/result",
+            "result °",
+        ),
+        ((GOOD, BAD, GOOD), "/angles/left_knee/result_shape", "result, shape °"),
+        ((GOOD, BAD, SIGN), "/withheld/left_knee/result", "result, withheld °"),
+        ((BAD, BAD, GOOD), "/withheld/left_knee/result", "result, withheld °"),
+    ],
+)
+def test_a_curve_lies_where_what_may_be_said_of_it_lets_it(
+    tmp_path: Path, said: tuple[Assessment, Assessment, Assessment], entity: str, name: str
+) -> None:
+    session, analysis = judged_visit(*said)
+    path = tmp_path / "session.rrd"
+    write_log(session, analysis, path)
+    assert lies_at(path, "walking_1") == {entity}
+    assert lies_at(path, "walking_2") == {"/angles/left_knee/result"}
+    angle_deg = np.rad2deg(analysis.recordings[0].joints[Joint.LEFT_KNEE].angle_rad)
+    taken_deg = angle_deg.mean() if "shape" in entity else 0.0
+    _, curve_deg = curve(path, entity, "walking_1")
+    np.testing.assert_allclose(curve_deg[:, 0], angle_deg - taken_deg, atol=1e-12)
+    (label,) = [
+        c.to_record_batch().to_pydict() for c in RrdReader(path).stream() if c.is_static and c.entity_path == entity
+    ]
+    assert label["SeriesLines:names"] == [[name]]
+    is_grey = label["SeriesLines:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
+    assert is_grey == entity.startswith("/withheld")
+    (layout,) = RrdReader(path).blueprints()
+    shown = "".join(str(c.to_record_batch().to_pydict()) for c in RrdReader(path).stream(store=layout))
+    assert "/withheld" not in shown
+    assert "'What may be read'" in shown
+
+
+def test_once_a_strap_slipped_a_curve_is_withheld(tmp_path: Path) -> None:
+    session, analysis = judged_visit(GOOD, GOOD, GOOD, slipped_from_s=5.2)
+    path = tmp_path / "session.rrd"
+    write_log(session, analysis, path)
+    before_s, _ = curve(path, "/angles/left_knee/result", "walking_1")
+    after_s, after_deg = curve(path, "/withheld/left_knee/result", "walking_1")
+    time_s = analysis.recordings[0].time_s
+    np.testing.assert_allclose(np.concatenate([before_s, after_s]), time_s, atol=1e-9)
+    assert (before_s < 5.2).all()
+    assert len(after_s) == len(after_deg) == np.count_nonzero(time_s >= 5.2)
+
+
+def text_of(path: Path, entity: str) -> str:
+    (document,) = [c.to_record_batch().to_pydict() for c in RrdReader(path).stream() if c.entity_path == entity]
+    return str(document["TextDocument:text"][0][0])
+
+
+def test_the_log_says_what_may_be_read_and_why_not(tmp_path: Path) -> None:
+    write_log(*judged_visit(GOOD, BAD, SIGN), tmp_path / "session.rrd")
+    first, second = text_of(tmp_path / "session.rrd", "/may_be_read").split("## walking_2")
+    assert "| left knee | shape | read |  |" in first
+    assert "| left knee | height | withheld | No zero was set" in first
+    assert "| left knee | sign | withheld | The motion does not tell flexion from extension" in first
+    assert "| left knee | sign | read |  |" in second
+    assert "| right knee | shape | not measured |  |" in first
+    assert "| both legs | between | not measured |  |" in first
 
 
 def test_a_recording_is_a_timeline_and_a_discarded_one_is_not_there(tmp_path: Path) -> None:
@@ -204,6 +299,26 @@ def test_two_legs_walk_above_the_curves_and_say_that_they_are_drawn(walk: tuple[
     text = "".join(str(c.to_record_batch().to_pydict()) for c in reader.stream() if c.entity_path == "/about_legs")
     assert "drawn, not measured" in text
     assert "1.70 m, which nobody typed" in text
+
+
+def test_a_leg_is_grey_where_an_angle_that_bends_it_is_no_pose(walk: tuple[Path, Analysis], tmp_path: Path) -> None:
+    _, analysis = walk
+    session = simulate(WalkerSettings(seed=4, recordings=(Standing(), Walk(strides=5)))).session
+    (recording,), said = analysis.recordings, dict(analysis.recordings[0].verdicts.joints)
+    said[Joint.LEFT_KNEE] = replace(said[Joint.LEFT_KNEE], height=BAD)
+    said[Joint.RIGHT_ANKLE] = replace(said[Joint.RIGHT_ANKLE], sign=SIGN)
+    doubted = replace(recording, verdicts=replace(recording.verdicts, joints=said))
+    write_log(session, replace(analysis, recordings=(doubted,)), tmp_path / "session.rrd")
+    chunks = list(RrdReader(tmp_path / "session.rrd").stream())
+    drawn = {c.entity_path for c in chunks if "walking_1" in c.timeline_names and c.entity_path.startswith("/legs")}
+    assert drawn == {
+        *("/legs/left/withheld_leg", "/legs/left/withheld_foot"),
+        *("/legs/right/leg", "/legs/right/withheld_foot"),
+    }
+    for name in drawn:
+        (look,) = [c.to_record_batch().to_pydict() for c in chunks if c.is_static and c.entity_path == name]
+        is_grey = look["LineStrips3D:colors"] == [[int(DARK.control[1:] + "FF", 16)]]
+        assert is_grey == ("withheld" in name)
 
 
 @pytest.mark.endurance
