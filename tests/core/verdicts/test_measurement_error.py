@@ -35,32 +35,38 @@ def test_one_mean_is_as_sure_as_its_strides_and_the_walks_parts() -> None:
     """59, 61, 59 ...: SD sqrt(10/9) = 1.05409; the correlation is negative, so 0.3 is taken.
 
     1.05409 / sqrt(10) x sqrt(1.3/0.7) = 0.33333 x 1.36277 = 0.45426. The halves are 59.8 and 60.2, the thirds of
-    four, three and three 60, 59.667 and 60.333: half of 0.667 is more than half of 0.4.
+    four, three and three 60, 59.667 and 60.333: no further apart than chance makes them.
     """
     found = mean_of_strides(np.array([59.0, 61.0] * 5))
     assert (found.mean, found.n) == (60.0, 10)
     assert found.sd == pytest.approx(1.05409, abs=1e-5)
     assert found.standard_error == pytest.approx(0.45426, abs=1e-5)
-    assert found.drift == pytest.approx(1 / 3)
-    assert found.uncertainty == pytest.approx(0.56344, abs=1e-5)  # sqrt(0.45426^2 + 0.33333^2)
+    assert found.drift == 0.0
+    assert found.uncertainty == found.standard_error
 
 
 def test_strides_that_follow_one_another_count_for_less() -> None:
     """Five of 55, then five of 65: products of neighbours 4 x 25 - 25 + 4 x 25 = 175 of 250, so r = 0.7.
 
-    SD sqrt(250/9) = 5.27046; 5.27046 / sqrt(10) x sqrt(1.7/0.3) = 1.66667 x 2.38048 = 3.96746.
+    SD sqrt(250/9) = 5.27046; 5.27046 / sqrt(10) x sqrt(1.7/0.3) = 1.66667 x 2.38048 = 3.96746. Half of what the
+    halves differ by is 5, of which chance makes 3.96746: sqrt(25 - 15.7407) = 3.04290.
     """
     found = mean_of_strides(np.array([55.0] * 5 + [65.0] * 5))
     assert found.standard_error == pytest.approx(3.96746, abs=1e-4)
-    assert found.drift == pytest.approx(5.0)
+    assert found.drift == pytest.approx(3.04290, abs=1e-4)
+    assert found.uncertainty == pytest.approx(5.0)
     # a long ramp has 0.97 and is taken as 0.9: 29.0115 / 10 x sqrt(1.9/0.1) = 12.6458
     assert mean_of_strides(np.arange(100.0)).standard_error == pytest.approx(12.6458, abs=1e-3)
 
 
 def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
-    values = np.repeat([60.0, 63.0, 60.0], 4)  # both halves are 61
-    assert mean_of_strides(values).drift == pytest.approx(1.5)
-    assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(1.0)
+    """Four of 60, of 63 and of 60: both halves are 61. Of deviations -1 and 2 the squares sum to 24, neighbours to 14.
+
+    r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.69091. The thirds: 0.25 x 3^2 - 2.5 x 0.69091 = 0.52273.
+    """
+    assert mean_of_strides(np.repeat([60.0, 63.0, 60.0], 4)).drift == pytest.approx(0.72300, abs=1e-4)
+    # six of 60 and of 62: r = 9/12, SE^2 = 12/11 / 12 x 1.75/0.25 = 0.63636; 0.25 x 2^2 - 0.63636 = 0.36364
+    assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(0.60302, abs=1e-4)
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
@@ -73,21 +79,21 @@ def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None
 
 def test_what_the_clocks_leave_open_adds_to_it() -> None:
     found = mean_of_strides(np.array([59.0, 61.0] * 5), clock_error=0.8)
-    assert found.uncertainty == pytest.approx(0.97850, abs=1e-5)  # sqrt(0.56344^2 + 0.8^2)
+    assert found.uncertainty == pytest.approx(0.91997, abs=1e-5)  # sqrt(0.45426^2 + 0.8^2)
     assert "clock" in compare("knee_range_deg", LEGS, found, found, TOLD).sources
 
 
 def test_the_error_of_a_difference_is_that_of_both_means_and_of_what_lies_between() -> None:
-    """U^2 = 2 x 0.56344^2 + 2 x 1.0^2 = 2.63493; 1.96 x 1.62325 = 3.18156."""
+    """U^2 = 2 x 0.45426^2 + 2 x 1.0^2 = 2.41270; 1.96 x 1.55329 = 3.04444."""
     values = np.array([59.0, 61.0] * 5)
     found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.0), mean_of_strides(values), TOLD)
     assert found.difference == pytest.approx(3.0)
-    assert found.error == pytest.approx(3.18156, abs=1e-4)
+    assert found.error == pytest.approx(3.04444, abs=1e-4)
     assert found.judgement is Judgement.INSIDE_ERROR
-    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.2), mean_of_strides(values), TOLD)
+    more = compare("knee_range_deg", ATTACHED, mean_of_strides(values + 3.1), mean_of_strides(values), TOLD)
     assert more.judgement is Judgement.EXCEEDS_ERROR
-    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.2), TOLD)
-    assert (less.difference, less.judgement) == (pytest.approx(-3.2), Judgement.EXCEEDS_ERROR)
+    less = compare("knee_range_deg", ATTACHED, mean_of_strides(values), mean_of_strides(values + 3.1), TOLD)
+    assert (less.difference, less.judgement) == (pytest.approx(-3.1), Judgement.EXCEEDS_ERROR)
 
 
 def test_walks_of_twenty_strides_with_the_sensors_left_on_tell_a_few_degrees_apart() -> None:
@@ -182,7 +188,7 @@ def test_the_errors_are_those_of_the_table(kind: ComparisonKind, name: str) -> N
 def test_halves_of_one_walk_differ_by_nothing_but_chance_and_drift() -> None:
     values = np.array([59.0, 61.0] * 5)
     found = compare("knee_range_deg", ComparisonKind.HALVES, mean_of_strides(values), mean_of_strides(values), TOLD)
-    assert found.error == pytest.approx(1.56178, abs=1e-4)  # 1.96 x sqrt(2) x 0.56344
+    assert found.error == pytest.approx(1.25914, abs=1e-4)  # 1.96 x sqrt(2) x 0.45426
     assert found.sources == ("chance", "drift")
     assert not found.is_unverified
 
@@ -263,7 +269,7 @@ def test_whiskers_that_lie_apart_differ_by_more_than_the_error() -> None:
     values = np.array([59.0, 61.0] * 5)
     one = mean_of_strides(values)
     reach = whisker("knee_range_deg", ATTACHED, one)
-    assert reach == pytest.approx(1.59078, abs=1e-4)  # half of the 3.18156 above
+    assert reach == pytest.approx(1.52222, abs=1e-4)  # half of the 3.04444 above
     for apart in (2 * reach - 0.01, 2 * reach + 0.01):
         found = compare("knee_range_deg", ATTACHED, mean_of_strides(values + apart), one, TOLD)
         assert found.exceeds == (apart > 2 * reach)
