@@ -217,6 +217,8 @@ class SessionScreen(QWidget):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_done(self, opened: "Opened") -> None:
+        from app.reports.reference_bands import age_and_height
+
         if self._results is None:
             from app.pages.result_page import ResultPage
 
@@ -228,7 +230,8 @@ class SessionScreen(QWidget):
                 self.setTabOrder(before, after)
         self._opened, session = opened, opened.session
         is_prosthetic = session.patient.prosthetic_side in set(Side)
-        self._results.show_analysis(opened.analysis, session.recordings, is_prosthetic=is_prosthetic)
+        who = age_and_height(session)
+        self._results.show_analysis(opened.analysis, session.recordings, is_prosthetic=is_prosthetic, who=who)
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )

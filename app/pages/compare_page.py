@@ -9,16 +9,20 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSi
 from app.pages.compared_words import (
     MINUS,
     change_in_words,
+    line_of,
     part_in_words,
     plot_row,
     sentence,
     side_sentence,
     side_table_row,
+    side_weight,
     table_rows,
     weight,
+    why_not_told,
+    withheld_in_words,
 )
 from app.plots.axes import ANKLE_DEG, KNEE_DEG, joint_of
-from app.plots.compared_chart import ComparedChart, ComparedFrame, Line
+from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import Band, CycleCharts
 from app.plots.difference_plot import DifferenceGroup, DifferencePlot, DifferenceRow, Dot
 from app.reports.comparison import (
@@ -31,7 +35,7 @@ from app.reports.comparison import (
     first_and_second,
     left_out_of_parts,
 )
-from app.reports.reference_bands import reference_curves
+from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.walk_figures import SideCycle
 from app.theme import Look
 from app.widgets.card import Card
@@ -45,6 +49,9 @@ from app.widgets.text import SEMIBOLD, Text
 from app.wording import later, tr
 from core.body import Side
 from core.gait.cycles import POINTS
+from core.norms import AgeAndHeight, ReferenceCurves
+from core.results import Analysis
+from core.verdicts.measurement_error import ComparisonKind, Difference
 
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 CARD, WIDE_CARD = 312, 460
@@ -52,15 +59,26 @@ WIDEST = 16_777_215  # Qt's own
 BRIEF = ("knee_swing_peak_deg", "knee_range_deg", "ankle_stance_dorsiflexion_deg", "stance_percent")
 MOST_SAID = 3  # sentences about differences; the table has all of them
 
+# what lies between the two means, and so is in the error beside chance between strides and drift
 ERROR = {
-    Kind.CONDITIONS: later("Grey: measurement error within a visit."),
-    Kind.VISITS: later("Grey: measurement error between visits. For the ankle none is published, so it is not judged."),
-    Kind.SIDES: later(
-        "Grey: measurement error between separately worn sensors. For the ankle none is published, so it is not judged."
+    ComparisonKind.ATTACHED: later(
+        "Grey: measurement error, of chance between strides, drift, and what walks of one strapping differ by."
+    ),
+    ComparisonKind.STRAPPINGS: later(
+        "Grey: measurement error, of chance between strides, drift, clocks, and what strapping the sensors on anew "
+        "differs by. For the ankle the knee's figure is borrowed."
+    ),
+    ComparisonKind.VISITS: later(
+        "Grey: measurement error, of chance between strides, drift, clocks, and what visits with the sensors strapped "
+        "on anew differ by. For the ankle the knee's figure is borrowed."
+    ),
+    ComparisonKind.LEGS: later(
+        "Grey: measurement error, of chance between strides, drift, clocks, and what separately worn sensors differ "
+        "by. For the ankle the knee's figure is borrowed."
     ),
 }
-RESTRAPPED = later("Sensors were strapped on anew in between, so the error between visits holds.")
-OTHER_ZERO = later("No common zero: range and shape hold, height does not.")
+UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
+OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
 NOTHING = {
     Kind.CONDITIONS: later("One walk has strides. Record a second one to compare."),
     Kind.VISITS: later("No earlier visit of this patient has a walk to compare."),
@@ -86,6 +104,8 @@ class ComparePage(QWidget):
         self._visits: tuple[Part, ...] | None = None
         self._affected: Side | None = None
         self._affected_words = ""
+        self._analysis: Analysis | None = None
+        self._who = NOBODY
         self._has_visits = self._is_simulated = self._is_compact = self._is_spacious = False
         self._is_reading = False
         self.comparison: Comparison | None = None
@@ -97,18 +117,12 @@ class ComparePage(QWidget):
         )
         self.chips = Chips(look, tr("What is compared"), [("", " ")])
         self.nothing = Text(look, size=16, wraps=True)
-        reference = reference_curves()
-        bands = {
-            True: Band(reference.knee_mean_deg, reference.knee_sd_deg),
-            False: Band(reference.ankle_mean_deg, reference.ankle_sd_deg),
-        }
         self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
         for is_knee in (True, False):
             for side in Side:
                 chart = ComparedChart(look, side, KNEE_DEG if is_knee else ANKLE_DEG)
-                chart.band = bands[is_knee]
                 self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
-        self.side_charts = CycleCharts(look, reference)
+        self.side_charts = CycleCharts(look, reference_curves())
         self.title = Text(look, size=16, weight=SEMIBOLD)
         self.error = Text(look, size=12, tone="ink2", wraps=True)
         self.plot = DifferencePlot(look)
@@ -122,11 +136,13 @@ class ComparePage(QWidget):
     # what is shown
 
     def show_conditions(
-        self, parts: Sequence[Part], affected: Side | None, is_prosthetic: bool, is_simulated: bool
+        self, analysis: Analysis, parts: Sequence[Part], is_prosthetic: bool, who: AgeAndHeight
     ) -> None:
-        """Show the walks of one session; what was known of other visits is forgotten."""
+        """Show the walks of one session, `who` walked them; what was known of other visits is forgotten."""
         self._conditions, self._visits = tuple(parts), None
-        self._affected, self._is_simulated = affected, is_simulated
+        self._analysis, self._who = analysis, who
+        affected = analysis.affected_side
+        self._affected, self._is_simulated = affected, analysis.is_simulated
         self._affected_words = tr("Left against right")
         if affected is not None:
             said = tr("Prosthetic against sound side") if is_prosthetic else tr("Affected against sound side")
@@ -338,22 +354,27 @@ class ComparePage(QWidget):
         base = next((k for k, part in enumerate(chosen) if part.letter == self.bases.currentData()), 0)
         self.comparison = found = Comparison(self.kind, chosen, base, self._is_simulated)
         self.side_rows = ()
+        curves, sides = self._band(found.against)
         for (side, is_knee), frame in self.frames.items():
             joint = joint_of(side, is_knee)
-            lines = [
-                Line(part.letter, part.cycle(joint), part.stance_percent(side))
-                for part in chosen
-                if joint in part.joints
-            ]
-            has_doubt = len(lines) > 1 and not found.has_one_zero(joint)
-            frame.show_lines(lines, tr(OTHER_ZERO) if has_doubt else "", self._is_simulated)
+            worn = [part for part in chosen if joint in part.joints]
+            is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
+            is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
+            lines = [line_of(part, joint, is_about_mean=is_about_mean) for part in worn]
+            is_beside_band = curves is not None and side in sides and not is_about_mean
+            kind = "knee" if is_knee else "ankle"
+            frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
+            notes = [tr(OTHER_ZERO)] if is_about_mean else []
+            notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
+            frame.show_lines(lines, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
             frame.setVisible(side in found.sides)
         letter = found.against.letter
         self.title.setText(tr("Change from {letter}").format(letter=letter))
-        is_anew = self.kind is Kind.CONDITIONS and not all(map(found.is_same_attachment, found.others))
-        self.error.setText(" ".join([tr(ERROR[self.kind]), tr(RESTRAPPED)] if is_anew else [tr(ERROR[self.kind])]))
-        beyond = sorted((row for row in found.rows if row.exceeds), key=weight)
-        self._say([sentence(row) for row in beyond], bool(found.others), chosen)
+        kinds = {found.error_kind(part) for part in found.others} or {ComparisonKind.ATTACHED}
+        told = [row.difference for row in found.rows if row.is_told]
+        self._say_error(max(kinds, key=list(ComparisonKind).index), told)
+        worth = sorted((row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence), key=weight)
+        self._say([sentence(row) for row in worth], told, chosen)
         self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
         heads = ["", *(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
         self.table.show_rows(heads, table_rows(found))
@@ -368,18 +389,23 @@ class ComparePage(QWidget):
         cycles = {
             joint: SideCycle(part.cycle(joint), nothing, part.stance_percent(joint.side)) for joint in part.joints
         }
-        self.side_charts.show_cycles(cycles, {}, self._is_simulated)
+        curves, sides = self._band(part)
+        self.side_charts.set_band(curves if sides else None)
+        verdicts = {joint: part.verdicts.joint(joint) for joint in part.joints}
+        self.side_charts.show_cycles(cycles, verdicts, self._is_simulated)
         one, other = LETTERS[first], LETTERS[second]
         self.title.setText(f"{self._affected_words}: {one} {MINUS} {other}")
-        self.error.setText(tr(ERROR[Kind.SIDES]))
-        self._say([side_sentence(row, first, second) for row in self.side_rows if row.exceeds], True, parts[:1])
+        told = [row.difference for row in self.side_rows if row.is_told]
+        self._say_error(ComparisonKind.LEGS, told)
+        worth = [row for row in self.side_rows if row.is_told and row.difference.is_worth_a_sentence]
+        self._say([side_sentence(row, first, second) for row in sorted(worth, key=side_weight)], told, parts[:1])
         groups = [
             DifferenceGroup(
                 tr(row.measure.name),
                 (
                     DifferenceRow(
                         None,
-                        change_in_words(row.difference.difference, row.measure) if row.is_told else tr("no value"),
+                        change_in_words(row.difference.difference, row.measure) if row.is_told else why_not_told(row),
                         (Dot(one, row.difference.difference, row.exceeds),) if row.is_told else (),
                         row.difference.error,
                     ),
@@ -403,16 +429,37 @@ class ComparePage(QWidget):
             for title, sides in groups.items()
         ]
 
-    def _say(self, beyond: Sequence[str], has_any: bool, parts: Sequence[Part]) -> None:
-        said = list(beyond[:MOST_SAID])
-        if len(beyond) > MOST_SAID:
+    def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
+        """The curves that a part may stand beside, and which of its legs."""
+        if self._analysis is None or not part.walks:
+            return None, frozenset()
+        walk = part.walks[-1]
+        return bands_of(walk, self._who).curves, sides_with_band(self._analysis, walk)
+
+    def _say_error(self, kind: ComparisonKind, told: Sequence[Difference]) -> None:
+        """What the error contains now."""
+        said = [tr(ERROR[kind])]
+        if any(found.is_unverified and found.error > 0 for found in told):
+            said.append(tr(UNVERIFIED))
+        self.error.setText(" ".join(said))
+
+    def _say(self, worth: Sequence[str], told: Sequence[Difference], parts: Sequence[Part]) -> None:
+        """The differences that are worth a sentence; without one, whether any exceeds its error."""
+        said = list(worth[:MOST_SAID])
+        if len(worth) > MOST_SAID:
             said.append(tr("The table has all of them."))
-        elif not beyond and has_any:
-            said.append(tr("No difference lies beyond measurement error."))
+        elif not worth and any(found.exceeds for found in told):
+            said.append(
+                tr("No difference is so much larger than its error that it is said here; the table marks them.")
+            )
+        elif not worth and any(found.error > 0 for found in told):
+            said.append(tr("No difference is larger than its error."))
+        elif (not worth and self.comparison is None) or (self.comparison is not None and self.comparison.others):
+            said += [] if worth else [tr("No difference could be judged.")]
         if by_hand := left_out_of_parts(parts):
             said.append(by_hand)
         self.conclusion.setText("\n".join(said))
-        self._mark.setVisible(bool(beyond))
+        self._mark.setVisible(bool(worth))
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px

@@ -6,13 +6,13 @@ import numpy as np
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.plots.cycle_chart import CycleCharts
-from app.reports.reference_bands import reference_curves, time_distance_classes
+from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND, bands_of, reference_curves
 from app.reports.walk_figures import (
     Figure,
     by_hand_in_words,
-    doubt_of,
     few_strides_in_words,
     peak_figures,
+    reason_in_words,
     side_cycle,
     strides_in_words,
     strides_used,
@@ -20,13 +20,13 @@ from app.reports.walk_figures import (
 )
 from app.theme import Look
 from app.widgets.card import Card
-from app.widgets.figures_table import FiguresTable
-from app.widgets.icons import Icon, IconMark
+from app.widgets.figures_table import CARE_MARK, FiguresTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wording import later, tr
-from core.body import Side
-from core.norms import ReferenceCurves, ReferenceValues
+from app.wording import capitalised, joined, later, name_of, side_name, tr
+from core.body import Joint, Side
+from core.norms import AgeAndHeight, Bands, NoBand, ReferenceValues
 from core.results import RecordingAnalysis
+from core.verdicts.model import Verdict
 from core.verdicts.quantities import both_sides
 
 # whose bands the program brings along, as the core names them
@@ -36,9 +36,9 @@ GROUPS = (
 )
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
 KIND_WORDS = {"knee": later("Knee"), "ankle": later("Ankle")}
-SLOWER = later("Slower than the band: slower walking lowers knee peaks.")
-FASTER = later("Faster than the band: faster walking raises knee peaks.")
 NO_SPEED = later("This walk: speed not known, for it needs a foot sensor and usable strides.")
+NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
+CARE = later("{mark} read with care.")
 
 
 class CyclePage(QWidget):
@@ -47,9 +47,8 @@ class CyclePage(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._reference = reference_curves()
         self._is_tight = False
-        self.charts = CycleCharts(look, self._reference)
+        self.charts = CycleCharts(look, reference_curves())
         self.note = BandNote(look)
         self.by_hand = Text(look, size=12, weight=MEDIUM, wraps=True)
         column = QVBoxLayout(self)
@@ -79,25 +78,63 @@ class CyclePage(QWidget):
         self.note.setVisible(is_shown and self._is_tight)
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
-    def show_walk(self, recording: RecordingAnalysis, is_simulated: bool) -> None:
-        """Show the strides of `recording`, each side on its own stride; nothing where it has none."""
+    def show_walk(
+        self, recording: RecordingAnalysis, is_simulated: bool, who: AgeAndHeight, sides_with_band: frozenset[Side]
+    ) -> None:
+        """Show the strides of `recording`, each side on its own stride; nothing where it has none.
+
+        Parameters
+        ----------
+        who
+            Choose the band, with the speed of the walk.
+        sides_with_band
+            Legs that may be compared with other people's.
+        """
+        bands = bands_of(recording, who)
+        curves, values = (bands.curves, bands.values) if sides_with_band else (None, None)
         joints = [joint for gait in recording.gait.values() for joint in gait.cycles]
-        doubts = {joint: why for joint in joints if (why := doubt_of(recording, joint))}
         cycles = {joint: side_cycle(recording, joint) for joint in joints}
-        self.charts.show_cycles(cycles, doubts, is_simulated)
+        self.charts.set_band(curves)
+        self.charts.show_cycles(cycles, {joint: recording.verdicts.joint(joint) for joint in joints}, is_simulated)
         strides = {side: strides_used(gait) for side, gait in recording.gait.items()}
         rows: list[str | Figure] = []
-        for kind, figures in peak_figures(recording, self._reference).items():
+        for kind, figures in peak_figures(recording, curves).items():
             rows += [tr(KIND_WORDS[kind]), *figures]
         told = " ".join(strides_in_words(side, gait) for side, gait in recording.gait.items())
-        self.peaks.show_figures(rows, strides, " ".join(filter(None, [told, few_strides_in_words(recording)])))
-        feet = both_sides(recording)
-        figures, group = time_distance_figures(recording, feet, time_distance_classes())
+        reasons = [told, few_strides_in_words(recording), *_why_withheld(recording, joints), *_care_in_words(rows)]
+        self.peaks.show_figures(rows, strides, " ".join(filter(None, reasons)))
+        figures = time_distance_figures(recording, values, sides_with_band)
         by_hand = by_hand_in_words(recording)
         self.by_hand.setText(by_hand)
-        self.time_distance.show_figures(figures, strides, " ".join(filter(None, [by_hand, _group_in_words(group)])))
+        only = _only_for(sides_with_band, recording)
+        group = _group_in_words(values, bands.why_no_values if sides_with_band else None)
+        said = [by_hand, group, only, *_care_in_words(figures)]
+        self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
         for note in (self.note, self.peaks_note):
-            note.show_band(self._reference, feet.speed_m_s)
+            note.show_band(bands, both_sides(recording).speed_m_s, sides_with_band, only)
+
+
+def _why_withheld(recording: RecordingAnalysis, joints: Sequence[Joint]) -> list[str]:
+    """Why figures of the table are withheld, with what to do; what holds alike of several joints once."""
+    places: dict[str, list[str]] = {}
+    for joint in joints:
+        found = recording.verdicts.joint(joint)
+        if found.height.verdict is Verdict.WITHHELD:
+            places.setdefault(reason_in_words(found), []).append(name_of(joint))
+    return [f"{capitalised(joined(names))}: {said}" for said, names in places.items()]
+
+
+def _care_in_words(rows: Sequence[str | Figure]) -> list[str]:
+    has_care = any(row.with_care for row in rows if not isinstance(row, str))
+    return [tr(CARE).format(mark=CARE_MARK)] if has_care else []
+
+
+def _only_for(sides_with_band: frozenset[Side], recording: RecordingAnalysis) -> str:
+    """Say which leg the band is for, where it is not for both."""
+    if not sides_with_band or sides_with_band.issuperset(recording.gait):
+        return ""
+    sides = joined([side_name(side) for side in Side if side in sides_with_band])
+    return tr("The band is for the {side} leg alone.").format(side=sides)
 
 
 class FiguresCard(Card):
@@ -123,46 +160,45 @@ class FiguresCard(Card):
 
 
 class BandNote(QWidget):
-    """Whose band it is, how fast they walked, how fast this walk was; and whether that makes a difference."""
+    """Whose band it is and how fast they walked, or why there is none; how fast this walk was."""
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._source = Text(look, size=12, tone="ink2", wraps=True)
         self._speed = Text(look, size=12, weight=MEDIUM, wraps=True)
-        self._mark = IconMark(look, Icon.WARNING, size=18)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.setSpacing(2)
         column.addWidget(self._source)
-        row = QHBoxLayout()
-        row.setSpacing(8)
-        row.addWidget(self._mark)
-        row.addWidget(self._speed, 1)
-        column.addLayout(row)
+        column.addWidget(self._speed)
 
     @property
     def text(self) -> str:
         return f"{self._source.text()} {self._speed.text()}"
 
-    def show_band(self, band: ReferenceCurves, speed_m_s: float) -> None:
+    def show_band(self, bands: Bands, speed_m_s: float, sides_with_band: frozenset[Side], only: str) -> None:
+        self._source.setText(self._whose(bands, only) if sides_with_band else tr(NO_SIDE))
+        is_known = bool(np.isfinite(speed_m_s))
+        self._speed.setText(
+            tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)
+        )
+
+    def _whose(self, bands: Bands, only: str) -> str:
+        band = bands.curves
+        if band is None:
+            return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
         sds = tr("inner 1 SD, outer 2 SD").replace(" SD", "\N{NO-BREAK SPACE}SD")
         whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s; {sds}.")
         said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, sds=sds)
-        self._source.setText(f"{said} {_authors(band.source)}.")
-        is_known = bool(np.isfinite(speed_m_s))
-        words = [tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)]
-        is_other = is_known and not band.fits(speed_m_s)
-        if is_other:
-            words.append(tr(SLOWER if speed_m_s < band.speed_m_s else FASTER))
-        self._mark.setVisible(is_other)
-        self._speed.setText(" ".join(words))
+        others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
+        return " ".join(filter(None, [f"{said} {_authors(band.source)}.", others, only]))
 
 
-def _group_in_words(group: ReferenceValues | None) -> str:
-    """Whose figures stand in the column of the band."""
+def _group_in_words(group: ReferenceValues | None, why_none: NoBand | None) -> str:
+    """Whose figures stand in the column of the band, or why there are none."""
     if group is None:
-        return " ".join([tr("No band: it is chosen by walking speed."), tr(NO_SPEED)])
-    told = tr("Band: {count} of {group}; {speed_class} speed, {speed_m_s:.2f} m/s.")
+        return tr(WHY_NO_BAND[why_none]) if why_none is not None else tr(NO_SIDE)
+    told = tr("Band: {count} of {group}; {speed_class} for the leg's length, {speed_m_s:.2f} m/s.")
     said = told.format(
         count=group.n,
         group=tr(group.group),

@@ -14,6 +14,7 @@ from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
 from app.reports.comparison import conditions_of
+from app.reports.reference_bands import NOBODY, sides_with_band
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -26,6 +27,7 @@ from app.widgets.text import SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
 from core.body import Joint
+from core.norms import AgeAndHeight
 from core.results import Analysis, JointAngle, RecordingAnalysis
 from core.samples import FloatArray, Recording, RecordingKind
 
@@ -91,6 +93,7 @@ class ResultPage(QWidget):
         self._look = look
         self._analysis: Analysis | None = None
         self._can_choose = False
+        self._who = NOBODY
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._is_compact = False
         self._is_narrow = False
@@ -143,6 +146,7 @@ class ResultPage(QWidget):
         *,
         is_prosthetic: bool = False,
         can_choose: bool = False,
+        who: AgeAndHeight = NOBODY,
     ) -> None:
         """Show the recording that was on the screen, if `analysis` has it, else its first walk or first recording.
 
@@ -154,11 +158,13 @@ class ResultPage(QWidget):
             Whether the affected side of `analysis` wears a prosthesis.
         can_choose
             Whether somebody keeps which strides are left out: see `strides`.
+        who
+            Whose walks they are, as far as that chooses a band.
         """
-        self._analysis, self._can_choose = analysis, can_choose
+        self._analysis, self._can_choose, self._who = analysis, can_choose, who
         shown = self.recordings.currentText()
         parts = conditions_of(analysis, session)
-        self.compare.show_conditions(parts, analysis.affected_side, is_prosthetic, analysis.is_simulated)
+        self.compare.show_conditions(analysis, parts, is_prosthetic, who)
         names = [recording.name for recording in analysis.recordings]
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
@@ -390,7 +396,7 @@ class ResultPage(QWidget):
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
         calibrated, is_simulated = self._analysis.calibrated_for(recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
-        self.cycles.show_walk(recording, is_simulated)
+        self.cycles.show_walk(recording, is_simulated, self._who, sides_with_band(self._analysis, recording))
         self.strides.show_walk(recording, self._can_choose)
         self.facts.show_joints(calibrated)
         self._on_method_chosen()
@@ -419,7 +425,7 @@ class ResultPage(QWidget):
 
     def _on_stride_picked(self, is_knee: bool, percent: float, angle_deg: float) -> None:
         if self.view.choice == STRIDES:
-            self.strides.choose_nearest(is_knee, percent, angle_deg)
+            self.strides.choose_nearest(is_knee, percent, angle_deg, self.cycles.charts.heights_deg)
 
     def _on_band_toggled(self, is_shown: bool) -> None:
         self.cycles.charts.set_band_shown(is_shown)

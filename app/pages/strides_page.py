@@ -75,14 +75,17 @@ class StridesPage(Card):
         self.list.set_shapes_shown(not are_beside)
         self.legend.setVisible(not are_beside)
 
-    def choose_nearest(self, is_knee: bool, percent: float, angle_deg: float) -> None:
-        """Go to the stride whose curve runs nearest to a point of its chart."""
+    def choose_nearest(
+        self, is_knee: bool, percent: float, angle_deg: float, heights_deg: Mapping[Joint, float]
+    ) -> None:
+        """Go to the stride whose curve runs nearest to a point of its chart; `heights_deg`: drawn so much lower."""
         best: tuple[float, int] | None = None
         at = int(np.clip(round(percent), 0, 100))
         for row, line in enumerate(self.list.strides.lines):
-            curve = self._curves(line).get(Joint(f"{line.side}_{'knee' if is_knee else 'ankle'}"))
+            joint = Joint(f"{line.side}_{'knee' if is_knee else 'ankle'}")
+            curve = self._curves(line).get(joint)
             if curve is not None and line.is_used:
-                distance = abs(float(curve[at]) - angle_deg)
+                distance = abs(float(curve[at]) - heights_deg.get(joint, 0.0) - angle_deg)
                 best = min(best or (distance, row), (distance, row))
         if best is not None:
             self.list.choose(best[1])

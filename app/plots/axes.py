@@ -10,6 +10,7 @@ from core.samples import FloatArray
 
 KNEE_DEG = (-10.0, 80.0)
 ANKLE_DEG = (-30.0, 30.0)
+ABOUT_MEAN_DEG = {KNEE_DEG: (-40.0, 50.0), ANKLE_DEG: ANKLE_DEG}  # of curves without a height
 AXIS_WIDTH, RIGHT_MARGIN = 40, 16  # fixed, so that charts above one another align
 WIDEN_TO_DEG = 10  # a range that is left is widened to the next full ten
 

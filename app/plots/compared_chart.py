@@ -46,10 +46,11 @@ class ComparedChart(CycleChart):
         self._side = side
         self.lines: tuple[Line, ...] = ()
 
-    def show_lines(self, lines: Sequence[Line], is_simulated: bool) -> None:
+    def show_lines(self, lines: Sequence[Line], is_simulated: bool, is_about_mean: bool = False) -> None:
         """Draw every line that is known, and widen the axis where one leaves it."""
         self.lines, self.is_simulated = tuple(line for line in lines if line.mean.n), is_simulated
-        self.range_deg = range_for(self._fixed, [line.mean.mean for line in self.lines])
+        self.is_about_mean = is_about_mean
+        self.range_deg = range_for(self._usual_deg, [line.mean.mean for line in self.lines])
         self.redraw()
 
     def pen_of(self, k: int) -> QPen:
@@ -173,11 +174,11 @@ class ComparedFrame(Card):
     def note(self) -> str:
         return self._note.text()
 
-    def show_lines(self, lines: Sequence[Line], note: str, is_simulated: bool) -> None:
-        self.chart.show_lines(lines, is_simulated)
+    def show_lines(self, lines: Sequence[Line], note: str, is_simulated: bool, *, is_about_mean: bool = False) -> None:
+        self.chart.show_lines(lines, is_simulated, is_about_mean)
         said = [note] if note else []
         if not self.chart.lines:
-            said = [tr("Not measured, or the sign is unsure.")]
+            said = said or [tr("Not measured.")]
         elif self.chart.is_widened:
             said.append(range_in_words(self.chart.range_deg))
         self._note.setText(" ".join(said))

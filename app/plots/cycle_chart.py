@@ -3,7 +3,7 @@
 The chart paints itself: nobody zooms a stride, and so every label finds its place.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +13,12 @@ from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEve
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.plots.axes import (
+    ABOUT_MEAN_DEG,
     ANKLE_DEG,
     AXIS_WIDTH,
     KNEE_DEG,
     degrees_in_words,
+    joint_of,
     nothing_in_words,
     part_in_words,
     range_for,
@@ -30,19 +32,23 @@ from app.reports.walk_figures import (
     NO_ZERO,
     WITHHELD,
     SideCycle,
+    doubt_in,
     is_mean_enough,
     is_spread_enough,
+    reason_in_words,
 )
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.withheld_panel import WithheldPanel
 from app.wording import joined, later, tr
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.norms import ReferenceCurves
 from core.samples import FloatArray
+from core.verdicts.model import JointVerdicts
 
 LEAST_SIZE = (284, 160)
 LABEL_HEIGHT = 24  # toe-off stands above the plot
@@ -56,7 +62,6 @@ STRIDE_ALPHA = 0.7
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
     NO_HEIGHT: later("{sides}: the height cannot be read. Range and shape hold."),
-    WITHHELD: later("{sides}: withheld. The curve is shown as evidence, not to be read."),
     MAY_BE_MIRRORED: later("{sides}: sign unsure. The curve may be upside down."),
 }
 SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
@@ -81,8 +86,6 @@ class CycleCharts(QWidget):
         super().__init__()
         self._look = look
         knee, ankle = CycleChart(look, KNEE_DEG), CycleChart(look, ANKLE_DEG)
-        knee.band = Band(reference.knee_mean_deg, reference.knee_sd_deg)
-        ankle.band = Band(reference.ankle_mean_deg, reference.ankle_sd_deg)
         self.knee = CycleFrame(look, knee, is_knee=True)
         self.ankle = CycleFrame(look, ankle, is_knee=False)
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
@@ -90,6 +93,7 @@ class CycleCharts(QWidget):
         for frame in self.frames:
             self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
+        self.set_band(reference)
         look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
@@ -97,26 +101,40 @@ class CycleCharts(QWidget):
     def frames(self) -> tuple["CycleFrame", "CycleFrame"]:
         return self.knee, self.ankle
 
-    def show_cycles(self, cycles: Mapping[Joint, SideCycle], doubts: Mapping[Joint, str], is_simulated: bool) -> None:
-        """Draw the joints of one walk; `doubts` names those whose height says nothing, and why."""
+    @property
+    def heights_deg(self) -> dict[Joint, float]:
+        """By how much the curves of joints without a height are drawn lower than they were measured."""
+        found: dict[Joint, float] = {}
+        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+            found |= {joint_of(side, is_knee): height for side, height in frame.heights_deg.items()}
+        return found
+
+    def show_cycles(
+        self, cycles: Mapping[Joint, SideCycle], verdicts: Mapping[Joint, JointVerdicts], is_simulated: bool
+    ) -> None:
+        """Draw the joints of one walk, as far as the verdicts let them be seen; a joint without one can be read."""
         for frame, is_knee in ((self.knee, True), (self.ankle, False)):
             frame.show_cycles(
                 {joint.side: cycle for joint, cycle in cycles.items() if joint.is_knee is is_knee},
-                {joint.side: why for joint, why in doubts.items() if joint.is_knee is is_knee},
+                {joint.side: found for joint, found in verdicts.items() if joint.is_knee is is_knee},
                 is_simulated,
             )
+
+    def set_band(self, reference: ReferenceCurves | None) -> None:
+        """Draw this group's band, or none where none may stand beside the walk."""
+        for frame, kind in ((self.knee, "knee"), (self.ankle, "ankle")):
+            frame.chart.band = Band(*reference.mean_and_sd_deg(kind)) if reference is not None else None
+            frame.chart.redraw()
 
     def show_stride(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
         """Draw one stride (101,) over all others, bold; none: no stride is in force."""
         for frame, is_knee in ((self.knee, True), (self.ankle, False)):
             found = [(joint.side, curve) for joint, curve in curves_deg.items() if joint.is_knee is is_knee]
-            frame.chart.stride = found[0] if found else None
-            frame.chart.redraw()
+            frame.show_stride(found[0] if found else None)
 
     def set_strides_shown(self, is_shown: bool) -> None:
         for frame in self.frames:
-            frame.chart.has_strides = is_shown
-            frame.chart.redraw()
+            frame.set_strides_shown(is_shown)
 
     def set_band_shown(self, is_shown: bool) -> None:
         for frame in self.frames:
@@ -143,6 +161,8 @@ class CycleFrame(Card):
         self._keys = {side: SideKey(look, side) for side in Side}
         self._mark = IconMark(look, Icon.WARNING, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
+        self.withheld = {side: WithheldPanel(look, side) for side in Side}
+        self.heights_deg: dict[Side, float] = {}
         super().__init__(look, padding=12, spacing=2)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         head = QHBoxLayout()
@@ -158,27 +178,59 @@ class CycleFrame(Card):
         notes.addWidget(self._note, 1)
         self.column.addLayout(head)
         self.column.addLayout(notes)
-        self.column.addWidget(chart, 1)
+        for panel in self.withheld.values():
+            self.column.addWidget(panel)
+        self.column.addWidget(chart, 3)
 
     @property
     def note(self) -> str:
         return self._note.text()
 
-    def show_cycles(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str], is_simulated: bool) -> None:
-        self.chart.show_cycles(cycles, is_simulated)
+    def show_cycles(
+        self, cycles: Mapping[Side, SideCycle], verdicts: Mapping[Side, JointVerdicts], is_simulated: bool
+    ) -> None:
+        """Draw what may be seen; without a height of every leg that is drawn, all are drawn about their own mean."""
+        doubts = {side: why for side, found in verdicts.items() if side in cycles and (why := doubt_in(found))}
+        reasons = {side: reason_in_words(found) for side, found in verdicts.items() if side in cycles}
+        is_about_mean = any(why != WITHHELD for why in doubts.values())
+        self.heights_deg = {side: cycle.height_deg for side, cycle in cycles.items()} if is_about_mean else {}
+        drawn = {side: cycle.about_mean() for side, cycle in cycles.items()} if is_about_mean else cycles
+        withheld = frozenset(side for side, why in doubts.items() if why == WITHHELD)
+        self.chart.show_cycles(drawn, is_simulated, withheld, is_about_mean)
         for side, key in self._keys.items():
-            key.setVisible(side in cycles)
-        self._note.setText(" ".join(self._notes(cycles, doubts)))
+            key.setVisible(side in cycles and side not in withheld)
+            self.withheld[side].tell(reasons[side] if side in withheld else "")
+        self._note.setText(" ".join(self._notes(cycles, doubts, reasons)))
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
+        self._show_chart()
         self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self._is_knee)))
         self.chart.setAccessibleDescription(self.in_words())
+
+    def show_stride(self, stride: tuple[Side, FloatArray] | None) -> None:
+        """Draw one stride (101,) over all others, bold."""
+        self.chart.stride = (stride[0], stride[1] - self.heights_deg.get(stride[0], 0.0)) if stride else None
+        self.chart.redraw()
+
+    def set_strides_shown(self, is_shown: bool) -> None:
+        self.chart.has_strides = is_shown
+        self._show_chart()
+        self.chart.redraw()
+
+    def _show_chart(self) -> None:
+        """Leave it away where nothing of it could be seen: the panels then take its place."""
+        chart = self.chart
+        is_empty = bool(chart.cycles) and not any(chart.is_drawn(side) for side in chart.cycles)
+        chart.setVisible(not is_empty)
 
     def in_words(self) -> str:
         """Say each side's mean curve, for who cannot see it."""
         said = [tr("Simulated.")] if self.chart.is_simulated else []
         for side, cycle in self.chart.cycles.items():
             part = part_in_words(side, self._is_knee)
+            if side in self.chart.withheld:
+                said.append(f"{part}: {self.withheld[side].text}")
+                continue
             if not cycle.mean.n:
                 said.append(tr("{part} has no usable stride.").format(part=part))
                 continue
@@ -201,14 +253,24 @@ class CycleFrame(Card):
         said += [self.note] if self.note else []
         return " ".join(said) or nothing_in_words(self._is_knee)
 
-    def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
+    def _notes(
+        self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str], reasons: Mapping[Side, str]
+    ) -> list[str]:
         notes = []
         for why, what in DOUBTS.items():
             sides = [LETTERS[side] for side in doubts if doubts[side] == why]
             notes += [tr(what).format(sides=joined(sides))] if sides else []
+        if self.chart.is_about_mean:
+            notes.append(tr("0° is the mean of the stride."))
+        with_care: dict[str, list[str]] = {}
+        for side, reason in reasons.items():
+            if reason and side not in doubts:
+                with_care.setdefault(reason, []).append(LETTERS[side])
+        for reason, sides in with_care.items():
+            notes.append(tr("{sides}: read with care. {reason}").format(sides=joined(sides), reason=reason))
         if not cycles:
             notes.append(nothing_in_words(self._is_knee))
-        empty = [LETTERS[side] for side, cycle in cycles.items() if not cycle.mean.n]
+        empty = [LETTERS[s] for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]
         if empty:
             notes.append(tr("{sides}: no usable stride.").format(sides=joined(empty)))
         if self.chart.is_widened:
@@ -229,6 +291,8 @@ class CycleChart(QWidget):
         self.band: Band | None = None
         self.is_simulated = False
         self.has_band, self.has_strides = True, False
+        self.is_about_mean = False
+        self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -236,7 +300,11 @@ class CycleChart(QWidget):
 
     @property
     def is_widened(self) -> bool:
-        return self.range_deg != self._fixed
+        return self.range_deg != self._usual_deg
+
+    @property
+    def _usual_deg(self) -> tuple[float, float]:
+        return ABOUT_MEAN_DEG.get(self._fixed, self._fixed) if self.is_about_mean else self._fixed
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -245,11 +313,30 @@ class CycleChart(QWidget):
     def minimumSizeHint(self) -> QSize:
         return self.sizeHint()
 
-    def show_cycles(self, cycles: Mapping[Side, SideCycle], is_simulated: bool) -> None:
+    def show_cycles(
+        self,
+        cycles: Mapping[Side, SideCycle],
+        is_simulated: bool,
+        withheld: frozenset[Side] = frozenset(),
+        is_about_mean: bool = False,
+    ) -> None:
         """Draw each side's strides, and widen the axis where their mean leaves it."""
         self.cycles, self.is_simulated = cycles, is_simulated
-        self.range_deg = range_for(self._fixed, [cycle.mean.mean for cycle in cycles.values()])
+        self.withheld, self.is_about_mean = withheld, is_about_mean
+        means = [cycle.mean.mean for side, cycle in cycles.items() if side not in withheld]
+        self.range_deg = range_for(self._usual_deg, means)
         self.redraw()
+
+    def is_drawn(self, side: Side) -> bool:
+        """Whether a side is to be seen: of what is withheld, single strides where they are wanted or few."""
+        return side not in self.withheld or self._has_strides_of(side)
+
+    def _has_strides_of(self, side: Side) -> bool:
+        return self.has_strides or (side in self.withheld and not is_mean_enough(len(self.cycles[side].strides_deg)))
+
+    def _means(self) -> Iterator[tuple[Side, SideCycle]]:
+        """Those whose mean may be seen."""
+        return ((side, cycle) for side, cycle in self.cycles.items() if side not in self.withheld)
 
     def redraw(self) -> None:
         """Paint anew, since what is shown has changed."""
@@ -299,20 +386,20 @@ class CycleChart(QWidget):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.save()
         painter.setClipRect(self.plot_area())
-        if self.has_band and self.band is not None:
+        if self.has_band and self.band is not None and not self.is_about_mean:
             for sds, colour in ((2, self._look.theme.colours.band_2sd), (1, self._look.theme.colours.band_1sd)):
                 self._fill(painter, self.band.mean_deg, sds * self.band.sd_deg, QColor(colour))
         painter.restore()
         self._paint_axes(painter)
         painter.save()
         painter.setClipRect(self.plot_area())
-        for side, cycle in self.cycles.items():
+        for side, cycle in self._means():
             if is_spread_enough(cycle.mean.n) and not self.has_strides:
                 self._fill(painter, cycle.mean.mean, cycle.mean.sd, self._look.theme.band(side))
-        if self.has_strides:
-            for side, cycle in self.cycles.items():
-                self._paint_strides(painter, side, cycle)
         for side, cycle in self.cycles.items():
+            if self._has_strides_of(side):
+                self._paint_strides(painter, side, cycle)
+        for side, cycle in self._means():
             if cycle.mean.n:
                 self._paint_mean(painter, side, cycle)
         if self.stride is not None:
@@ -353,6 +440,8 @@ class CycleChart(QWidget):
         theme, is_few = self._look.theme, len(cycle.strides_deg) <= SMOOTH_UP_TO
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
         colour = theme.curve(side) if is_few else theme.soft(side)
+        if side in self.withheld:
+            colour = QColor(theme.colours.control)  # evidence, not to be read
         colour.setAlphaF(STRIDE_ALPHA if is_few else 1.0)
         painter.setPen(QPen(colour, STRIDE_PX * theme.scale if is_few else 0))
         for stride_deg in cycle.strides_deg:
@@ -370,17 +459,14 @@ class CycleChart(QWidget):
         painter.drawPolyline(curve)
 
     def _paint_mean(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
-        """Left solid, right dashed, on a casing that lifts it off the band; grey where too few strides make a mean."""
+        """Left solid, right dashed, on a casing that lifts it off the band."""
         theme = self._look.theme
         curve = self._polygon(PERCENT, cycle.mean.mean)
         casing = theme.pen(theme.colours.surface, CASING_PX)
         casing.setCapStyle(Qt.PenCapStyle.FlatCap)
         painter.setPen(casing)
         painter.drawPolyline(curve)
-        pen = theme.side_pen(side, MEAN_PX)
-        if not is_mean_enough(cycle.mean.n):
-            pen.setColor(QColor(theme.colours.control))
-        painter.setPen(pen)
+        painter.setPen(theme.side_pen(side, MEAN_PX))
         painter.drawPolyline(curve)
 
     def _paint_labels(self, painter: QPainter) -> None:
@@ -409,7 +495,7 @@ class CycleChart(QWidget):
         """Each side's toe-off, percent, the earlier first."""
         known = [
             (side, cycle.toe_off_percent)
-            for side, cycle in self.cycles.items()
+            for side, cycle in self._means()
             if cycle.mean.n and np.isfinite(cycle.toe_off_percent)
         ]
         return sorted(known, key=lambda found: round(found[1]))  # left first where both read the same

@@ -32,7 +32,7 @@ from core.verdicts.measurement_error import (
     compare,
     mean_of_strides,
 )
-from core.verdicts.model import Assessment, Verdicts, pooled, together
+from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.quantities import (
     QUANTITIES,
     WINDOWS,
@@ -158,6 +158,15 @@ class Part:
             return mean_cycle(np.empty((0, POINTS)))
         walks = [walk for walk in self.walks if joint.side in walk.gait]
         return mean_cycle(np.rad2deg(np.concatenate([used_cycles(walk, joint) for walk in walks])))
+
+    def is_measured(self, side: Side, measure: Measure) -> bool:
+        joint = measure.joint(side)
+        return side in self.sides and (joint is None or joint in self.joints)
+
+    def is_drawn(self, joint: Joint) -> bool:
+        """Whether the joint's curve may be seen at all."""
+        found = self.verdicts.joint(joint)
+        return together((found.shape, found.sign)).is_told
 
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
@@ -310,6 +319,7 @@ class SideRow:
     measure: Measure
     first: MeanAndSd
     second: MeanAndSd
+    verdicts: tuple[Verdict, Verdict]
     difference: Difference
     symmetry_percent: float
 
@@ -328,16 +338,18 @@ def first_and_second(affected: Side | None) -> tuple[Side, Side]:
 
 
 def compare_sides(part: Part, sides: tuple[Side, Side]) -> tuple[SideRow, ...]:
-    """Every measure that both legs have, as `first_and_second` orders them; empty with one leg."""
+    """Every measure that was taken of both legs, as `first_and_second` orders them; empty with one leg."""
     first, second = sides
     rows = []
     for measure in MEASURES:
-        one, other = part.value(first, measure.column), part.value(second, measure.column)
-        if not (one.n and other.n):
+        if not all(part.is_measured(side, measure) for side in sides):
             continue
-        has_index = not measure.needs_height and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
+        one, other = part.value(first, measure.column), part.value(second, measure.column)
+        is_biased = not measure.kind and any(map(part.is_toe_off_biased, sides))
+        has_index = not measure.needs_height and not is_biased and min(one.n, other.n) >= MIN_STRIDES_FOR_MEAN
         symmetry = symmetry_index_percent(one.mean, other.mean) if has_index else math.nan
-        rows.append(SideRow(measure, one, other, compare_legs(part, measure.column, sides), symmetry))
+        verdicts = (part.assessment(first, measure.column).verdict, part.assessment(second, measure.column).verdict)
+        rows.append(SideRow(measure, one, other, verdicts, compare_legs(part, measure.column, sides), symmetry))
     return tuple(rows)
 
 

@@ -22,6 +22,7 @@ from core.verdicts.quantities import both_sides
 FOLDER = files("resources") / "reference_bands"
 
 
+NOBODY = AgeAndHeight()  # of whom nothing is known
 WHY_NO_BAND = {
     NoBand.CHILD: later("No band: the groups at hand are adults."),
     NoBand.SPEED_UNKNOWN: later("No band: it is chosen by walking speed, which is not known or withheld."),

@@ -5,20 +5,21 @@ The window and the report show the same rows, so that no number stands in one th
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from app.gates_in_words import gate_sentence
 from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
-from core.gait.spatiotemporal import MeanAndSd, mean_and_sd
+from core.gait.spatiotemporal import MeanAndSd
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
-from core.verdicts.model import Verdict
+from core.verdicts.model import JointVerdicts, Verdict
 from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, used_cycles
 
 
@@ -48,6 +49,16 @@ class SideCycle:
     mean: MeanCycle
     strides_deg: FloatArray
     toe_off_percent: float
+
+    @property
+    def height_deg(self) -> float:
+        """The mean over the stride: how high the curve lies as a whole."""
+        return float(np.mean(self.mean.mean)) if self.mean.n else 0.0
+
+    def about_mean(self) -> "SideCycle":
+        """The same without its height, as it is drawn where that says nothing."""
+        lowered = replace(self.mean, mean=self.mean.mean - self.height_deg)
+        return replace(self, mean=lowered, strides_deg=self.strides_deg - self.height_deg)
 
 
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
@@ -111,8 +122,8 @@ def few_strides_in_words(recording: RecordingAnalysis) -> str:
     without_spread = [side for side, n in counts.items() if is_mean_enough(n) and not is_spread_enough(n)]
     said = []
     if without_mean:
-        grey = tr("{sides}: under {count} strides, so the mean is shown in grey.")
-        said.append(grey.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
+        none = tr("{sides}: under {count} strides, so without a mean.")
+        said.append(none.format(sides=joined(without_mean), count=MIN_STRIDES_FOR_MEAN))
     if without_spread:
         bare = tr("{sides}: under {count} strides, so without spread.")
         said.append(bare.format(sides=joined(without_spread), count=MIN_STRIDES_FOR_SD))
@@ -121,10 +132,9 @@ def few_strides_in_words(recording: RecordingAnalysis) -> str:
 
 def side_cycle(recording: RecordingAnalysis, joint: Joint) -> SideCycle:
     """The joint's strides that are used and known over all of the stride."""
-    strides = recording.gait[joint.side].strides
     strides_deg = np.rad2deg(used_cycles(recording, joint))
     strides_deg = strides_deg[np.isfinite(strides_deg).all(axis=1)]
-    toe_off = mean_and_sd(strides.stance_percent[strides.is_used])
+    toe_off = side_mean(recording, joint.side, "stance_percent").found
     return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off.mean)
 
 
@@ -145,7 +155,7 @@ def peak_figures(recording: RecordingAnalysis, reference: ReferenceCurves | None
             unknown = {side: doubts[side] for side, mean in means.items() if not mean.assessment.is_told}
             sides = {side: mean.found for side, mean in means.items() if side not in unknown}
             unit, decimals = ("%", 0) if column.endswith("_percent") else ("°", 1)
-            band = band_of_peak(reference, kind, column, window) if reference is not None else None
+            band = band_of_peak(reference, kind, column, window) if reference is not None and sides else None
             care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
             figures.append(Figure(tr(name), unit, decimals, sides, band=band, unknown=unknown, with_care=care))
         found[kind] = tuple(figures)
@@ -168,7 +178,9 @@ def time_distance_figures(
         withheld = [side for side, mean in means.items() if mean.assessment.verdict is Verdict.WITHHELD]
         care = frozenset(side for side, mean in means.items() if mean.assessment.verdict is Verdict.CARE)
         unknown = dict.fromkeys(withheld, WITHHELD)
-        return Figure(label, unit, decimals, told, band=band if is_any else None, unknown=unknown, with_care=care)
+        return Figure(
+            label, unit, decimals, told, band=band if is_any and told else None, unknown=unknown, with_care=care
+        )
 
     def both(
         label: str, name: str, unit: str, decimals: int, value: float, band: tuple[float, float] | None = None
@@ -199,14 +211,28 @@ def time_distance_figures(
 
 def doubt_of(recording: RecordingAnalysis, joint: Joint) -> str | None:
     """Why a joint's curve does not say all that a curve can: the gravest of what is withheld; None where nothing is."""
-    found = recording.verdicts.joint(joint)
-    if not found.shape.is_told:
+    return doubt_in(recording.verdicts.joint(joint))
+
+
+def doubt_in(found: JointVerdicts) -> str | None:
+    """As `doubt_of`, of one joint's verdicts."""
+    if found.shape.verdict is Verdict.WITHHELD:
         return WITHHELD
-    if not found.sign.is_told:
+    if found.sign.verdict is Verdict.WITHHELD:
         return MAY_BE_MIRRORED
-    if found.height.is_told:
+    if found.height.verdict is not Verdict.WITHHELD:
         return None
     return NO_ZERO if any(reason.gate == "zero" for reason in found.height.reasons) else NO_HEIGHT
+
+
+def reason_in_words(found: JointVerdicts) -> str:
+    """The gravest reason against a joint's curve and what to do: of a withheld shape, else of a height, else care."""
+    for wanted in (Verdict.WITHHELD, Verdict.CARE):
+        for part in (found.shape, found.height):
+            for reason in part.reasons:
+                if reason.verdict is wanted:
+                    return gate_sentence(reason)
+    return ""
 
 
 def band_of_peak(

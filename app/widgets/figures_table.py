@@ -12,6 +12,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.gates_in_words import verdict_word
 from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
 from app.theme import Look
 from app.widgets.bare_table import ROW, BareTable
@@ -20,6 +21,7 @@ from app.widgets.text import SEMIBOLD
 from app.wording import capitalised, later, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
+from core.verdicts.model import Verdict
 
 HEAD = 32
 PADDING = 6
@@ -28,6 +30,7 @@ COLUMNS = 4
 SIDE_OF = {LEFT: Side.LEFT, RIGHT: Side.RIGHT}
 BAND_HEAD = later("band 1 SD")
 MINUS = "\N{MINUS SIGN}"
+CARE_MARK = "*"  # behind what is to be read with care
 Index = QModelIndex | QPersistentModelIndex
 
 
@@ -54,11 +57,17 @@ class FiguresModel(QAbstractTableModel):
         if column == BAND:
             return "", _range(row) if row.band is not None else ""
         if row.both is not None:
-            return (_number(row.both, row.decimals), "") if column == LEFT else ("", "")
+            return self._of_both(row) if column == LEFT else ("", "")
         side = SIDE_OF[column]
         if side in row.unknown:
             return "", tr(row.unknown[side])
-        return _mean(row.sides.get(side), row.decimals)
+        return _marked(_mean(row.sides.get(side), row.decimals), side in row.with_care)
+
+    def _of_both(self, row: Figure) -> tuple[str, str]:
+        if row.unknown_both:
+            return "", tr(row.unknown_both)
+        assert row.both is not None
+        return " ".join(filter(None, _marked((_number(row.both, row.decimals), ""), bool(row.with_care)))), ""
 
     def is_grey(self, index: Index) -> bool:
         """Tell whether too few strides stand behind a cell to make a mean."""
@@ -101,6 +110,8 @@ class FiguresModel(QAbstractTableModel):
         who = tr("reference band") if column == BAND else both or side_name(SIDE_OF[column])
         name = " ".join(filter(None, [heading, row.name[0].lower() + row.name[1:]]))
         said = f"{words} {row.unit}" if words else tr("no value")
+        if words.endswith(CARE_MARK):
+            said = f"{words.removesuffix(CARE_MARK).rstrip()} {row.unit}, {verdict_word(Verdict.CARE)}"
         return f"{capitalised(name)}, {who}: {said}"
 
 
@@ -246,6 +257,11 @@ def _mean(value: MeanAndSd | None, decimals: int) -> tuple[str, str]:
         return "", tr("none")
     spread = f"± {value.sd:.{decimals}f}" if is_spread_enough(value.n) else ""
     return _number(value.mean, decimals), spread
+
+
+def _marked(cell: tuple[str, str], is_care: bool) -> tuple[str, str]:
+    value, addition = cell
+    return (value, f"{addition} {CARE_MARK}".lstrip()) if is_care and value else cell
 
 
 def _range(figure: Figure) -> str:

@@ -118,17 +118,18 @@ def key_numbers(facts: Facts) -> list[dict[str, object]]:
         words = {side: away_in_words(away) for side in Side if math.isfinite(away := facts.away_sd(side, column))}
         found.append(_key_number(facts, column, titles[column], "°", facts.band(column), mean, "[1]", words, scales))
     stance = facts.time_distance[tr("Stance")]
-    words = {side: against_band(stance.sides[side].mean, stance.band) for side in _judged(facts, stance)}
+    words = _stance_in_words(facts, stance)
     title = tr("Stance, share of the stride")
     scales = {"stance_percent": (50, 75, 5)}
     return [*found, _key_number(facts, "stance_percent", title, "\u00a0%", stance.band, None, "[2]", words, scales)]
 
 
-def _judged(facts: Facts, figure: Figure) -> list[Side]:
-    """Legs whose figure of time or distance is said to lie somewhere against its band."""
-    if figure.band is None:
-        return []
-    return [side for side, value in figure.sides.items() if side in facts.sides_with_band and is_mean_enough(value.n)]
+def _stance_in_words(facts: Facts, stance: Figure) -> dict[Side, str]:
+    """Where the legs that may be compared with other people's lie against band [2]."""
+    if stance.band is None:
+        return {}
+    judged = {side: value for side, value in stance.sides.items() if side in facts.sides_with_band}
+    return {side: against_band(v.mean, stance.band) for side, v in judged.items() if is_mean_enough(v.n)}
 
 
 def _key_number(
@@ -147,9 +148,12 @@ def _key_number(
     decimals = 1 if column == "stance_percent" else 0
     parts = [(side[0].upper(), fixed(value, decimals) + unit) for side, value in known.items()]
     verdicts = {side: facts.assessment(side, column).verdict for side in facts.gait if facts.is_worn(side, column)}
-    said = [(s[0].upper(), verdict_word(v)) for s, v in verdicts.items() if v is Verdict.WITHHELD]
-    said += [(s[0].upper(), verdict_word(v)) for s, v in verdicts.items() if v is Verdict.CARE and s in known]
-    said += [(side[0].upper(), where) for side, where in words.items() if side in known]
+    said = []
+    for side, verdict in verdicts.items():
+        is_care = verdict is Verdict.CARE and side in known
+        told = [verdict_word(verdict)] if verdict is Verdict.WITHHELD or is_care else []
+        told += [words[side]] if side in words and side in known else []
+        said += [(side[0].upper(), ", ".join(told))] if told else []
     if not known:
         band = group_mean = None
     if band is not None:
@@ -211,6 +215,8 @@ def time_distance_table(facts: Facts) -> list[Block]:
     said = [band, symmetry, *swing] if len(facts.gait) == len(Side) else [band, *swing]
     if group is not None or facts.curves_group is not None:
         said.append(tr("Whose bands these are: last page."))
+    if facts.time_distance[tr("Double support")].unknown_both:
+        said.append(tr("Single and double support need both legs' timing beyond doubt."))
     if any(facts.assessment(side, column).verdict is Verdict.CARE for side in facts.gait for column in TOLD):
         said.append(tr("{mark}: read with care.").format(mark=CARE))
     return [heading(tr("Time and distance")), table(columns, rows), note(" ".join(said))]

@@ -56,18 +56,17 @@ def caveats(
     """
     if not facts.gait:
         return [tr("No foot or shank sensor told a stride of this walk.")]
-    places: dict[str, list[Place]] = {}
-    verdicts: dict[str, Verdict] = {}
+    places: dict[str, dict[Place, Verdict]] = {}
     for place, reason in _reasons(facts.verdicts):
-        said = gate_sentence(reason)
-        if is_of_joints and not isinstance(place, Joint):
-            continue
-        if place not in places.setdefault(said, []):
-            places[said].append(place)
-        verdicts[said] = worst((reason.verdict, verdicts.get(said, Verdict.READ)))
+        if isinstance(place, Joint) or not is_of_joints:
+            known = places.setdefault(gate_sentence(reason), {})
+            known[place] = worst((reason.verdict, known.get(place, Verdict.READ)))
+    gravest = {said: worst(known.values()) for said, known in places.items()}
     wanted = list(of)
-    told = [said for said in places if verdicts[said] in wanted]
-    return [f"{_where(facts, places[said])}: {said}" for said in sorted(told, key=lambda s: wanted.index(verdicts[s]))]
+    told = sorted((said for said in places if gravest[said] in wanted), key=lambda said: wanted.index(gravest[said]))
+    # what one reason withholds names it; what it leaves to be read with care beside that is in the table
+    where = {said: [place for place, verdict in places[said].items() if verdict is gravest[said]] for said in told}
+    return [f"{_where(facts, where[said])}: {said}" for said in told]
 
 
 def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:

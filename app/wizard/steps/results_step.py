@@ -177,12 +177,15 @@ class ResultsStep(Step):
         session = self._visit.evaluation.session
         if self._held is not None and self._held[0] is session and self._held[1] is analysis:
             return
+        from app.reports.reference_bands import NOBODY, age_and_height
+
         self._held = session, analysis  # of other words for a walk the same analysis may come
         results.show_analysis(
             analysis,
             session.recordings if session is not None else (),
             is_prosthetic=bool(self._visit.prosthetic_sides),
             can_choose=True,
+            who=age_and_height(session) if session is not None else NOBODY,
         )
 
     # how a joint was found

@@ -1,0 +1,67 @@
+"""In place of what is withheld: of which leg, why, and what to do. Hatched, so that nobody takes it for a curve."""
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+
+from app.gates_in_words import verdict_word
+from app.theme import CONTROL_RADIUS, Look
+from app.widgets.chip import Chip
+from app.widgets.text import SEMIBOLD, Text
+from app.wording import capitalised
+from core.body import Side
+from core.verdicts.model import Verdict
+
+PADDING = 8
+
+
+class WithheldPanel(QWidget):
+    """Hidden while there is nothing to say."""
+
+    def __init__(self, look: Look, side: Side) -> None:
+        super().__init__()
+        self._look = look
+        self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        self._word = Text(look, capitalised(verdict_word(Verdict.WITHHELD)), size=14, weight=SEMIBOLD)
+        self._why = Text(look, size=12, wraps=True)
+        self._words = QVBoxLayout()
+        self._words.addWidget(self._word)
+        self._words.addWidget(self._why)
+        self._words.addStretch(1)
+        self._row = QHBoxLayout(self)
+        self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignTop)
+        self._row.addLayout(self._words, 1)
+        look.changed.connect(self._on_look_changed)
+        self._on_look_changed()
+        self.tell("")
+
+    @property
+    def text(self) -> str:
+        return f"{self._word.text()}. {self._why.text()}" if self._why.text() else ""
+
+    def tell(self, why: str) -> None:
+        """Say why; empty: nothing is withheld."""
+        self._why.setText(why)
+        self.setAccessibleName(self.text)
+        self.setVisible(bool(why))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        radius = CONTROL_RADIUS * theme.scale
+        room = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        painter.setPen(theme.pen(theme.colours.control, 1))
+        painter.setBrush(QBrush(QColor(theme.colours.line), Qt.BrushStyle.BDiagPattern))
+        painter.drawRoundedRect(room, radius, radius)
+        for label in (self._word, self._why):  # words on hatching are hard to read
+            wraps = Qt.TextFlag.TextWordWrap
+            words = QRectF(label.fontMetrics().boundingRect(label.geometry(), wraps, label.text()))
+            painter.fillRect(words.adjusted(-theme.px(4), -1, theme.px(4), 1), QColor(theme.colours.surface))
+
+    def _on_look_changed(self) -> None:
+        px = self._look.theme.px
+        self._row.setContentsMargins(px(PADDING), px(PADDING), px(PADDING), px(PADDING))
+        self._row.setSpacing(px(8))
+        self._words.setSpacing(px(2))
+        self.update()
