@@ -11,11 +11,12 @@ from pytestqt.qtbot import QtBot
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_ZERO, SideCycle
+from app.reports.walk_figures import SideCycle
 from app.theme import Look, load_fonts
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle
 from core.samples import FloatArray
+from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, assess
 
 PERCENT = np.arange(101.0)
 
@@ -113,11 +114,93 @@ def test_the_spread_needs_ten_strides(charts: CycleCharts, look: Look) -> None:
         assert (inside.name() != look.theme.colours.surface.lower()) is has_spread, n
 
 
-def test_a_mean_of_fewer_than_three_strides_is_grey(charts: CycleCharts, look: Look) -> None:
-    chart = show(charts, left=cycle(2))
-    assert is_like(colour_at(chart, 72, 60), look.theme.colours.control)
-    chart = show(charts, left=cycle(3))
+def judged_as(shape: Assessment = READ, height: Assessment = READ, sign: Assessment = READ) -> JointVerdicts:
+    return JointVerdicts(shape, height, sign)
+
+
+PAIRING = assess([GateReason("pairing", Verdict.WITHHELD, 1.05, 1.3)])
+FEW = assess([GateReason("strides", Verdict.WITHHELD, 2, 3)])
+ZERO = assess([GateReason("zero", Verdict.WITHHELD)])
+SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
+SLANTED = assess([GateReason("axis", Verdict.CARE, 8.0, 6.5, "deg")])
+
+
+def test_of_a_withheld_joint_no_mean_is_drawn_but_why_and_what_to_do(charts: CycleCharts, look: Look) -> None:
+    cycles = {Joint.LEFT_KNEE: cycle(12, 60), Joint.RIGHT_KNEE: cycle(12, 40)}
+    charts.set_band_shown(False)
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
+    chart = charts.knee.chart
+    assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
+    assert [side for side, panel in charts.knee.withheld.items() if panel.isVisible()] == [Side.LEFT]
+    said = charts.knee.withheld[Side.LEFT].text
+    assert said.startswith("Withheld. The two sensors do not move as neighbours (margin 1.05, 1.30 wanted).")
+    assert "record free motion" in said
+    assert said in charts.knee.in_words()
+    assert list(chart.toe_off_labels()) == [Side.RIGHT]
+    charts.show_cycles(cycles, {}, is_simulated=False)
+    assert not charts.knee.withheld[Side.LEFT].isVisible()
     assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
+
+
+def test_with_both_legs_withheld_the_panels_take_the_charts_place(charts: CycleCharts) -> None:
+    nothing = judged_as(PAIRING, PAIRING)
+    cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
+    charts.show_cycles(cycles, dict.fromkeys(cycles, nothing), is_simulated=False)
+    assert not charts.knee.chart.isVisible()
+    charts.set_strides_shown(True)  # to choose from, in grey
+    assert charts.knee.chart.isVisible()
+    charts.set_strides_shown(False)
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: nothing}, is_simulated=False)
+    assert charts.knee.chart.isVisible()
+
+
+def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(charts: CycleCharts, look: Look) -> None:
+    charts.set_band_shown(False)
+    charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
+    chart = charts.knee.chart
+    assert "2 strides were used (3 wanted)" in charts.knee.withheld[Side.LEFT].text
+    highest = float(chart.cycles[Side.LEFT].strides_deg.max())
+    assert colour_at(chart, 72, highest).name() != look.theme.colours.surface.lower()
+    assert colour_at(chart, 72, 60).name() == look.theme.colours.surface.lower()
+
+
+def test_care_is_told_with_its_reason_once_for_both_legs(charts: CycleCharts) -> None:
+    cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12)}
+    slanted = judged_as(SLANTED, SLANTED)
+    charts.show_cycles(cycles, dict.fromkeys(cycles, slanted), is_simulated=False)
+    assert charts.knee.note.startswith("L and R: read with care. The joint's axis is known to 8.0° only")
+    charts.show_cycles(cycles, {Joint.RIGHT_KNEE: slanted}, is_simulated=False)
+    assert charts.knee.note.startswith("R: read with care.")
+    charts.show_cycles(cycles, {}, is_simulated=False)
+    assert charts.knee.note == ""
+
+
+def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band(
+    charts: CycleCharts, look: Look
+) -> None:
+    found = cycle(12, shift_deg=25.0)
+    charts.show_cycles({Joint.LEFT_KNEE: found}, {Joint.LEFT_KNEE: judged_as(height=ZERO)}, is_simulated=False)
+    chart = charts.knee.chart
+    assert np.mean(chart.cycles[Side.LEFT].mean.mean) == pytest.approx(0.0, abs=1e-9)
+    assert chart.range_deg == (-40.0, 50.0)
+    assert "Axis widened" not in charts.knee.note
+    group = reference_curves()
+    assert colour_at(chart, 30, float(group.knee_mean_deg[30])).name() == look.theme.colours.surface.lower()
+    assert charts.heights_deg == {Joint.LEFT_KNEE: pytest.approx(found.height_deg)}
+    charts.show_stride({Joint.LEFT_KNEE: found.strides_deg[0]})
+    assert chart.stride is not None
+    np.testing.assert_allclose(chart.stride[1], found.strides_deg[0] - found.height_deg)
+    charts.show_cycles({Joint.LEFT_KNEE: found}, {}, is_simulated=False)
+    assert charts.heights_deg == {}
+    assert chart.range_deg[0] == KNEE_DEG[0]
+
+
+def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts, look: Look) -> None:
+    chart, mean_deg = show(charts), float(reference_curves().knee_mean_deg[30])
+    charts.set_band(None)
+    assert colour_at(chart, 30, mean_deg).name() == look.theme.colours.surface.lower()
+    charts.set_band(reference_curves())
+    assert colour_at(chart, 30, mean_deg).name() != look.theme.colours.surface.lower()
 
 
 def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: Look) -> None:
@@ -142,11 +225,13 @@ def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleChart
 
 def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12), Joint.RIGHT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12, 20)}
-    charts.show_cycles(cycles, {Joint.LEFT_KNEE: NO_ZERO, Joint.RIGHT_KNEE: NO_ZERO}, is_simulated=False)
-    assert charts.knee.note == "L and R: no zero. Range and shape hold, height does not."
+    unset = judged_as(height=ZERO)
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: unset, Joint.RIGHT_KNEE: unset}, is_simulated=False)
+    told = "L and R: no zero. Range and shape hold, height does not. 0° is the mean of the stride."
+    assert charts.knee.note == told
     assert charts.ankle.note == ""
-    charts.show_cycles(cycles, {Joint.LEFT_ANKLE: MAY_BE_MIRRORED}, is_simulated=False)
-    assert charts.ankle.note == "L: sign unsure. The curve may be upside down."
+    charts.show_cycles(cycles, {Joint.LEFT_ANKLE: judged_as(height=SIGN, sign=SIGN)}, is_simulated=False)
+    assert charts.ankle.note.startswith("L: sign unsure. The curve may be upside down.")
 
 
 def test_a_side_without_a_whole_stride_is_no_trouble(charts: CycleCharts) -> None:

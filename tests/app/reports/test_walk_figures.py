@@ -10,15 +10,23 @@ import pytest
 from app.reports.comparison import Part, left_out_of_parts
 from app.reports.differences import SIDES, write_sides
 from app.reports.gait_csv import gait_tables
-from app.reports.reference_bands import reference_curves, time_distance_classes
+from app.reports.reference_bands import (
+    WHY_NO_BAND,
+    bands_of,
+    reference_curves,
+    sides_with_band,
+    time_distance_classes,
+)
 from app.reports.summary import summarise
 from app.reports.walk_figures import (
     MAY_BE_MIRRORED,
     NO_ZERO,
+    WITHHELD,
     Figure,
     by_hand_in_words,
     few_strides_in_words,
     peak_figures,
+    reason_in_words,
     side_cycle,
     strides_in_words,
     time_distance_figures,
@@ -27,13 +35,12 @@ from core.analysis import analyse
 from core.body import Joint, Side
 from core.chosen_strides import leave_out
 from core.gait.strides import Reason
-from core.results import Analysis, JointCalibration, RecordingAnalysis, ZeroKind
+from core.norms import AgeAndHeight, NoBand
+from core.results import Analysis, RecordingAnalysis, ZeroKind
 from core.samples import Recording
-from core.verdicts.gates import verdicts_of
 from core.verdicts.quantities import both_sides
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
-
-Walked = tuple[RecordingAnalysis, dict[Joint, JointCalibration]]
+from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides, with_used
 
 
 @pytest.fixture(scope="module")
@@ -43,16 +50,8 @@ def analysis() -> Analysis:
 
 
 @pytest.fixture
-def walked(analysis: Analysis) -> Walked:
-    (walk,) = (recording for recording in analysis.recordings if recording.gait)
-    return walk, dict(analysis.calibrations[0].joints)
-
-
-def with_used(walk: RecordingAnalysis, side: Side, count: int) -> RecordingAnalysis:
-    """Leave all strides of a side out as turning, but for the first `count`."""
-    gait = walk.gait[side]
-    reason = (Reason.USED,) * count + (Reason.TURN,) * (len(gait.strides) - count)
-    return replace(walk, gait={**walk.gait, side: replace(gait, strides=replace(gait.strides, reason=reason))})
+def walk(analysis: Analysis) -> RecordingAnalysis:
+    return walk_of(analysis)
 
 
 def named(figures: tuple[Figure, ...], name: str) -> Figure:
@@ -60,29 +59,27 @@ def named(figures: tuple[Figure, ...], name: str) -> Figure:
     return found
 
 
-def test_a_peak_is_the_mean_over_the_strides_used_alone(walked: Walked) -> None:
-    walk, _ = walked
-    few = with_used(walk, Side.LEFT, 4)
+def test_a_peak_is_the_mean_over_the_strides_used_alone(analysis: Analysis) -> None:
+    few = walk_of(with_few_strides(analysis, left=4))
     peak = named(peak_figures(few, reference_curves())["knee"], "Swing peak").sides[Side.LEFT]
-    cycles_deg = np.rad2deg(walk.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][:4])
+    cycles_deg = np.rad2deg(few.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][:4])
     assert peak.n == 4
     assert peak.mean == pytest.approx(float(cycles_deg[:, 55:91].max(axis=1).mean()))
 
 
-def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walked: Walked) -> None:
-    found = peak_figures(walked[0], reference_curves())
+def test_the_band_of_a_peak_stands_where_the_groups_mean_curve_has_its_own(walk: RecordingAnalysis) -> None:
+    found = peak_figures(walk, reference_curves())
     group = reference_curves()
     at = 55 + int(np.argmax(group.knee_mean_deg[55:91]))
     low, high = group.knee_mean_deg[at] - group.knee_sd_deg[at], group.knee_mean_deg[at] + group.knee_sd_deg[at]
     assert named(found["knee"], "Swing peak").band == pytest.approx((low, high))
     assert named(found["knee"], "At initial contact").band == pytest.approx((-2.556, 3.963), abs=1e-3)
     assert named(found["ankle"], "Range").band is None  # a mean curve has no spread of ranges
+    assert all(figure.band is None for figures in peak_figures(walk, None).values() for figure in figures)
 
 
-def test_without_a_zero_only_what_needs_none_is_told(walked: Walked) -> None:
-    walk, calibrated = walked
-    calibrated[Joint.LEFT_KNEE] = replace(calibrated[Joint.LEFT_KNEE], zero=ZeroKind.NONE)
-    walk = replace(walk, verdicts=verdicts_of(walk, calibrated, ()))
+def test_without_a_zero_only_what_needs_none_is_told(analysis: Analysis) -> None:
+    walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE))
     for figure in peak_figures(walk, reference_curves())["knee"]:
         holds = figure.name in ("Range", "Swing peak at, %")
         assert (Side.LEFT in figure.sides) is holds, figure.name
@@ -90,55 +87,98 @@ def test_without_a_zero_only_what_needs_none_is_told(walked: Walked) -> None:
         assert Side.RIGHT in figure.sides
 
 
-def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(walked: Walked) -> None:
-    walk, calibrated = walked
-    calibrated[Joint.RIGHT_ANKLE] = replace(calibrated[Joint.RIGHT_ANKLE], is_sign_certain=False)
-    walk = replace(walk, verdicts=verdicts_of(walk, calibrated, ()))
+def test_of_a_joint_that_may_be_mirrored_only_the_range_is_told(analysis: Analysis) -> None:
+    walk = walk_of(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_sign_certain=False))
     for figure in peak_figures(walk, reference_curves())["ankle"]:
         expected = {} if figure.name == "Range" else {Side.RIGHT: MAY_BE_MIRRORED}
         assert dict(figure.unknown) == expected, figure.name
 
 
-def test_time_and_distance_stand_beside_the_group_of_the_nearest_speed(walked: Walked) -> None:
-    walk, _ = walked
-    figures, group = time_distance_figures(walk, both_sides(walk), time_distance_classes())
+def test_of_sensors_that_are_no_neighbours_nothing_is_told_and_the_other_leg_is(analysis: Analysis) -> None:
+    walk = walk_of(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False))
+    for figure in peak_figures(walk, reference_curves())["ankle"]:
+        assert dict(figure.unknown) == {Side.RIGHT: WITHHELD}, figure.name
+        assert set(figure.sides) == {Side.LEFT}, figure.name
+    both = recalibrated(analysis, [Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE], is_same_joint=False)
+    assert all(figure.band is None for figure in peak_figures(walk_of(both), reference_curves())["ankle"])
+    figures = time_distance_figures(walk, None, frozenset(Side))
+    assert named(figures, "Stance").with_care == {Side.RIGHT}  # the foot's sensor may not be on this foot
+    assert named(figures, "Double support").unknown_both == WITHHELD
+    assert named(time_distance_figures(walk_of(analysis), None, frozenset(Side)), "Double support").unknown_both == ""
+
+
+def test_what_is_read_with_care_is_marked(analysis: Analysis) -> None:
+    walk = walk_of(recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
+    assert {figure.with_care for figure in peak_figures(walk, None)["knee"]} == {frozenset({Side.LEFT})}
+    assert {figure.with_care for figure in peak_figures(walk, None)["ankle"]} == {frozenset()}
+    assert "8.0°" in reason_in_words(walk.verdicts.joint(Joint.LEFT_KNEE))
+    assert reason_in_words(walk.verdicts.joint(Joint.RIGHT_KNEE)) == ""
+
+
+def test_time_and_distance_stand_beside_the_group_of_the_walks_speed(walk: RecordingAnalysis) -> None:
+    group = bands_of(walk, AgeAndHeight(30, 1.70)).values
     assert group is not None
     assert group.speed_class == "slow"
+    figures = time_distance_figures(walk, group, frozenset(Side))
     assert named(figures, "Walking speed").both == pytest.approx(0.95, abs=0.05)
     assert named(figures, "Walking speed").band is None
     assert named(figures, "Stride length").band == pytest.approx((2 * 0.53, 2 * 0.61))
     assert named(figures, "Cadence").band == pytest.approx((91.4, 104.4))
+    assert named(figures, "Double support").band is None
     length = named(figures, "Stride length").sides[Side.LEFT].mean
     assert length / named(figures, "Stride time").sides[Side.LEFT].mean == pytest.approx(0.95, abs=0.05)
 
 
-def test_one_measured_side_still_gives_cadence_and_speed(walked: Walked) -> None:
-    walk, calibrated = walked
-    alone = replace(walk, gait={Side.RIGHT: walk.gait[Side.RIGHT]})
-    alone = replace(alone, verdicts=verdicts_of(alone, calibrated, ()))
-    feet, whole = both_sides(alone), both_sides(walk)
-    assert feet.cadence_steps_min == pytest.approx(whole.cadence_steps_min, rel=0.02)
-    assert feet.speed_m_s == pytest.approx(whole.speed_m_s, rel=0.02)
+def test_a_prosthetic_leg_stands_beside_no_band_and_the_sound_one_does(analysis: Analysis) -> None:
+    walk = walk_of(analysis)
+    assert sides_with_band(analysis, walk) == set(Side)
+    sound = sides_with_band(replace(analysis, prosthetic_sides=frozenset({Side.RIGHT})), walk)
+    assert sound == {Side.LEFT}
+    rolls_on = replace(walk.gait[Side.RIGHT], is_toe_off_biased=True)
+    walk = walk_of(rewalked(analysis, gait={**walk.gait, Side.RIGHT: rolls_on}))
+    assert sides_with_band(analysis, walk) == {Side.LEFT}
+    group = time_distance_classes()[0]
+    assert named(time_distance_figures(walk, group, sound), "Stance").band is not None
+    assert named(time_distance_figures(walk, group, sound), "Cadence").band is None  # is of both legs
+    assert named(time_distance_figures(walk, group, frozenset()), "Stance").band is None
+
+
+def test_one_measured_side_still_gives_cadence_and_speed(analysis: Analysis) -> None:
+    whole = walk_of(analysis)
+    alone = walk_of(rewalked(analysis, gait={Side.RIGHT: whole.gait[Side.RIGHT]}))
+    feet, both = both_sides(alone), both_sides(whole)
+    assert feet.cadence_steps_min == pytest.approx(both.cadence_steps_min, rel=0.02)
+    assert feet.speed_m_s == pytest.approx(both.speed_m_s, rel=0.02)
     assert np.isnan(feet.double_support_percent)
     for figure in peak_figures(alone, reference_curves())["knee"]:
         assert set(figure.sides) == {Side.RIGHT}
 
 
-def test_without_distances_no_group_is_chosen(walked: Walked) -> None:
-    walk, _ = walked
+def test_without_distances_no_group_is_chosen(analysis: Analysis) -> None:
     gait = {}
-    for side, found in walk.gait.items():
+    for side, found in walk_of(analysis).gait.items():
         strides = replace(found.strides, length_m=np.full(len(found.strides), np.nan))
         gait[side] = replace(found, strides=strides)
-    walk = replace(walk, gait=gait)
-    figures, group = time_distance_figures(walk, both_sides(walk), time_distance_classes())
-    assert group is None
+    walk = walk_of(rewalked(analysis, gait=gait))
+    bands = bands_of(walk, AgeAndHeight(30, 1.70))
+    assert (bands.values, bands.why_no_values) == (None, NoBand.SPEED_UNKNOWN)
+    figures = time_distance_figures(walk, bands.values, frozenset(Side))
     assert all(figure.band is None for figure in figures)
     assert np.isfinite(named(figures, "Cadence").both or np.nan)
 
 
-def test_strides_left_out_are_counted_with_their_reasons(walked: Walked) -> None:
-    walk, _ = walked
+def test_every_reason_for_no_band_has_its_words() -> None:
+    assert set(WHY_NO_BAND) == set(NoBand)
+
+
+def test_a_curve_without_its_height_keeps_its_shape(walk: RecordingAnalysis) -> None:
+    found = side_cycle(walk, Joint.LEFT_KNEE)
+    lowered = found.about_mean()
+    assert np.mean(lowered.mean.mean) == pytest.approx(0.0, abs=1e-9)
+    np.testing.assert_allclose(lowered.strides_deg + found.height_deg, found.strides_deg)
+
+
+def test_strides_left_out_are_counted_with_their_reasons(walk: RecordingAnalysis) -> None:
     few = with_used(walk, Side.LEFT, 1)
     left_out = len(walk.gait[Side.LEFT].strides) - 1
     assert strides_in_words(Side.LEFT, few.gait[Side.LEFT]) == f"L: 1 stride used, {left_out} left out (turning)."
@@ -149,24 +189,22 @@ def test_strides_left_out_are_counted_with_their_reasons(walked: Walked) -> None
 
 
 @pytest.mark.parametrize("reason", [reason for reason in Reason if reason is not Reason.USED])
-def test_every_reason_to_leave_a_stride_out_has_its_words(walked: Walked, reason: Reason) -> None:
-    gait = walked[0].gait[Side.LEFT]
+def test_every_reason_to_leave_a_stride_out_has_its_words(walk: RecordingAnalysis, reason: Reason) -> None:
+    gait = walk.gait[Side.LEFT]
     strides = replace(gait.strides, reason=(reason,) * len(gait.strides))
     said = strides_in_words(Side.LEFT, replace(gait, strides=strides))
     assert said.startswith(f"L: 0 strides used, {len(gait.strides)} left out (")
     assert "_" not in said
 
 
-def test_what_few_strides_cost_is_said_by_side(walked: Walked) -> None:
-    walk, _ = walked
+def test_what_few_strides_cost_is_said_by_side(walk: RecordingAnalysis) -> None:
     assert few_strides_in_words(with_used(with_used(walk, Side.LEFT, 10), Side.RIGHT, 11)) == ""
     said = few_strides_in_words(with_used(with_used(walk, Side.LEFT, 2), Side.RIGHT, 9))
-    assert said == "L: under 3 strides, so the mean is shown in grey. R: under 10 strides, so without spread."
+    assert said == "L: under 3 strides, so without a mean. R: under 10 strides, so without spread."
     assert few_strides_in_words(with_used(with_used(walk, Side.LEFT, 0), Side.RIGHT, 11)) == ""  # there is no mean
 
 
-def test_a_stride_with_a_gap_is_in_no_mean_cycle(walked: Walked) -> None:
-    walk, _ = walked
+def test_a_stride_with_a_gap_is_in_no_mean_cycle(walk: RecordingAnalysis) -> None:
     gait = with_used(walk, Side.LEFT, 5).gait[Side.LEFT]
     cycles = gait.cycles[Joint.LEFT_KNEE].copy()
     cycles[1] = np.nan
