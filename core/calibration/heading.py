@@ -3,9 +3,9 @@
 import numpy as np
 
 from core.calibration.joint_axis import (
+    MIN_STEP_RAD,
     NEUTRAL_SCALE_RAD,
     RATE_SCALE_RAD_S,
-    MIN_STEP_RAD,
     SCAN_STEP_RAD,
     Candidates,
     heading_from_axes,
