@@ -10,12 +10,13 @@ import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.calibration import certainty
-from core.calibration.clinical_sign import ClinicalSign, ankle_sign, knee_sign, range_of
+from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_from_foot, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.chosen_strides import leave_out
 from core.clock_drift import about_clocks
 from core.findings import Finding, Severity
 from core.gait.clocks import leg_clocks
+from core.gait.foot import follow
 from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
 from core.joint_findings import about_angles, about_joint, about_missing_joints, about_session
@@ -288,6 +289,8 @@ def _calibration(
     zero_rad = standing if standing is not None else (float(np.median(moving)) if moving.size else 0.0)
     bend_rad, has_standing = wrap(moving - zero_rad), standing is not None
     sign = _clinical_sign(found, twists, is_walking, bend_rad, has_standing, knee)
+    if not joint.is_knee and not sign.is_certain and not (knee is not None and knee[0].is_contradicted):
+        sign = _sign_of_foot(tracks, found) or sign
     turn = session.turned_sign.get(joint, 1)
     zero = (
         ZeroKind.NONE if standing is None else ZeroKind.GONIOMETER if joint in session.zero_rad else ZeroKind.STANDING
@@ -369,6 +372,20 @@ def _clinical_sign(
         return ankle_sign(None, 0.0, shank_rate, is_walking)
     knee_found, knee_axis = knee
     return ankle_sign(knee_found, float(knee_axis @ found.geometry.axis_1), shank_rate, is_walking)
+
+
+def _sign_of_foot(tracks: SensorTracks, found: Identified) -> ClinicalSign | None:
+    """What the foot's own travel says of its ankle's sign; None where it does not say it for sure."""
+    joint = found.basis.joint
+    for recording in tracks.span:
+        if recording.name not in found.basis.walks or not tracks.is_usable(recording, joint.distal):
+            continue
+        for foot in tracks.oriented(recording, joint.distal, tracks.blocks(recording)[0]):
+            motion = follow(foot)
+            told = ankle_sign_from_foot(float(found.geometry.axis_2 @ motion.pitch_axis), len(motion.swings))
+            if motion.is_direction_certain and told.is_certain:
+                return told
+    return None
 
 
 def _by_walk(span: tuple[Recording, ...], bases: Bases, calibrated: dict[Basis, JointCalibration]) -> list[Calibration]:

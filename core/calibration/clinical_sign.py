@@ -14,6 +14,7 @@ MIN_RANGE_RAD = np.deg2rad(10.0)  # a stiff knee: its few degrees do not tell wh
 MIN_SWING_RAD_S = 0.7  # a shank slower than this is not walking
 MIN_MARGIN = 0.25
 MIN_AXES_ALIGNMENT = 0.5
+MIN_SWINGS = 3  # of a foot, for it to tell where its toes are
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,3 +97,17 @@ def ankle_sign(
     from_knee = knee.sign * (1 if alignment > 0 else -1)
     disagree = from_knee * swing < -MIN_MARGIN
     return ClinicalSign(-from_knee, min(knee.margin, abs(alignment)), not disagree)
+
+
+def ankle_sign_from_foot(pitch_alignment: float, swings: int) -> ClinicalSign:
+    """Sign of ankle dorsiflexion from the foot's own way: dorsiflexion lifts the toes, and a foot travels toes first.
+
+    Parameters
+    ----------
+    pitch_alignment
+        j2,ankle . the foot's pitch axis, toes up positive, both in the foot's sensor.
+    swings
+        How many told where the toes are.
+    """
+    is_certain = swings >= MIN_SWINGS and abs(pitch_alignment) >= MIN_AXES_ALIGNMENT
+    return ClinicalSign(1 if pitch_alignment >= 0 else -1, abs(pitch_alignment), is_certain)

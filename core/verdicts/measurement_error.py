@@ -260,21 +260,22 @@ def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrid
         sd=sd,
         n=n,
         standard_error=standard_error,
-        drift=_drift(known, standard_error),
+        drift=_drift(known, math.sqrt(sd / math.sqrt(n) * standard_error)),
         clock_error=clock_error,
     )
 
 
-def _drift(values: FloatArray, standard_error: float) -> float:
-    """Half of what halves or thirds differ by beyond chance, which the standard error holds already.
+def _drift(values: FloatArray, by_chance: float) -> float:
+    """Half of what halves or thirds differ by beyond chance.
 
-    By chance alone the squared half difference of halves is 1 squared standard error of the whole, that of the thirds
-    farthest apart 2.5.
+    By chance alone the squared half difference of halves is 1 squared error of the whole, that of the thirds farthest
+    apart 2.5. That strides are correlated may itself be drift, so `by_chance` holds the correlation half: it lies
+    between the error of uncorrelated strides and that of correlated ones.
     """
     beyond = 0.0
-    for parts, by_chance in ((2, 1.0), (3, 2.5)):
+    for parts, share in ((2, 1.0), (3, 2.5)):
         means = [part.mean() for part in np.array_split(values, parts) if len(part)]
-        beyond = max(beyond, 0.25 * float(np.ptp(means)) ** 2 - by_chance * standard_error**2)
+        beyond = max(beyond, 0.25 * float(np.ptp(means)) ** 2 - share * by_chance**2)
     return math.sqrt(beyond)
 
 

@@ -39,7 +39,7 @@ class Figure:
 
 
 FIGURES = {
-    "knee_range_deg": Figure(60.0, 2.0),
+    "knee_range_deg": Figure(60.0, 1.8),
     "knee_swing_peak_deg": Figure(62.0, 2.0),
     "ankle_range_deg": Figure(28.0, 1.8),
     "ankle_stance_dorsiflexion_deg": Figure(12.0, 1.5),

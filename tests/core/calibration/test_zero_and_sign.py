@@ -1,15 +1,20 @@
 """Which way does a joint bend, and where is its zero, on data made so that the answer is known?"""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
+from core.analysis import analyse
+from core.body import Joint, Segment, Site
 from core.calibration.clinical_sign import (
     MIN_RANGE_RAD,
     ClinicalSign,
     ankle_sign,
+    ankle_sign_from_foot,
     forward_swing,
     knee_sign,
     skewness,
@@ -17,6 +22,7 @@ from core.calibration.clinical_sign import (
 from core.calibration.zero import standing_twist, wrapped_to_zero
 from core.rotations import joint_frame, wrap
 from core.samples import FloatArray
+from devices.walker import Manner, Tissue, Walk, WalkerSettings, simulate
 
 T = np.arange(1000) / 100
 SWING = 7 * np.exp(2 * (np.cos(6 * T) - 1)) - 2  # 5 rad/s forward, 2 back
@@ -116,3 +122,28 @@ def test_whole_turns_are_taken_out_and_nothing_else() -> None:
     np.testing.assert_allclose(wrapped_to_zero(angle - 2 * np.pi), angle, atol=1e-12)
     assert np.isnan(wrapped_to_zero(np.full(3, np.nan))).all()
     assert len(wrapped_to_zero(np.empty(0))) == 0
+
+
+def test_an_ankle_takes_its_sign_from_the_way_of_its_foot() -> None:
+    """Dorsiflexion lifts the toes: an axis along the foot's own is turned so, whichever way it was found."""
+    assert ankle_sign_from_foot(0.95, swings=8) == ClinicalSign(1, 0.95, True)
+    assert ankle_sign_from_foot(-0.95, swings=8) == ClinicalSign(-1, 0.95, True)
+    assert not ankle_sign_from_foot(0.49, swings=8).is_certain
+    assert not ankle_sign_from_foot(0.95, swings=2).is_certain
+
+
+def test_a_foot_that_hardly_rolls_still_says_which_way_its_ankle_bends() -> None:
+    """The shank's swing alone leaves both ankles of this walk in doubt (0.25 and 0.23)."""
+    made = simulate(
+        WalkerSettings(seed=1, tissue=Tissue.SOFT, recordings=(Walk(strides=8, manner=Manner.FLAT, speed_m_s=0.5),))
+    )
+    sites = {site for site in Site if site.segment is not Segment.THIGH}
+    (walk,) = made.session.recordings
+    worn = replace(walk, imu={site: block for site, block in walk.imu.items() if site in sites})
+    analysis = analyse(replace(made.session, recordings=(worn,)))
+    for joint in (Joint.LEFT_ANKLE, Joint.RIGHT_ANKLE):
+        assert analysis.calibrations[-1].joints[joint].is_sign_certain
+        found, truth = analysis.recordings[0].joints[joint].angle_rad, made.truth.recordings["walk 1"].joints[joint]
+        true = np.interp(analysis.recordings[0].time_s, truth.time_s, truth.angle_rad)
+        is_known = np.isfinite(found)
+        assert np.corrcoef(found[is_known], true[is_known])[0, 1] > 0.5

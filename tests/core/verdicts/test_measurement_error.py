@@ -49,12 +49,12 @@ def test_strides_that_follow_one_another_count_for_less() -> None:
     """Five of 55, then five of 65: products of neighbours 4 x 25 - 25 + 4 x 25 = 175 of 250, so r = 0.7.
 
     SD sqrt(250/9) = 5.27046; 5.27046 / sqrt(10) x sqrt(1.7/0.3) = 1.66667 x 2.38048 = 3.96746. Half of what the
-    halves differ by is 5, of which chance makes 3.96746: sqrt(25 - 15.7407) = 3.04290.
+    halves differ by is 5, of which chance makes sqrt(1.66667 x 3.96746): sqrt(25 - 6.61243) = 4.28807.
     """
     found = mean_of_strides(np.array([55.0] * 5 + [65.0] * 5))
     assert found.standard_error == pytest.approx(3.96746, abs=1e-4)
-    assert found.drift == pytest.approx(3.04290, abs=1e-4)
-    assert found.uncertainty == pytest.approx(5.0)
+    assert found.drift == pytest.approx(4.28807, abs=1e-4)
+    assert found.uncertainty == pytest.approx(5.84195, abs=1e-4)
     # a long ramp has 0.97 and is taken as 0.9: 29.0115 / 10 x sqrt(1.9/0.1) = 12.6458
     assert mean_of_strides(np.arange(100.0)).standard_error == pytest.approx(12.6458, abs=1e-3)
 
@@ -62,11 +62,12 @@ def test_strides_that_follow_one_another_count_for_less() -> None:
 def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
     """Four of 60, of 63 and of 60: both halves are 61. Of deviations -1 and 2 the squares sum to 24, neighbours to 14.
 
-    r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.69091. The thirds: 0.25 x 3^2 - 2.5 x 0.69091 = 0.52273.
+    r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.18182 x 3.8 = 0.69091; chance sqrt(0.18182 x 0.69091) = 0.35443.
+    The thirds: 0.25 x 3^2 - 2.5 x 0.35443 = 1.36393.
     """
-    assert mean_of_strides(np.repeat([60.0, 63.0, 60.0], 4)).drift == pytest.approx(0.72300, abs=1e-4)
-    # six of 60 and of 62: r = 9/12, SE^2 = 12/11 / 12 x 1.75/0.25 = 0.63636; 0.25 x 2^2 - 0.63636 = 0.36364
-    assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(0.60302, abs=1e-4)
+    assert mean_of_strides(np.repeat([60.0, 63.0, 60.0], 4)).drift == pytest.approx(1.16787, abs=1e-4)
+    # six of 60 and of 62: r = 9/12, SE^2 = 0.09091 x 1.75/0.25 = 0.63636; 1 - sqrt(0.09091 x 0.63636) = 0.75948
+    assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(0.87148, abs=1e-4)
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
