@@ -421,7 +421,7 @@ def _angles(
         basis, found = bases.get((recording.name, joint)), measured.get((recording.name, joint))
         if basis is None or found is None:
             continue
-        joints[joint] = _angle(calibrated[basis], found)
+        joints[joint] = _angle(calibrated[basis], found, _ringing_rad_s(tracks, joint, measured))
     time_s, gait = _clock_of(tracks, recording), dict[Side, SideGait]()
     if recording.kind is RecordingKind.WALKING:
         offsets = {side: _clock_offset_s(tracks, recording, side, lags) for side in Side}
@@ -495,7 +495,17 @@ def _clock_offset_s(
     return sum(lags.get((recording.name, joint), 0.0) for joint in joints)
 
 
-def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:
+def _ringing_rad_s(
+    tracks: SensorTracks, joint: Joint, measured: dict[tuple[str, Joint], Twist]
+) -> float | None:
+    """How much tissue rings at a joint in the walk where it does most; None without a walk."""
+    walks = [recording.name for recording in tracks.span if recording.kind is RecordingKind.WALKING]
+    rung = [measured[name, joint].moving_ringing for name in walks if (name, joint) in measured]
+    found = [float(np.sqrt(np.mean(np.sum(one**2, axis=1)))) for one in rung if len(one)]
+    return max(found, default=None)
+
+
+def _angle(calibration: JointCalibration, found: Twist, ringing_rad_s: float | None) -> JointAngle:
     def clinical(twist_rad: FloatArray) -> FloatArray:
         turned = calibration.clinical_sign * (twist_rad - calibration.zero_rad) + calibration.offset_rad
         return wrapped_to_zero(turned)
@@ -503,10 +513,12 @@ def _angle(calibration: JointCalibration, found: Twist) -> JointAngle:
     published = clinical(found.published_rad)
     angle = published if calibration.method is Method.PUBLISHED else clinical(found.twist_rad)
     sd = certainty.angle_sd_rad(
+        np.abs(angle - np.nanmedian(angle)) if np.isfinite(angle).any() else np.zeros(len(angle)),
         robust_sd(found.moving_off_axis) if len(found.moving_off_axis) else 0.0,
         range_of(found.moving_twist) if len(found.moving_twist) else 0.0,
         calibration.joint.is_knee,
         calibration.is_hinge,
+        ringing_rad_s,
     )
     orientation = None if found.orientation_rad is None else clinical(found.orientation_rad)
     sd_rad = np.where(np.isfinite(angle), np.hypot(sd, found.broken_sd_rad), np.nan)

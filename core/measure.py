@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.angles.hinge_angle import hinge_angle
-from core.angles.twist import off_axis_rate, twist
+from core.angles.twist import off_axis_rate, ringing, twist
 from core.body import Joint
 from core.calibration.heading import heading_over
 from core.calibration.zero import within_half_a_turn
@@ -49,8 +49,8 @@ class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
     `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
-    find the vertical first. `moving_twist` (m,), `moving_off_axis` (m, 2) rad/s and `moving_rate_1`, `moving_rate_2`
-    (m,) rad/s (each sensor's own rate about its own axis) are thinned samples while the joint's segments move.
+    find the vertical first. `moving_twist` (m,), `moving_off_axis` and `moving_ringing` (m, 2) rad/s (all of the
+    off-axis rate, and what is above 3 Hz), `moving_rate_1`, `moving_rate_2` (m,) rad/s (each sensor's own rate about its own axis) are thinned samples while the joint's segments move.
     """
 
     twist_rad: FloatArray
@@ -59,6 +59,7 @@ class Twist:
     broken_sd_rad: FloatArray
     moving_twist: FloatArray
     moving_off_axis: FloatArray
+    moving_ringing: FloatArray
     moving_rate_1: FloatArray
     moving_rate_2: FloatArray
 
@@ -109,7 +110,8 @@ def measure(
                 _place(angles[name], values, pair, time_s, clock_offset_s, block)
             chosen = np.flatnonzero(pair.is_moving & pair.is_measured)[:: max(1, round(WITNESS_STEP_S / pair.step_s))]
             off_axis = off_axis_rate(pair, j1, heading)
-            witnesses.append((found["twist"][chosen], off_axis[chosen], pair.g1[chosen] @ j1, pair.g2[chosen] @ j2))
+            rung, rates = ringing(off_axis, pair.step_s)[chosen], (pair.g1[chosen] @ j1, pair.g2[chosen] @ j2)
+            witnesses.append((found["twist"][chosen], off_axis[chosen], rung, *rates))
         for pair in _north_pairs(tracks, recording, joint, block, geometry.lag_s):
             values = np.unwrap(-angle_from_orientations(pair.earth_from_1, pair.earth_from_2, j1, j2))
             _place(angles["orientation"], values, pair, time_s, clock_offset_s, block)
@@ -123,8 +125,9 @@ def measure(
         broken_sd_rad=np.nan_to_num(angles["broken_sd"]),
         moving_twist=within_half_a_turn(joined[0]) if joined else np.empty(0),
         moving_off_axis=joined[1] if joined else np.empty((0, 2)),
-        moving_rate_1=joined[2] if joined else np.empty(0),
-        moving_rate_2=joined[3] if joined else np.empty(0),
+        moving_ringing=joined[2] if joined else np.empty((0, 2)),
+        moving_rate_1=joined[3] if joined else np.empty(0),
+        moving_rate_2=joined[4] if joined else np.empty(0),
     )
 
 

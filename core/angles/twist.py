@@ -4,10 +4,13 @@ On a human joint the integral of g1.j1 - g2.j2 (eq 11) collects what moves besid
 """
 
 import numpy as np
+from scipy.signal import butter, sosfiltfilt
 
 from core.pair import Pair
 from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray
+
+RINGING_HZ = 3.0
 
 
 def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: FloatArray) -> FloatArray:
@@ -34,3 +37,11 @@ def off_axis_rate(pair: Pair, axis_1: FloatArray, heading_rad: FloatArray) -> Fl
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", pair.earth_from_2, pair.g2))
     relative = rate_2 - rate_1
     return np.stack([np.sum(relative * (pair.earth_from_1 @ v), axis=1) for v in joint_frame(axis_1)], axis=1)
+
+
+def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
+    """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings."""
+    if 1 / step_s < 4 * RINGING_HZ:
+        return off_axis
+    above = butter(2, RINGING_HZ, "highpass", fs=1 / step_s, output="sos")
+    return np.asarray(sosfiltfilt(above, off_axis, axis=0))

@@ -282,5 +282,6 @@ class _Certainty:
     def _found(self) -> float:
         c = self.calibration
         off_axis = robust_sd(np.array(self._across).view(np.float64)) if self._across else 0.0
-        reach = float(np.ptp(np.unwrap(np.array(self._twists)))) if c.is_hinge and self._twists else 0.0
-        return angle_sd_rad(off_axis, reach, c.joint.is_knee, c.is_hinge)
+        bent = np.unwrap(np.array(self._twists)) if self._twists else np.zeros(1)
+        usual = np.std(bent, keepdims=True)  # an average over postures
+        return float(angle_sd_rad(usual, off_axis, float(np.ptp(bent)), c.joint.is_knee, c.is_hinge)[0])

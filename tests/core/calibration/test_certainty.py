@@ -45,21 +45,30 @@ def test_the_weaker_axis_and_direction_count_and_the_floor_is_added() -> None:
 
 
 @pytest.mark.parametrize(
-    ("rate", "range_deg", "is_knee", "is_hinge", "expected_deg"),
+    ("rate", "distance_deg", "is_knee", "ringing", "expected_deg"),
     [
-        (0.0, 60.0, True, False, 1.5),
-        (0.0, 60.0, False, False, 0.3),
-        (1.0, 60.0, True, False, 4.8),
-        (0.5, 30.0, False, False, 1.95),
-        (0.0, 60.0, True, True, 0.54),
-        (0.1, 100.0, False, True, 1.03),
+        (0.0, 60.0, True, None, 0.8),
+        (1.0, 0.0, True, None, 2.8),
+        (1.0, 30.0, True, None, np.hypot(2.8, 3.6)),
+        (0.5, 0.0, False, None, 1.4),
+        (0.5, 20.0, False, None, np.hypot(1.4, 1.8)),
+        (0.5, 0.0, False, 0.5, 1.4),
+        (0.5, 0.0, False, 0.15, 0.7),
+        (0.5, 0.0, False, 0.0, 0.56),
+        (0.0, 0.0, False, None, 0.2),
     ],
 )
 def test_an_angle_s_spread_is_as_documented(
-    rate: float, range_deg: float, is_knee: bool, is_hinge: bool, expected_deg: float
+    rate: float, distance_deg: float, is_knee: bool, ringing: float | None, expected_deg: float
 ) -> None:
-    found = angle_sd_rad(rate, float(np.deg2rad(range_deg)), is_knee, is_hinge)
+    distance = np.deg2rad([distance_deg])
+    found = angle_sd_rad(distance, rate, 1.0, is_knee, is_hinge=False, ringing_rad_s=ringing)
     assert np.rad2deg(found) == pytest.approx(expected_deg)
+
+
+def test_on_a_hinge_only_the_range_counts() -> None:
+    found = angle_sd_rad(np.deg2rad([0.0, 50.0]), 0.1, float(np.deg2rad(100.0)), is_knee=True, is_hinge=True)
+    assert np.rad2deg(found) == pytest.approx([0.15, 0.15])
 
 
 def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
