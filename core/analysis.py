@@ -495,9 +495,7 @@ def _clock_offset_s(
     return sum(lags.get((recording.name, joint), 0.0) for joint in joints)
 
 
-def _ringing_rad_s(
-    tracks: SensorTracks, joint: Joint, measured: dict[tuple[str, Joint], Twist]
-) -> float | None:
+def _ringing_rad_s(tracks: SensorTracks, joint: Joint, measured: dict[tuple[str, Joint], Twist]) -> float | None:
     """How much tissue rings at a joint in the walk where it does most; None without a walk."""
     walks = [recording.name for recording in tracks.span if recording.kind is RecordingKind.WALKING]
     rung = [measured[name, joint].moving_ringing for name in walks if (name, joint) in measured]

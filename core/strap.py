@@ -11,14 +11,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.calibration.rest import rest_of
 from core.calibration.joint_axis import loss_and_weights, residuals
 from core.datasets import Datasets, gather
 from core.measure import pairs_of
 from core.pair import Pair
 from core.results import JointCalibration, Method
 from core.robust import robust_sd
-from core.rotations import joint_frame
-from core.samples import FloatArray, IntArray, Recording
+from core.rotations import angle_between, joint_frame
+from core.samples import FloatArray, ImuBlock, IntArray, Recording
 from core.sensors import SensorTracks
 
 WINDOW_S = 5.0  # some four strides
@@ -31,6 +32,8 @@ SIGMAS = 4.0
 MIN_USUAL_WINDOWS, WELL_KNOWN_WINDOWS = 2, 4
 WINDOWS_OF_SLIP = 2  # one may be a turn
 MIN_SLIP_SINCE_CALIBRATION_RAD = np.deg2rad(14.0)  # functional axes of free motion and of walking differ by half of it
+MAX_REFUTED_RAD = np.deg2rad(11.0)  # turns and tissue alone look like as much at an ankle
+MIN_GRAVITY_SHARE = 0.15
 MIN_SHARE = 0.4  # of the knee's turn that the ankle shows too, when the shank's sensor slipped
 
 
@@ -176,8 +179,33 @@ def slips_in_walks(
     for slip in slips(turns, np.inf if is_published else MIN_SLIP_SINCE_CALIBRATION_RAD):
         k = int(np.searchsorted(starts_s[1:-1], slip.from_s, side="right"))
         from_s = slip.from_s - starts_s[k] + tracks.span_of(walks[k])[0]
-        located.append((walks[k], replace(slip, from_s=from_s)))
+        found_slip = replace(slip, from_s=from_s)
+        if not is_refuted(tracks, walks[k], found_slip):
+            located.append((walks[k], found_slip))
     return located
+
+
+def is_refuted(tracks: SensorTracks, walk: Recording, slip: Slip) -> bool:
+    """Whether a foot's sensor that is said to have turned a little feels gravity at rest where it did before.
+
+    Thigh and shank hang along the vertical, about which their straps slip, so gravity tells nothing of them. The
+    instep slopes: a strap that slips there takes the vertical with it, by a third of the turn and more.
+    """
+    if slip.site.segment is not Segment.FOOT or abs(slip.turn_rad) > MAX_REFUTED_RAD:
+        return False
+    block, first = walk.imu[slip.site], tracks.span.index(walk)
+    cut = np.searchsorted(block.time_s, [slip.sure_until_s, slip.from_s + WINDOW_S])
+    parts = [_rows(block, rows) for rows in (slice(None, int(cut[0])), slice(int(cut[1]), None))]
+    before = [rest_of(parts[0]), *(tracks.rest(r, slip.site) for r in reversed(tracks.span[:first]))]
+    after = [rest_of(parts[1]), *(tracks.rest(r, slip.site) for r in tracks.span[first + 1 :])]
+    rests = [next((rest for rest in side if rest is not None), None) for side in (before, after)]
+    if rests[0] is None or rests[1] is None:
+        return False
+    return angle_between(rests[0].acc_m_s2, rests[1].acc_m_s2) < MIN_GRAVITY_SHARE * abs(slip.turn_rad)
+
+
+def _rows(block: ImuBlock, rows: slice) -> ImuBlock:
+    return ImuBlock(block.sensor, block.time_s[rows], block.gyr_rad_s[rows], block.acc_m_s2[rows])
 
 
 def _start_of_jump(turns: Turns, since_calibration_rad: float) -> float | None:

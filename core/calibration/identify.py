@@ -35,6 +35,7 @@ CANDIDATE_STEPS = 5
 POLISH_STEPS = 6
 MIN_MOVING_S = 2.0  # less movement than this identifies nothing
 RIVAL_HEADING_RAD = np.deg2rad(45.0)
+RATE_COST_FLOOR = 1e-9
 ACCELERATION_COST_FLOOR = 0.05
 MAX_LAG_SD_S = 0.002  # of a lag from free motion alone
 MAX_REST_S = 0.01  # after the first correction
@@ -152,7 +153,7 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
     some = data.thinned(DECISION_SAMPLES)
     forces = joint_forces(some)
     coincidence = fit_forces(forces, some.heading(found.knots_rad)[:, forces.chosen])
-    cost = np.log(found.cost) + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
+    cost = np.log(np.maximum(found.cost, RATE_COST_FLOOR)) + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
     best = int(np.argmin(cost))
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
     margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
@@ -161,7 +162,7 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
         if elevation[best].max() > MAX_ELEVATION_RAD:
             prior = np.sum(elevation**2, axis=1) / (2 * ELEVATION_SD_RAD**2)
             alike = [k for k in range(len(found)) if not _is_rival(found, best, k)]
-            level = min(alike, key=lambda k: np.log(found.cost[k]) + prior[k])
+            level = min(alike, key=lambda k: np.log(max(found.cost[k], RATE_COST_FLOOR)) + prior[k])
             return Decision(found.pick(level), float(cost[level]), margin, did_flexion_dominate=False)
     return Decision(found.pick(best), float(cost[best]), margin)
 
@@ -258,6 +259,8 @@ def _refined(
             residual = max(hinge_residual(one, j1, j2) for one in seen)
     else:
         centre = centre_by_lengths(free.thinned(POLISH_SAMPLES), centre.unknowns)
+    elevation = float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None
+    lies_flat = is_hinge or (elevation is not None and elevation < MAX_ELEVATION_RAD)
     return Identification(
         axis_1=j1,
         axis_2=j2,
@@ -268,8 +271,8 @@ def _refined(
         lag=lag,
         hinge_residual_rad_s=residual,
         is_hinge=is_hinge,
-        elevation_rad=float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None,
-        did_flexion_dominate=decision.did_flexion_dominate or is_hinge,
+        elevation_rad=elevation,
+        did_flexion_dominate=decision.did_flexion_dominate or lies_flat,
         disagreement=max(_disagreement(one, j1, j2) for one in seen),
     )
 
