@@ -49,8 +49,8 @@ class Twist:
     """One joint over one recording. Angles (n,) on the recording's clock, radians, NaN where unknown, without jumps.
 
     `broken_sd_rad` (n,) is what gaps add to the uncertainty: an orientation that starts anew amid a movement has to
-    find the vertical first. `moving_twist` (m,), `moving_off_axis` and `moving_ringing` (m, 2) rad/s (all of the
-    off-axis rate, and what is above 3 Hz), `moving_rate_1`, `moving_rate_2` (m,) rad/s (each sensor's own rate about its own axis) are thinned samples while the joint's segments move.
+    find the vertical first. The others are thinned samples (m, ...) while the joint's segments move: the angle, all of
+    the off-axis rate, what of it is above 3 Hz, and each sensor's own rate about its own axis.
     """
 
     twist_rad: FloatArray

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
-from core.calibration.rest import rest_of
 from core.calibration.joint_axis import loss_and_weights, residuals
+from core.calibration.rest import rest_of
 from core.datasets import Datasets, gather
 from core.measure import pairs_of
 from core.pair import Pair

@@ -2,8 +2,9 @@
 
     python -m tests.benchmarks.certainty --seeds 12 [--first 0]
 
-One line per tissue, kind of joint and kind of recording: share of samples within two standard deviations after removing
-the mean, pooled (93 to 97 % wanted) and in the worst session (80 %), and the standard deviation over the error (under 2).
+One line per tissue, kind of joint and kind of recording: share of samples within two standard deviations after
+removing the mean, pooled (93 to 97 % wanted) and in the worst session (80 %), and the standard deviation over the
+error (under 2).
 """
 
 import argparse

@@ -55,6 +55,11 @@ def changed(session: Session, change: Change, sites: tuple[Site, ...], names: tu
     return replace(session, recordings=recordings)
 
 
+def fast_clock(block: ImuBlock) -> ImuBlock:
+    """Stamps that run two percent fast."""
+    return replace(block, time_s=block.time_s[0] + 1.02 * (block.time_s - block.time_s[0]))
+
+
 def part(block: ImuBlock, here: BoolArray | slice) -> ImuBlock:
     return replace(block, time_s=block.time_s[here], gyr_rad_s=block.gyr_rad_s[here], acc_m_s2=block.acc_m_s2[here])
 
@@ -280,6 +285,9 @@ CASES: dict[str, Case] = {
     "flexion_did_not_dominate": Case(lying_called_standing),
     "lag_corrected": Case(lambda: walked(clock_late_s={SHANK: 0.03})),
     "clock_moved": Case(late_in_the_walk),
+    "clock_drifts": Case(
+        lambda: changed(walked(sites=LEFT, recordings=(Walk(strides=20),)), fast_clock, (SHANK,)),
+    ),
     "labels_look_swapped": Case(lambda: exchanged({SHANK: Site.RIGHT_SHANK, Site.RIGHT_SHANK: SHANK})),
     "labels_look_mixed": Case(lambda: exchanged({THIGH: SHANK, SHANK: FOOT, FOOT: THIGH})),
     "strap_slipped": Case(slipped),

@@ -67,8 +67,8 @@ def test_an_angle_s_spread_is_as_documented(
 
 
 def test_on_a_hinge_only_the_range_counts() -> None:
-    found = angle_sd_rad(np.deg2rad([0.0, 50.0]), 0.1, float(np.deg2rad(100.0)), is_knee=True, is_hinge=True)
-    assert np.rad2deg(found) == pytest.approx([0.15, 0.15])
+    found = angle_sd_rad(np.deg2rad([0.0, 50.0]), 0.1, 2.0, is_knee=True, is_hinge=True)
+    assert found == pytest.approx(2 * [np.deg2rad(0.05) + 0.004])
 
 
 def test_a_hinge_is_as_loose_as_its_axis_is_off(person: "Person") -> None:
