@@ -26,7 +26,9 @@ from core.gait.crossings import Onset, first_crossing, last_crossing, onset
 from core.gait.foot import FootMotion, follow
 from core.gait.sole import SoleTravel, travel_of
 from core.pair import OrientedTrack
+from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
+from core.tracks import MAX_REPORTED_GAP_S
 
 TOE_OFF_SHARE = 0.88
 CONTACT_SHARE = 0.69
@@ -39,6 +41,8 @@ FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up before landing may come
 MIN_LOWERED_RAD = np.deg2rad(17.0)  # a foot that turns its toes down less on leaving is lifted; healthy ones turn 50
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
 MIN_SWINGS_TO_AVERAGE = 4
+STRAY_SD, STRAY_S = 5.0, 0.07  # beyond both, a toe-off lies where no other of the foot's does
+LEAVING_SHARE, LANDING_SHARE = 0.2, 0.25  # of the pitch's extremes: where its passing is sharp
 FLAT_SHARE = 0.15  # of the greatest speed: below, a foot that does not roll is on the floor; for the live events
 
 
@@ -53,10 +57,10 @@ class EventSource(StrEnum):
 
 SOURCES = tuple(EventSource)
 EVENTS = ("heel_rise_s", "toe_off_s", "initial_contact_s", "full_contact_s")  # the order of columns
-# Standard deviations, s, of EVENTS by what told them. Pitch: initial contact and toe-off against optics and force
-# plates (10-14 and 3-8 ms), the others' besides what was extrapolated; sole: simulated flat and dragging feet
+# Standard deviations, s, of EVENTS by what told them, besides what was extrapolated. Pitch: initial contact and toe-off
+# against optics and force plates (10-14 and 3-8 ms), the others on simulated feet; sole: simulated flat, dragging feet
 SD_S = {
-    EventSource.PITCH: (0.015, 0.007, 0.012, 0.015),
+    EventSource.PITCH: (0.020, 0.010, 0.012, 0.020),
     EventSource.SOLE: (np.nan, 0.020, 0.020, np.nan),
     EventSource.SHANK: (np.nan, 0.020, 0.015, np.nan),
 }
@@ -185,10 +189,12 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
     is_landed = sole.is_landing(timing.index[:, CONTACT], is_flat, motion.step_s)
     is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S) & is_landed
     is_usual = is_rolling & is_heel_first & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
+    _even_out(timing, motion, spans, is_usual)
     _steady(timing.index, motion, spans, is_usual, usual)
     lowered = [-float(motion.pitch_rad[a : m + 1].min()) for a, m, _ in spans]
     is_lifted = is_rigid or bool(len(spans) and np.median(lowered) < MIN_LOWERED_RAD)
     _time_by_sole(timing, sole, is_lifted, is_landed)
+    without_stray_toe_offs(timing, swings.fastest, motion.step_s)
     for k in np.flatnonzero(~(timing.index[:, FULL_CONTACT] >= timing.index[:, CONTACT])).tolist():
         timing.put(k, FULL_CONTACT, _settled(rate, timing.index[k, CONTACT], spans[k][2], usual), EventSource.PITCH)
     return _told(motion, timing, is_measured)
@@ -225,6 +231,8 @@ def _told(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> FootEve
     missing = np.concatenate([[0], np.cumsum(~is_measured)])
     by_source = np.array([SD_S.get(source, (np.nan,) * len(EVENTS)) for source in SOURCES])
     sd_s = np.hypot(by_source[timing.source, np.arange(len(EVENTS))], REACH_SHARE * motion.step_s * timing.reach)
+    is_heard = missing[swings.anchor_after + 1] == missing[swings.anchor_before]
+    sd_s[~is_heard] = np.hypot(sd_s[~is_heard], MAX_REPORTED_GAP_S)  # the event may lie where samples are missing
     return FootEvents(
         heel_rise_s=times[:, HEEL_RISE],
         toe_off_s=times[:, TOE_OFF],
@@ -234,7 +242,7 @@ def _told(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> FootEve
         height_m=motion.height_m,
         turn_rad=motion.turn_rad,
         is_certain=np.full(len(swings), motion.is_direction_certain),
-        is_measured=missing[swings.anchor_after + 1] == missing[swings.anchor_before],
+        is_measured=is_heard,
         source=timing.source,
         sd_s=sd_s,
     )
@@ -271,6 +279,49 @@ def _landing(landing: Landing, usual: Usual, step_s: float) -> tuple[Onset, Onse
     full = onset(-rate, load, len(rate) - 1, LANDING_RATIO * usual.still_rad_s)
     on = _contact(rate, load, -CONTACT_SHARE * min(-rate[load], usual.load_rad_s), step_s)
     return Onset(on + landing.begin, 0.0), Onset(full.index + landing.begin, full.reach)
+
+
+def _even_out(timing: Timing, motion: FootMotion, spans: list[tuple[int, int, int]], is_usual: BoolArray) -> None:
+    """Time heel rise and full contact of usual swings by where the pitch passes a share of its extremes; in place.
+
+    A foot begins to roll, and comes to rest, too slowly for a level of its rate to be sharp: pitch passes its share of
+    every swing's extreme at an instant that scatters a third as much. How far from there the foot mostly begins, or
+    ends, is what all its swings say together.
+    """
+    chosen = np.flatnonzero(is_usual)
+    for event, marks in zip((HEEL_RISE, FULL_CONTACT), _rolling_marks(motion.pitch_rad, spans), strict=True):
+        known = chosen[np.isfinite(timing.index[chosen, event] - marks[chosen])]
+        if len(known) < MIN_SWINGS_TO_AVERAGE:
+            continue
+        apart = timing.index[known, event] - marks[known]
+        timing.index[known, event] = marks[known] + np.median(apart)
+        timing.reach[known, event] = robust_sd(apart - np.median(apart))
+
+
+def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> None:
+    """Time a toe-off that lies far from where the foot's others lie before the swing is fastest as they do; in place.
+
+    A sensor that shakes on its foot shows other peaks than that of push-off.
+    """
+    if len(fastest) < MIN_SWINGS_TO_AVERAGE:
+        return
+    before = fastest - timing.index[:, TOE_OFF]
+    usual = float(np.median(before))
+    reach = max(STRAY_SD * robust_sd(before - usual), STRAY_S / step_s)
+    for k in np.flatnonzero(np.abs(before - usual) > reach).tolist():
+        timing.index[k, TOE_OFF] = fastest[k] - usual
+        timing.reach[k, TOE_OFF] = abs(before[k] - usual)
+
+
+def _rolling_marks(pitch: FloatArray, spans: list[tuple[int, int, int]]) -> tuple[FloatArray, FloatArray]:
+    """Where the pitch (n,) of each swing passes its share of the lowest on leaving, and of the highest on landing."""
+    leaving, landing = np.full(len(spans), np.nan), np.full(len(spans), np.nan)
+    for k, (a, m, b) in enumerate(spans):
+        lowest = a + int(np.argmin(pitch[a : m + 1]))
+        highest = m + int(np.argmax(pitch[m : b + 1]))
+        leaving[k] = last_crossing(pitch, a, lowest, LEAVING_SHARE * pitch[lowest])
+        landing[k] = first_crossing(pitch, highest, b, LANDING_SHARE * pitch[highest])
+    return leaving, landing
 
 
 def _steady(

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.gait.crossings import Onset, onset
+from core.gait.crossings import Onset, first_crossing, onset
 from core.gait.foot import FootMotion
 from core.samples import BoolArray, FloatArray
 
@@ -19,7 +19,8 @@ TRAVEL_SHARE = 0.05  # of the sole's greatest speed: more, and it travels
 LANDED_SHARE = 0.25  # more, and it has not landed: real feet that land heels first go on at 0.1 to 0.2
 STANDING_SHARE = 0.04  # less, and it stands, however it came down
 MAX_EARLY_S, MAX_LATE_S = 0.03, 0.01  # the pitch of a flat foot that lands further from its sole tells something else
-NEAR_SHARE, SHOCK_S = 0.5, 0.05  # a shock counts from so long before the sole becomes slower than this share
+NEAR_SHARE, SHOCK_S = 0.5, 0.05  # a shock counts from so long before the sole becomes slower than this share;
+# a sole that lands softly stands twice that after it was slower than LANDED_SHARE, and what moves it later is the shoe
 MIN_SHOCK_M_S2 = 5.0  # from sample to sample; feet put down softly after a stroke begin here
 SHOCK_RATIO = 3.0  # a landing so much harder than the rest of the swing is felt as a shock
 SHOCK_ONSET_SHARE = 0.5  # of the greatest shock
@@ -80,7 +81,7 @@ def _landing(share: FloatArray, shock: FloatArray, fastest: int, ahead: int) -> 
     shock : (n - 1,)
         How much the acceleration changes from sample to sample.
     ahead
-        So many samples before it has become slow, a shock may be that of landing.
+        `SHOCK_S` in samples.
     """
     near = fastest + int(np.argmax(share[fastest:] < NEAR_SHARE))
     near = max(near - ahead, (fastest + near) // 2)
@@ -89,7 +90,9 @@ def _landing(share: FloatArray, shock: FloatArray, fastest: int, ahead: int) -> 
     least = max(MIN_SHOCK_M_S2, SHOCK_RATIO * float(shock[fastest:near].max(initial=0.0)))
     if hardest > least:
         return Onset(near + float(np.argmax(felt > max(least, SHOCK_ONSET_SHARE * hardest))), 0.0)
-    return onset(share, fastest, len(share) - 1, TRAVEL_SHARE)
+    soft = onset(share, fastest, len(share) - 1, TRAVEL_SHARE)
+    latest = first_crossing(share, fastest, len(share) - 1, LANDED_SHARE) + 2.0 * ahead
+    return soft if soft.index < latest else Onset(latest, 2.0 * ahead)
 
 
 def _forward(motion: FootMotion, k: int, first: int, last: int) -> FloatArray:

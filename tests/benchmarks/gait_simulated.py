@@ -41,6 +41,10 @@ GAITS: Mapping[str, tuple[WalkerSettings, Walk]] = {
     "stiff knee": (WalkerSettings(stiff_knee_side=Side.LEFT), Walk()),
     "shuffling": (WalkerSettings(), Walk(manner=Manner.SHUFFLING)),
     "toes": (WalkerSettings(), Walk(manner=Manner.TOES)),
+    "flat": (WalkerSettings(), Walk(manner=Manner.FLAT)),
+    "stiff foot": (WalkerSettings(), Walk(manner=Manner.STIFF)),
+    "dragging": (WalkerSettings(), Walk(manner=Manner.DRAGGING)),
+    "toe first": (WalkerSettings(), Walk(manner=Manner.TOE_FIRST)),
 }
 
 

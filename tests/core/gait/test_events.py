@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.crossings import first_crossing, onset
-from core.gait.events import SOURCES, EventSource, FootEvents, gait_of
+from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.orientation import oriented
 from core.pair import OrientedTrack
 from core.samples import FloatArray, ImuBlock, RateKind
@@ -83,7 +83,10 @@ def test_shuffling_and_walking_on_toes_gain_and_lose_no_event(manner: Manner, sp
     assert len(found) == len(truth.events.toe_off_s)
     late = (found.initial_contact_s - truth.events.initial_contact_s)[1:-1]
     assert np.abs(late).max() < 0.05
-    np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=0.05)
+    # a sensor that trembles on its foot tells a single stride's length less well than their mean
+    single, mean = (0.2, 0.05) if tissue is Tissue.REAL else (0.05, 0.05)
+    np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=single)
+    assert np.mean(found.length_m[1:-1]) == pytest.approx(np.mean(truth.stride_lengths_m[1:-1]), rel=mean)
 
 
 def late_s(found: FootEvents, truth: FootTruth, name: str) -> FloatArray:
@@ -128,6 +131,43 @@ def test_a_forefoot_that_lands_first_is_turned_up_by_the_floor() -> None:
     for name in EVENTS:
         late = (getattr(found, name) - getattr(truth.events, name))[1:-1]
         assert np.abs(late).max() < 0.010, name
+
+
+@pytest.mark.parametrize("manner", [Manner.FLAT, Manner.DRAGGING, Manner.TOE_FIRST])
+@pytest.mark.parametrize(
+    "tissue", [Tissue.RIGID, *(pytest.param(one, marks=pytest.mark.endurance) for one in (Tissue.SOFT, Tissue.REAL))]
+)
+def test_flat_and_dragging_feet_are_timed_within_25_ms(manner: Manner, tissue: Tissue) -> None:
+    walk = Walk(speed_m_s=0.6, manner=manner)
+    found, truth = walk_of(WalkerSettings(seed=3, recordings=(Standing(), walk), tissue=tissue))
+    for name in ("initial_contact_s", "toe_off_s"):
+        late = late_s(found, truth, name)
+        assert abs(float(np.mean(late))) < 0.015, name
+        assert np.sqrt(np.mean(late**2)) < 0.025, name
+    if tissue is Tissue.RIGID:
+        np.testing.assert_allclose(found.length_m[1:-1], truth.stride_lengths_m[1:-1], rtol=0.05)
+
+
+def test_two_standard_deviations_hold_most_events() -> None:
+    inside: list[FloatArray] = []
+    for seed, (manner, speed_m_s) in enumerate([(Manner.ORDINARY, 0.5), (Manner.ORDINARY, 1.4), (Manner.FLAT, 0.6)]):
+        walk = Walk(speed_m_s=speed_m_s, manner=manner)
+        found, truth = walk_of(WalkerSettings(seed=seed, recordings=(Standing(), walk), tissue=Tissue.REAL))
+        late = np.stack([late_s(found, truth, name) for name in EVENTS], axis=1)
+        inside.append(np.abs(late) < 2.0 * found.sd_s[1:-1])
+    share = np.mean(np.concatenate(inside), axis=0)
+    assert (share > 0.8).all(), share
+
+
+def test_a_toe_off_where_no_other_is_goes_where_the_others_are() -> None:
+    index = np.tile(np.array([20.0, 60.0, 100.0, 110.0]), (8, 1)) + 120.0 * np.arange(8)[:, None]
+    timing = Timing(index.copy(), np.ones((8, 4), dtype=np.int64), np.zeros((8, 4)))
+    timing.index[4, 1] -= 30.0
+    timing.index[5, 1] += 2.0
+    without_stray_toe_offs(timing, np.arange(8) * 120 + 80, 0.01)
+    expected = index[:, 1] + np.where(np.arange(8) == 5, 2.0, 0.0)
+    np.testing.assert_allclose(timing.index[:, 1], expected)
+    assert timing.reach[4, 1] == pytest.approx(30.0)
 
 
 def test_standing_and_free_motion_hold_no_strides() -> None:
