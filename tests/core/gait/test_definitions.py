@@ -84,6 +84,8 @@ def walk(length_m: FloatArray, stride_s: FloatArray | None = None) -> FootEvents
         turn_rad=np.zeros(n),
         is_certain=np.ones(n, dtype=bool),
         is_measured=np.ones(n, dtype=bool),
+        source=np.ones((n, 4), dtype=np.int64),
+        sd_s=np.full((n, 4), 0.01),
     )
 
 
@@ -128,5 +130,6 @@ def test_with_a_foot_the_phases_follow_its_events() -> None:
     for number in range(1, 4):
         named = phases_at(1.0 + 1.1 * number + since_s, [events])
         assert [str(PHASES[k]) for k in named] == ["loading", "foot_flat", "pre_swing", "swing"]
-    without = replace(events, is_from_shank=True)
+    unknown = np.full(len(events), np.nan)
+    without = replace(events, heel_rise_s=unknown, full_contact_s=unknown, is_from_shank=True)
     assert [str(PHASES[k]) for k in phases_at(2.1 + since_s, [without])] == ["", "", "", "swing"]

@@ -15,7 +15,7 @@ from core.gait.crossings import first_crossing, onset
 from core.gait.events import SOURCES, EventSource, FootEvents, Timing, gait_of, without_stray_toe_offs
 from core.orientation import oriented
 from core.pair import OrientedTrack
-from core.samples import FloatArray, ImuBlock, RateKind
+from core.samples import BoolArray, FloatArray, ImuBlock, RateKind
 from core.tracks import even_tracks
 from devices.walker import FootTruth, FreeMotion, Manner, Standing, Tissue, Walk, WalkerSettings, simulate
 
@@ -149,7 +149,7 @@ def test_flat_and_dragging_feet_are_timed_within_25_ms(manner: Manner, tissue: T
 
 
 def test_two_standard_deviations_hold_most_events() -> None:
-    inside: list[FloatArray] = []
+    inside: list[BoolArray] = []
     for seed, (manner, speed_m_s) in enumerate([(Manner.ORDINARY, 0.5), (Manner.ORDINARY, 1.4), (Manner.FLAT, 0.6)]):
         walk = Walk(speed_m_s=speed_m_s, manner=manner)
         found, truth = walk_of(WalkerSettings(seed=seed, recordings=(Standing(), walk), tissue=Tissue.REAL))
