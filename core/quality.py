@@ -28,11 +28,14 @@ GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
 PLAUSIBLE_M_S2 = (5.0, 20.0)
 PLAUSIBLE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
 LARGE = 1e6
+STEPS_TOGETHER, STEPS_BESIDE = 30, 5
+SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
 MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
 COMPARED_ROWS = 2000
 MIN_DISTINCT = 0.8  # share of rows that are unlike all others: a finer sensor than that never repeats itself by chance
 MOVING_RAD_S = 0.5
 CLIPPED_RUN = 3  # equal extreme values in a row
+CLIPPED_STEPS = 4  # of the sensor's least steps: noise goes on by one or two
 CLIPPED_BEYOND_M_S2, CLIPPED_BEYOND_RAD_S = 14.7, 1.5  # 1.5 g; the narrowest ranges are 2 g and 125 deg/s
 MIN_CLIPPED_PERCENT = 0.05
 CLOCK_OFFSET_S = 5.0
@@ -155,9 +158,27 @@ def lost_percent(block: ImuBlock) -> float:
 
 
 def _missing_percent(block: ImuBlock, heard_s: FloatArray) -> float:
-    missing = float(np.sum(np.maximum(np.round(np.diff(heard_s) / nominal_step_s(heard_s)) - 1, 0)))
+    missing = float(np.sum(_missing_rows(heard_s)))
     missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
     return 100 * missing / (missing + len(heard_s))
+
+
+def _missing_rows(heard_s: FloatArray) -> FloatArray:
+    """How many samples lack after each but the last (n - 1,).
+
+    Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
+    be missing around it, by a step that many steps tell.
+    """
+    steps = np.diff(heard_s)
+    step_s = nominal_step_s(heard_s)
+    if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
+        return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))
+    together_s = (heard_s[STEPS_TOGETHER:] - heard_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
+    step_s = float(np.quantile(together_s, 0.1))
+    index = np.arange(len(steps))
+    first, last = np.maximum(index - STEPS_BESIDE, 0), np.minimum(index + STEPS_BESIDE + 1, len(steps))
+    around = np.floor((heard_s[last] - heard_s[first]) / step_s - (last - first) + 0.3)
+    return np.asarray(np.clip(np.round(steps / step_s) - 1, 0, np.maximum(around, 0)))
 
 
 def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
@@ -188,21 +209,22 @@ def _clipped_percent(values: FloatArray, beyond: float) -> float:
     """
     worst = 0.0
     for v in (side for column in values.T for side in (column, -column)):
-        limit = float(v.max())
+        limit, steps = float(v.max()), np.abs(np.diff(v))
         if limit <= beyond:
             continue
         edges = np.flatnonzero(np.diff(np.concatenate([[0], (v == limit).astype(np.int8), [0]])))
         runs = [(int(i), int(j)) for i, j in zip(edges[::2], edges[1::2], strict=True) if j - i >= CLIPPED_RUN]
-        clipped = sum(j - i for i, j in runs if _would_go_on(v, i, j, limit))
+        least = CLIPPED_STEPS * float(np.min(steps[steps > 0.0], initial=np.inf))
+        clipped = sum(j - i for i, j in runs if _would_go_on(v, i, j, limit, least))
         worst = max(worst, 100 * clipped / len(v))
     return worst
 
 
-def _would_go_on(v: FloatArray, first: int, end: int, limit: float) -> bool:
-    """Whether the samples before or after a run of extremes lead beyond it by more than the run's own flatness can."""
+def _would_go_on(v: FloatArray, first: int, end: int, limit: float, least: float) -> bool:
+    """Whether the samples before or after a run of extremes lead beyond it, by `least` and more than flatness does."""
     reached = [2 * v[i] - v[k] for i, k in ((first - 1, first - 2), (end, end + 1)) if 0 <= k < len(v)]
     nearest = [limit - v[i] for i in (first - 1, end) if 0 <= i < len(v)]
-    return bool(reached) and max(reached) - limit > 0.5 * max(nearest)
+    return bool(reached) and max(reached) - limit > max(least, 0.5 * max(nearest))
 
 
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:

@@ -10,7 +10,7 @@ import pytest
 from core.analysis import analyse
 from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
-from core.quality import look_at
+from core.quality import look_at, lost_percent
 from core.results import Analysis, Method
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
 from devices.walker import (
@@ -337,6 +337,30 @@ def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> No
 
     told_of = look_at(changed(person.visit((SHANK,), duration_s=8.0), hold)).findings
     assert "clipped" not in {f.key for f in told_of}
+
+
+def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
+    motion = (FreeMotion(duration_s=8.0),)
+    for seed in (6, 14, 18):
+        made = simulate(WalkerSettings(seed, motion, errors=VERY_COARSE, rate_hz=200.0))
+        assert not look_at(made.session).findings
+
+
+@pytest.mark.parametrize("rate_hz", [100.0, 200.0])
+def test_stamps_that_jitter_lack_no_samples(rate_hz: float) -> None:
+    for seed in range(3):
+        settings = WalkerSettings(seed, (Standing(), Walk(strides=5)), rate_hz=rate_hz, stamp_jitter_s=0.001)
+        assert not look_at(simulate(settings).session).findings
+
+
+@pytest.mark.parametrize("loss", [0.01, 0.1, 0.3])
+def test_lost_samples_are_counted_with_and_without_jitter(loss: float) -> None:
+    still = (Standing(duration_s=30.0),)
+    for jitter_s in (0.0, 0.001):
+        settings = WalkerSettings(1, still, loss_fraction=loss, stamp_jitter_s=jitter_s)
+        for block in simulate(settings).session.recordings[0].imu.values():
+            really = 100.0 * (1.0 - len(block) / 3001)
+            assert lost_percent(block) == pytest.approx(really, abs=0.4 + 0.15 * really)
 
 
 def test_coarse_sensors_at_rest_on_a_table_are_no_copies() -> None:
