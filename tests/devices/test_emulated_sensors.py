@@ -6,6 +6,7 @@ Drivers are tested with them, and share some of their tables: here their bytes a
 import json
 import struct
 
+import numpy as np
 import pytest
 
 from devices.emulators.csv_lines import LineVoice
@@ -149,11 +150,25 @@ def test_lines_of_numbers_are_milliseconds_rates_and_forces() -> None:
 
 
 def test_a_sensor_that_is_played_again_is_told_and_shaken() -> None:
-    source = ReplaySource(simulate(WalkerSettings(recordings=(Standing(),))).session)
+    clock = Clock()
+
+    def sleep(seconds: float) -> None:
+        clock.now_s += seconds
+
+    session = simulate(WalkerSettings(recordings=(Standing(),))).session
+    source = ReplaySource(session, now_ns=clock, sleep=sleep)
     source.open()
     told = source.told()
+    first = source.info.sensors[0]
     assert len(told) == len(source.info.sensors) == 6
     assert all(one.rate_hz == 100.0 for one in told.values())
-    assert source.identify(source.info.sensors[0])
+    fastest_rad_s = []
+    for is_shaken in (False, True):
+        if is_shaken:
+            assert source.identify(first)
+        blocks = [block for _ in range(20) for block in source.read(lambda _: None) if block.sensor == first]
+        fastest_rad_s.append(max(np.abs(block.gyr_rad_s).max() for block in blocks))
+    assert fastest_rad_s[0] < 0.1
+    assert fastest_rad_s[1] > 1.0
     assert source.info.is_simulated
     source.close()

@@ -21,6 +21,7 @@ BUILD = ROOT / "build" / "mutation"
 COVERING, RESULTS = BUILD / "covering.json", BUILD / "results.jsonl"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 SEED = 15
+ALIVE = (Fate.SURVIVED, Fate.UNCOVERED)
 
 Results = dict[str, dict[str, Any]]
 """The last result of each mutant, by its name."""
@@ -62,7 +63,7 @@ def run(mutants: Iterable[Mutant], is_again: bool, until_s: float) -> None:
     for one in mutants:
         before = known.get(one.name)
         is_known = before is not None and before["source"] == digest(one.file)
-        if is_known and not (is_again and before is not None and before["fate"] == Fate.SURVIVED):
+        if is_known and not (is_again and before is not None and before["fate"] in ALIVE):
             continue
         if named(one) in equivalent or time.monotonic() > until_s:
             continue
@@ -126,7 +127,7 @@ def report(mutants: Mapping[str, list[Mutant]]) -> None:
                 count["equivalent"] += 1
             elif one.name in known:
                 count[known[one.name]["fate"]] += 1
-                if known[one.name]["fate"] in (Fate.SURVIVED, Fate.UNCOVERED):
+                if known[one.name]["fate"] in ALIVE:
                     alive.append(one)
             else:
                 count["not tried"] += 1

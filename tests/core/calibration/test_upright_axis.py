@@ -1,0 +1,67 @@
+"""Is the heading between both sensors found where the joint axis stands upright, as when lying on the side?"""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from core.body import Joint
+from core.calibration.heading import heading_over
+from core.pair import OrientedTrack, Pair, pair_up
+from core.rotations import wrap
+from core.samples import RecordingKind
+from core.tracks import Track
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from tests.core.conftest import Person
+
+KNEE = Joint.LEFT_KNEE
+GRAVITY_M_S2 = np.array([0.0, 0.0, 9.81])
+
+
+def lying(person: "Person", tilt_rad: float, heading_rad: float) -> Pair:
+    """Free motion of a leg in a body that is tilted about its forward axis, the distal earth turned by the heading."""
+    t = np.arange(800) / 100.0
+    tilt = Rotation.from_rotvec([tilt_rad, 0.0, 0.0])
+    tracks = []
+    for site in (KNEE.proximal, KNEE.distal):
+        gyr, acc = person.samples(RecordingKind.FREE_MOTION, site, t)
+        stands = person.pose(RecordingKind.FREE_MOTION, site, t)[0]
+        lies = tilt * stands
+        acc = acc - stands.inv().apply(GRAVITY_M_S2) + lies.inv().apply(GRAVITY_M_S2)
+        turned = Rotation.from_rotvec([0.0, 0.0, -heading_rad]) * lies if site is KNEE.distal else lies
+        track = Track(0.0, 0.01, gyr, acc, None, None, np.ones(len(t), dtype=bool))
+        tracks.append(OrientedTrack(track, turned.as_quat(scalar_first=True)))
+    pair = pair_up(tracks[0], tracks[1], 0.0)
+    assert pair is not None
+    return pair
+
+
+@pytest.mark.parametrize("tilt_deg", [0.0, 80.0, -110.0])
+@pytest.mark.parametrize("heading", [-0.7, 2.9])
+def test_a_heading_is_found_from_the_axes_or_from_what_both_sensors_feel(
+    make_person: "Callable[..., Person]", tilt_deg: float, heading: float
+) -> None:
+    person = make_person(seed=5)
+    pair = lying(person, np.deg2rad(tilt_deg), heading)
+    axes = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    centres_m = [person.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    elevation = np.median(np.abs((pair.earth_from_1 @ axes[0])[:, 2]))
+    assert (elevation > np.sin(np.deg2rad(58.0))) == (tilt_deg != 0.0)
+    found = heading_over(pair, axes[0], axes[1], np.concatenate([*centres_m, np.zeros(6)]))
+    np.testing.assert_allclose(wrap(found - heading), 0.0, atol=0.02)
+
+
+def test_accelerometers_biases_are_taken_off_before_both_are_compared(make_person: "Callable[..., Person]") -> None:
+    person = make_person(seed=5)
+    pair = lying(person, np.deg2rad(80.0), 0.5)
+    bias = np.array([0.4, -0.6, 0.5]), np.array([-0.5, 0.3, 0.7])
+    biased = replace(pair, a1=pair.a1 + bias[0], a2=pair.a2 + bias[1])
+    axes = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    centres_m = [person.centre_m(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    found = heading_over(biased, axes[0], axes[1], np.concatenate([*centres_m, *bias]))
+    np.testing.assert_allclose(wrap(found - 0.5), 0.0, atol=0.02)
