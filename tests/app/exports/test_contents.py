@@ -18,6 +18,8 @@ from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.stored import Operator, Role
+from core.analysis import analyse
+from core.body import Side
 from core.findings import Finding, Severity
 from core.results import Analysis
 from core.samples import Patient, Session
@@ -207,6 +209,32 @@ def test_a_bundle_tells_who_where_and_what_as_it_was_typed(typed: tuple[Session,
         assert texts[0].endswith(", barfuß")
         assert any("Not a medical device" in text for text in texts)
         assert entry["fullUrl"].startswith("urn:uuid:")
+
+
+@pytest.mark.parametrize(("strides", "status"), [(10, "final"), (9, "preliminary")])
+def test_ten_strides_are_final_and_nine_are_not(
+    visit: tuple[Session, Analysis], tmp_path: Path, strides: int, status: str
+) -> None:
+    """Strides are left out by hand until so many are left."""
+    session, analysis = visit
+    (walk,) = (recording for recording in analysis.recordings if recording.gait)
+    left = walk.gait[Side.LEFT].strides
+    middle_s = 0.5 * (left.start_s + left.end_s)[left.is_used]
+    assert len(middle_s) >= 10
+    recordings = tuple(
+        replace(r, left_out_s={Side.LEFT: tuple(middle_s[strides:].tolist())}) if r.name == walk.name else r
+        for r in session.recordings
+    )
+    session = replace(session, recordings=recordings)
+    export_from_folder(session, analyse(session), [Format.FHIR], tmp_path)
+    told = [entry["resource"] for entry in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
+    (stance,) = (
+        one
+        for one in told[1:]
+        if one["code"]["coding"][0]["code"] == "stance_percent" and one["bodySite"]["text"] == "left leg"
+    )
+    counts = [part["valueInteger"] for part in stance["component"] if "valueInteger" in part]
+    assert (counts, stance["status"]) == ([strides], status)
 
 
 def test_a_patient_of_whom_nothing_is_told_has_neither_name_nor_sex(
