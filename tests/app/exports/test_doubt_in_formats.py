@@ -1,0 +1,221 @@
+"""What does each format do with what is doubtful: leave it out, name it otherwise, or say why?"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import ezc3d
+import numpy as np
+import openpyxl
+import pytest
+
+from app.exports.c3d_angles import write_c3d
+from app.exports.fhir_bundle import bundle
+from app.exports.opensim_motion import write_motion
+from app.exports.spreadsheet import write_spreadsheet
+from app.reports.summary import summarise
+from core.body import Joint, Side
+from core.gait.strides import Reason
+from core.results import Analysis, RecordingAnalysis
+from core.samples import RecordingKind, Session
+from core.verdicts.gates import judged
+from core.verdicts.model import READ, Assessment, GateReason, JointVerdicts, Verdict, assess
+
+NO_ZERO = assess([GateReason("zero", Verdict.WITHHELD)])
+NO_SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
+NO_AXIS = assess([GateReason("axis", Verdict.WITHHELD, 12.0, 9.0, "deg")])
+Bundled = dict[tuple[str, str], dict[str, Any]]
+
+
+@pytest.fixture
+def walk(visit: tuple[Session, Analysis]) -> RecordingAnalysis:
+    (found,) = (one for one in visit[1].recordings if one.kind is RecordingKind.WALKING)
+    return found
+
+
+def doubted(walk: RecordingAnalysis, parts: Mapping[Joint, tuple[Assessment, Assessment, Assessment]]) -> Any:
+    joints = {**walk.verdicts.joints, **{joint: JointVerdicts(*one) for joint, one in parts.items()}}
+    return replace(walk, verdicts=replace(walk.verdicts, joints=joints))
+
+
+@pytest.fixture
+def mixed(walk: RecordingAnalysis) -> RecordingAnalysis:
+    """Each joint in another doubt; the left knee in none."""
+    return doubted(
+        walk,
+        {
+            Joint.LEFT_KNEE: (READ, READ, READ),
+            Joint.LEFT_ANKLE: (READ, NO_ZERO, READ),
+            Joint.RIGHT_KNEE: (READ, NO_SIGN, NO_SIGN),
+            Joint.RIGHT_ANKLE: (NO_AXIS, NO_AXIS, READ),
+        },
+    )
+
+
+def test_a_c3d_names_a_shape_and_leaves_out_what_may_be_mirrored_or_is_withheld(
+    mixed: RecordingAnalysis, tmp_path: Path
+) -> None:
+    write_c3d(mixed, False, tmp_path / "angles.c3d")
+    read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
+    point = read["parameters"]["POINT"]
+    assert point["LABELS"]["value"] == point["ANGLES"]["value"] == ["LKneeAngles", "LAnkleAngles_SHAPE"]
+    knee, ankle = read["data"]["points"][0]
+    assert np.nanmean(ankle) == pytest.approx(0.0, abs=1e-3)
+    assert np.ptp(ankle) == pytest.approx(np.rad2deg(np.ptp(mixed.joints[Joint.LEFT_ANKLE].angle_rad)), abs=1e-3)
+    assert np.nanmean(knee) == pytest.approx(np.rad2deg(np.mean(mixed.joints[Joint.LEFT_KNEE].angle_rad)), abs=1e-3)
+    assert point["DESCRIPTIONS"]["value"] == [
+        "x: knee flexion; y, z not measured",
+        "x: ankle dorsiflexion less its mean, for there is no zero; y, z not measured",
+    ]
+    said = read["parameters"]["PROCESSING"]["STATUS"]["value"]
+    assert [text.split(":")[0] for text in said] == ["left_knee", "right_knee", "left_ankle", "right_ankle"]
+    assert said[0] == "left_knee: read"
+    assert said[1].startswith("right_knee: range_only: The motion does not tell flexion from extension")
+    assert said[2].startswith("left_ankle: no_zero: No zero was set")
+    assert said[3].startswith("right_ankle: withheld: The joint's axis is known to 12.0 deg only")
+
+
+def test_a_motion_file_leaves_out_what_is_no_pose_and_says_why(mixed: RecordingAnalysis, tmp_path: Path) -> None:
+    write_motion(mixed, False, tmp_path / "angles.mot")
+    head, body = (tmp_path / "angles.mot").read_text(encoding="ascii").split("endheader\n")
+    assert body.splitlines()[0] == "time\tknee_angle_l"
+    assert "nColumns=2\n" in head
+    lines = head.splitlines()
+    assert "knee_angle_l is here, read" in lines
+    for begin in (
+        "knee_angle_r is left out, range_only: The motion does not tell",
+        "ankle_angle_l is left out, no_zero: No zero was set",
+        "ankle_angle_r is left out, withheld: The joint's axis",
+    ):
+        assert [line for line in lines if line.startswith(begin)], begin
+
+
+def test_once_a_strap_slipped_a_format_without_a_status_per_row_has_no_angle(
+    walk: RecordingAnalysis, tmp_path: Path
+) -> None:
+    at = len(walk.time_s) // 2
+    slipped = replace(walk, slipped_from_s={Side.RIGHT: float(walk.time_s[at])})
+    write_c3d(slipped, False, tmp_path / "angles.c3d")
+    read = ezc3d.c3d(str(tmp_path / "angles.c3d"))
+    labels = read["parameters"]["POINT"]["LABELS"]["value"]
+    known = dict(zip(labels, np.isfinite(read["data"]["points"][0]), strict=True))
+    for label in ("LKneeAngles", "LAnkleAngles"):
+        assert known[label].all()
+    for label in ("RKneeAngles", "RAnkleAngles"):
+        np.testing.assert_array_equal(np.flatnonzero(known[label]), np.arange(at))
+    residuals = read["data"]["meta_points"]["residuals"][0]
+    np.testing.assert_array_equal(residuals[labels.index("RKneeAngles")] < 0, ~known["RKneeAngles"])
+    write_motion(slipped, False, tmp_path / "angles.mot")
+    header, *lines = (tmp_path / "angles.mot").read_text().split("endheader\n")[1].splitlines()
+    column = header.split("\t").index("knee_angle_r")
+    assert [line.split("\t")[column] == "NaN" for line in lines] == [k >= at for k in range(len(lines))]
+
+
+def observations(session: Session, analysis: Analysis) -> Bundled:
+    found = {}
+    for entry in bundle(session, analysis)["entry"][1:]:
+        one = entry["resource"]
+        found[one["code"]["coding"][0]["code"], one.get("bodySite", {}).get("text", "")] = one
+    return found
+
+
+def component(one: Mapping[str, Any], code: str) -> Any:
+    (found,) = [part for part in one["component"] if part["code"]["coding"][0]["code"] == code]
+    return found
+
+
+def changed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> Analysis:
+    recordings = tuple(walk if one.name == walk.name else one for one in visit[1].recordings)
+    return replace(visit[1], recordings=recordings)
+
+
+def test_a_withheld_figure_has_its_reason_in_place_of_a_value(
+    visit: tuple[Session, Analysis], mixed: RecordingAnalysis
+) -> None:
+    found = observations(visit[0], changed(visit, mixed))
+    one = found["ankle_range_deg", "right leg"]
+    assert "valueQuantity" not in one
+    assert one["status"] == "preliminary"
+    (coding,) = one["dataAbsentReason"]["coding"]
+    assert coding["system"] == "http://terminology.hl7.org/CodeSystem/data-absent-reason"
+    assert coding["code"] == "error"
+    assert one["dataAbsentReason"]["text"].startswith("The joint's axis is known to 12.0° only")
+    assert {part["code"]["coding"][0]["code"] for part in one["component"]} == {"side", "strides_used"}
+    assert found["knee_swing_peak_deg", "right leg"]["dataAbsentReason"]["text"].startswith("The motion does not tell")
+    assert found["knee_range_deg", "right leg"]["status"] == "final"
+    assert not any({"interpretation", "referenceRange"} & set(one) for one in found.values())
+
+
+def test_what_nobody_wore_was_not_performed(visit: tuple[Session, Analysis], walk: RecordingAnalysis) -> None:
+    joints = {joint: angle for joint, angle in walk.joints.items() if joint.side is Side.LEFT}
+    alone = replace(walk, joints=joints, gait={Side.LEFT: walk.gait[Side.LEFT]}, clocks=None)
+    found = observations(visit[0], judged(changed(visit, alone)))
+    for name in ("knee_range_deg", "stance_percent", "stride_length_m", "step_time_s"):
+        one = found[name, "right leg"]
+        assert (one["status"], "valueQuantity" in one) == ("cancelled", False)
+        assert one["dataAbsentReason"]["coding"][0]["code"] == "not-performed"
+    assert found["double_support_percent", ""]["dataAbsentReason"]["coding"][0]["code"] == "not-performed"
+    assert found["knee_range_deg", "left leg"]["valueQuantity"]["value"] > 30
+    assert found["cadence_steps_min", ""]["valueQuantity"]["value"] > 50
+
+
+@pytest.mark.parametrize(("used", "status"), [(10, "final"), (9, "preliminary"), (3, "preliminary")])
+def test_under_ten_strides_nothing_is_final(
+    visit: tuple[Session, Analysis], walk: RecordingAnalysis, used: int, status: str
+) -> None:
+    gait = walk.gait[Side.LEFT]
+    assert len(gait.strides) >= 10
+    reason = (Reason.USED,) * used + (Reason.TURN,) * (len(gait.strides) - used)
+    few = replace(walk, gait={**walk.gait, Side.LEFT: replace(gait, strides=replace(gait.strides, reason=reason))})
+    found = observations(visit[0], judged(changed(visit, few)))
+    told = {name: one for (name, side), one in found.items() if side == "left leg" and "valueQuantity" in one}
+    assert len(told) > 10
+    assert {one["status"] for one in told.values()} == {status}
+    for one in told.values():
+        notes = [note["text"] for note in one["note"]]
+        assert any(text.startswith(f"{used} strides were used (10 wanted)") for text in notes) == (status != "final")
+        assert component(one, "strides_used")["valueInteger"] == used
+
+
+def test_the_error_of_a_figure_is_a_component_and_a_column(visit: tuple[Session, Analysis], tmp_path: Path) -> None:
+    told = summarise(visit[1])["walks"]
+    (walk,) = told.values()
+    found = observations(*visit)
+    write_spreadsheet(*visit, tmp_path / "book.xlsx")
+    header, *rows = openpyxl.load_workbook(tmp_path / "book.xlsx")["Summary"].iter_rows(values_only=True)
+    sheet = {(row[2], row[3]): dict(zip(header, row, strict=True)) for row in rows}
+    for name in ("knee_range_deg", "stance_percent", "stride_length_m"):
+        error = walk["left"][f"{name}_error"]
+        assert error > 0
+        assert component(found[name, "left leg"], "error")["valueQuantity"]["value"] == error
+        assert sheet["left", name]["error"] == pytest.approx(error, rel=1e-14)
+        assert sheet["left", name]["status"] == walk["left"][f"{name}_status"]
+    json.dumps(told, allow_nan=False)
+
+
+def test_a_workbook_has_no_number_where_a_figure_is_withheld(
+    visit: tuple[Session, Analysis], mixed: RecordingAnalysis, tmp_path: Path
+) -> None:
+    write_spreadsheet(visit[0], changed(visit, mixed), tmp_path / "book.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "book.xlsx")
+    header, *rows = book["Strides"].iter_rows(values_only=True)
+    for row in rows:
+        told = dict(zip(header, row, strict=True))
+        is_right = told["side"] == "right"
+        assert (told["ankle_range_deg"] == "withheld") == is_right
+        assert (told["knee_swing_peak_deg"] == "withheld") == is_right
+        assert told["knee_range_deg"] != "withheld"
+    header, *rows = book["Cycles"].iter_rows(values_only=True)
+    columns = dict(zip(header, zip(*rows, strict=True), strict=True))
+    withheld = {name for name, cells in columns.items() if set(cells) == {"withheld"}}
+    assert withheld == {
+        *("left_ankle_mean_deg", "right_knee_mean_deg", "right_knee_shape_deg"),
+        *("right_ankle_mean_deg", "right_ankle_shape_deg", "right_ankle_stride_sd_deg", "right_ankle_status"),
+    }
+    about = {row[0]: row[1] for row in book["About"].iter_rows(values_only=True)}
+    name = mixed.name
+    assert about[f"{name}, left knee, shape"] == "read"
+    assert about[f"{name}, right ankle, shape"].startswith("withheld: The joint's axis is known to 12.0° only")
+    assert about[f"{name}, both legs, between"] == "read"

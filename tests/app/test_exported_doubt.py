@@ -1,0 +1,393 @@
+"""Do all outputs doubt the same figures? One simulated session per cause of doubt, every file read by another program.
+
+What has to be said stands in `SAID`, written by hand. Each output has a function that takes the folder of a case and
+gives what it says of the quantities that it tells of; `OUTPUTS` lists them, and what else shows figures belongs there.
+"""
+
+import csv
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import Any
+
+import ezc3d
+import openpyxl
+import pytest
+from fhir.resources.R4B.bundle import Bundle
+from rerun.chunk import RrdReader
+
+from app.exports.exports import Format, export_from_folder
+from app.reports.result_folder import write_results
+from core.analysis import analyse
+from core.body import Side, Site
+from core.results import Analysis
+from core.samples import Recording, Session
+from devices.walker import Standing, Walk, WalkerSettings, simulate
+from devices.walker_body import GaitChange
+
+NUMBER = (int, float)
+READ, CARE, SHAPE, WITHHELD = "read", "care", "shape", "withheld"
+WALK = "walk 1"
+SIDES = ("left", "right")
+FIGURES = {  # what a person calls it, its column
+    "knee range": "knee_range_deg",
+    "knee swing peak": "knee_swing_peak_deg",
+    "knee peak time": "knee_swing_peak_percent",
+    "ankle range": "ankle_range_deg",
+    "ankle dorsiflexion": "ankle_stance_dorsiflexion_deg",
+    "stance": "stance_percent",
+    "stride length": "stride_length_m",
+    "step time": "step_time_s",
+}
+BOTH = {"cadence": "cadence_steps_min", "double support": "double_support_percent", "speed": "speed_m_s"}
+OF_SIDES = {f"{side} {name}": (side, column) for side in SIDES for name, column in FIGURES.items()}
+CURVES = {f"{side} {kind} curve": f"{side}_{kind}" for side in SIDES for kind in ("knee", "ankle")}
+QUANTITIES = (*OF_SIDES, *BOTH, *CURVES)
+
+
+@dataclass(frozen=True)
+class Case:
+    """`said`: what differs from "read", by the quantities' names (* is any); `reason`: words that say why."""
+
+    settings: WalkerSettings
+    said: Mapping[str, str]
+    reason: str
+    change: Callable[[Session], Session] = lambda session: session
+
+    @property
+    def expected(self) -> dict[str, str]:
+        found = dict.fromkeys(QUANTITIES, READ)
+        for pattern, verdict in self.said.items():
+            hit = [name for name in QUANTITIES if fnmatch(name, pattern)]
+            assert hit, pattern
+            found |= dict.fromkeys(hit, verdict)
+        return found
+
+
+def with_swapped_shanks(session: Session) -> Session:
+    """The shanks' sensors were strapped to the wrong legs."""
+
+    def swapped(one: Recording) -> Recording:
+        left, right = one.imu[Site.LEFT_SHANK], one.imu[Site.RIGHT_SHANK]
+        return replace(one, imu={**one.imu, Site.LEFT_SHANK: right, Site.RIGHT_SHANK: left})
+
+    return replace(session, recordings=tuple(map(swapped, session.recordings)))
+
+
+STOOD, WALKED = Standing(), Walk(WALK, strides=16)
+STIFF = replace(WALKED, change=GaitChange(knee_deg=-7.0), changed_side=Side.LEFT)  # of 14 deg, so that 7 are left
+LATE = {site: 0.1 for site in Site if site.side is Side.RIGHT}
+CASES = {
+    "no zero": Case(
+        WalkerSettings(seed=4, recordings=(WALKED,)),
+        {"* swing peak": WITHHELD, "* dorsiflexion": WITHHELD, "* curve": SHAPE},
+        "No zero was set",
+    ),
+    "sign unknown": Case(
+        WalkerSettings(seed=4, recordings=(STOOD, STIFF), stiff_knee_side=Side.LEFT),
+        {"left knee swing peak": WITHHELD, "left knee peak time": WITHHELD, "left knee curve": WITHHELD},
+        "does not tell flexion from extension",
+    ),
+    "not neighbours": Case(
+        WalkerSettings(seed=4, recordings=(STOOD, WALKED)),
+        {"* knee *": WITHHELD, "* ankle *": WITHHELD, "* stance": CARE, "* length": CARE, "* step time": CARE}
+        | {"cadence": CARE, "speed": CARE, "double support": WITHHELD},
+        "do not move as neighbours",
+        with_swapped_shanks,
+    ),
+    "two clocks": Case(
+        WalkerSettings(seed=4, recordings=(STOOD, WALKED), clock_late_s=LATE),
+        {"* step time": WITHHELD},
+        "the legs' clocks differ",
+    ),
+    "two strides": Case(  # of the right leg; the left made three
+        WalkerSettings(seed=4, recordings=(STOOD, replace(WALKED, strides=4))),
+        {"left *": CARE, "right *": WITHHELD, "cadence": WITHHELD, "double support": WITHHELD, "speed": WITHHELD},
+        "strides were used",
+    ),
+}
+
+
+@pytest.fixture(scope="module", params=CASES)
+def case(request: pytest.FixtureRequest) -> Case:
+    return CASES[request.param]
+
+
+@pytest.fixture(scope="module")
+def analysed(case: Case) -> tuple[Session, Analysis]:
+    session = case.change(simulate(case.settings).session)
+    return session, analyse(session)
+
+
+@pytest.fixture(scope="module")
+def out(analysed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of results of a case, with every format in it."""
+    folder = tmp_path_factory.mktemp("out")
+    write_results(*analysed, folder, has_log=True)
+    export_from_folder(*analysed, list(Format), folder, is_identified=True)
+    return folder
+
+
+def said_of_value(status: str, has_value: bool) -> str:
+    """What is said of a figure by its status and by whether there is a number; both have to say the same."""
+    is_told = status in (READ, CARE)
+    return status if is_told == has_value else f"contradicts itself: {status}, {'a' if has_value else 'no'} number"
+
+
+def rows_of(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+CSV_STATUS = {  # which column of status a figure stands under
+    "knee range": "knee_shape_status",
+    "knee swing peak": "knee_height_status",
+    "ankle range": "ankle_shape_status",
+    "ankle dorsiflexion": "ankle_height_status",
+    "stance": "timing_status",
+    "stride length": "distance_status",
+    "step time": "between_status",
+}
+
+
+def in_csv(out: Path) -> dict[str, str]:
+    """strides.csv and peaks.csv of figures, angles.csv and cycles.csv of curves."""
+    strides, peaks, said = rows_of(out / "walk_1" / "strides.csv"), rows_of(out / "peaks.csv"), {}
+    for side in SIDES:
+        used = [row for row in strides if row["side"] == side and row["used"] == "true"]
+        assert used
+        for name, status in CSV_STATUS.items():
+            (word,) = {row[status] for row in used}
+            said[f"{side} {name}"] = said_of_value(word, any(row[FIGURES[name]] for row in used))
+        mine = [row for row in peaks if row["side"] == side]
+        (word,) = {row["knee_status"] for row in mine}
+        said[f"{side} knee peak time"] = said_of_value(word, any(row["knee_swing_peak_percent"] for row in mine))
+        told = any(row["knee_swing_peak_percent"] for row in used)
+        assert told == (said[f"{side} knee peak time"] in (READ, CARE))
+    angles, cycles = rows_of(out / "walk_1" / "angles.csv"), rows_of(out / "walk_1" / "cycles.csv")
+    for name, joint in CURVES.items():
+        (status,) = {row[f"{joint}_status"] for row in angles}
+        assert status == {row[f"{joint}_status"] for row in cycles}.pop()
+        assert any(row[f"{joint}_deg"] for row in angles)  # the samples stay, as evidence
+        said[name] = {"no_zero": SHAPE, "range_only": WITHHELD}.get(status, status)
+        has_height, has_shape = (any(row[f"{joint}_{what}"] for row in cycles) for what in ("mean_deg", "shape_deg"))
+        assert has_height == (said[name] in (READ, CARE))
+        assert has_shape == (said[name] != WITHHELD)
+    return said
+
+
+def in_json(out: Path) -> dict[str, str]:
+    """summary.json: means with their status, curves by the verdicts of their joint."""
+    walk = json.loads((out / "summary.json").read_text(encoding="utf-8"))["walks"][WALK]
+    said = {
+        name: said_of_value(walk[side][f"{column}_status"], walk[side][f"{column}_mean"] is not None)
+        for name, (side, column) in OF_SIDES.items()
+    }
+    for name, column in BOTH.items():
+        said[name] = said_of_value(walk["both"][f"{column}_status"], walk["both"][column] is not None)
+    for name, joint in CURVES.items():
+        verdicts = {part: told["verdict"] for part, told in walk["verdicts"][joint].items()}
+        said[name] = curve_by_verdicts(verdicts)
+    return said
+
+
+def curve_by_verdicts(verdicts: Mapping[str, str]) -> str:
+    if WITHHELD in (verdicts["shape"], verdicts["sign"]):
+        return WITHHELD
+    if verdicts["height"] == WITHHELD:
+        return SHAPE
+    return CARE if CARE in (verdicts["shape"], verdicts["height"]) else READ
+
+
+def in_fhir(out: Path) -> dict[str, str]:
+    """Final and preliminary Observations, and those with a reason in place of a value."""
+    bundle = Bundle.model_validate_json((out / "fhir_bundle.json").read_bytes())
+    entries: list[Any] = list(bundle.entry or ())
+    said = {}
+    names = {pair: name for name, pair in OF_SIDES.items()} | {("", column): name for name, column in BOTH.items()}
+    for one in (entry.resource for entry in entries if entry.resource.get_resource_type() == "Observation"):
+        side = one.bodySite.text.removesuffix(" leg") if one.bodySite is not None else ""
+        name = names.get((side, one.code.coding[0].code))
+        assert one.interpretation is None
+        assert one.referenceRange is None
+        if name is None:
+            continue
+        if one.dataAbsentReason is not None:
+            assert one.valueQuantity is None
+            assert one.status != "final"
+            assert len(one.dataAbsentReason.text) > 20
+            code = one.dataAbsentReason.coding[0].code
+            said[name] = {"error": WITHHELD, "not-performed": "not measured"}[code]
+        else:
+            assert one.valueQuantity.value is not None
+            said[name] = {"final": READ, "preliminary": CARE}[one.status]
+    return said
+
+
+def in_xlsx(out: Path) -> dict[str, str]:
+    """The Summary sheet's numbers, words and status, and the mean cycles."""
+    book = openpyxl.load_workbook(out / "gaitwright.xlsx")
+    summary = {(row["side"], row["parameter"]): row for row in sheet(book, "Summary")}
+    wanted = OF_SIDES | {name: ("both", column) for name, column in BOTH.items()}
+    said = {}
+    for name, key in wanted.items():
+        mean, status = summary[key]["mean"], summary[key]["status"]
+        assert isinstance(mean, NUMBER) or mean == WITHHELD
+        said[name] = said_of_value(status, isinstance(mean, NUMBER))
+    for side, column in OF_SIDES.values():
+        cells = [row[column] for row in sheet(book, "Strides") if row["side"] == side and row["used"] == "true"]
+        is_withheld = summary[side, column]["status"] == WITHHELD
+        assert (
+            all(cell == WITHHELD for cell in cells) if is_withheld else any(isinstance(cell, NUMBER) for cell in cells)
+        )
+    cycles = sheet(book, "Cycles")
+    for name, joint in CURVES.items():
+        (status,) = {row[f"{joint}_status"] for row in cycles}
+        height, shape = (
+            {
+                WITHHELD if row[f"{joint}_{what}"] == WITHHELD else isinstance(row[f"{joint}_{what}"], NUMBER)
+                for row in cycles
+            }
+            for what in ("mean_deg", "shape_deg")
+        )
+        by_cells = {(True, True): READ, (WITHHELD, True): SHAPE, (WITHHELD, WITHHELD): WITHHELD}
+        said[name] = by_cells[*height, *shape]
+        if said[name] == READ:
+            said[name] = status if status in (READ, CARE) else "contradicts itself"
+    return said
+
+
+def sheet(book: Any, title: str) -> list[dict[str, Any]]:
+    header, *rows = book[title].iter_rows(values_only=True)
+    return [dict(zip(header, row, strict=True)) for row in rows]
+
+
+C3D = {"LKneeAngles": "left_knee", "RKneeAngles": "right_knee"} | {
+    "LAnkleAngles": "left_ankle",
+    "RAnkleAngles": "right_ankle",
+}
+
+
+def in_c3d(out: Path) -> dict[str, str]:
+    """The labels of its points, and what PROCESSING:STATUS says of each joint."""
+    parameters = ezc3d.c3d(str(out / "walk_1" / "angles.c3d"))["parameters"]
+    labels = parameters["POINT"]["LABELS"]["value"]
+    status = dict(text.split(": ", 1) for text in parameters["PROCESSING"]["STATUS"]["value"])
+    said = {}
+    for name, joint in CURVES.items():
+        label = next(label for label, of in C3D.items() if of == joint)
+        if f"{label}_SHAPE" in labels:
+            said[name] = SHAPE
+        else:
+            said[name] = status[joint].split(":")[0] if label in labels else WITHHELD
+    for label, words in zip(labels, parameters["POINT"]["DESCRIPTIONS"]["value"], strict=True):
+        assert ("less its mean" in words) == label.endswith("_SHAPE")
+        assert "positive" not in words
+    return said
+
+
+MOT = {"knee_angle_l": "left_knee", "knee_angle_r": "right_knee"} | {
+    "ankle_angle_l": "left_ankle",
+    "ankle_angle_r": "right_ankle",
+}
+
+
+def in_mot(out: Path) -> dict[str, str]:
+    """The coordinates that are there, and the comments on them. A shape is no pose, so it is left out."""
+    head, body = (out / "walk_1" / "angles.mot").read_text(encoding="ascii").split("endheader\n")
+    names = body.splitlines()[0].split("\t")
+    comments = dict(line.split(" is ", 1) for line in head.splitlines() if line.split(" is ")[0] in MOT)
+    said = {}
+    for name, joint in CURVES.items():
+        coordinate = next(coordinate for coordinate, of in MOT.items() if of == joint)
+        where, status = comments[coordinate].split(":")[0].split(", ")
+        assert (where == "here") == (coordinate in names)
+        assert where in ("here", "left out")
+        said[name] = status if coordinate in names else SHAPE if status == "no_zero" else WITHHELD
+    return said
+
+
+def in_rerun(out: Path) -> dict[str, str]:
+    """Where the curves lie, and the table of what may be read."""
+    chunks = list(RrdReader(out / "session.rrd").stream())
+    moving = {chunk.entity_path for chunk in chunks if "walking_1" in chunk.timeline_names}
+    (document,) = [chunk.to_record_batch().to_pydict() for chunk in chunks if chunk.entity_path == "/may_be_read"]
+    table = [
+        [cell.strip() for cell in line.strip("|").split("|")]
+        for line in document["TextDocument:text"][0][0].split("## walking_1")[1].splitlines()
+        if line.startswith("| ")
+    ]
+    verdicts = {(row[0], row[1]): row[2] for row in table}
+    said = {}
+    for name, joint in CURVES.items():
+        by_place = {
+            f"/angles/{joint}/result": READ,
+            f"/angles/{joint}/result_shape": SHAPE,
+            f"/withheld/{joint}/result": WITHHELD,
+        }
+        (place,) = moving & by_place.keys()
+        words = joint.replace("_", " ")
+        by_table = curve_by_verdicts({part: verdicts[words, part] for part in ("shape", "height", "sign")})
+        said[name] = by_table if by_place[place] == (READ if by_table == CARE else by_table) else "contradicts itself"
+    for side in SIDES:
+        said[f"{side} stance"] = verdicts[f"{side} leg", "timing"]
+        said[f"{side} stride length"] = verdicts[f"{side} leg", "distance"]
+        said[f"{side} knee range"] = verdicts[f"{side} knee", "shape"]
+        said[f"{side} ankle range"] = verdicts[f"{side} ankle", "shape"]
+    return said
+
+
+RERUN = tuple(name for name in QUANTITIES if name.endswith(("curve", "stance", "length", "range")))
+# what each output tells of; the report and the screen belong here too, each with a function of its own
+OUTPUTS: dict[str, tuple[Callable[[Path], dict[str, str]], tuple[str, ...]]] = {
+    "csv": (in_csv, (*OF_SIDES, *CURVES)),
+    "json": (in_json, QUANTITIES),
+    "fhir": (in_fhir, (*OF_SIDES, *BOTH)),
+    "xlsx": (in_xlsx, QUANTITIES),
+    "c3d": (in_c3d, tuple(CURVES)),
+    "mot": (in_mot, tuple(CURVES)),
+    "rerun": (in_rerun, RERUN),
+}
+
+
+@pytest.mark.parametrize("output", OUTPUTS)
+def test_every_output_says_the_same(case: Case, out: Path, output: str) -> None:
+    read, tells_of = OUTPUTS[output]
+    assert read(out) == {name: case.expected[name] for name in tells_of}
+
+
+def words_of_about(out: Path) -> str:
+    rows = openpyxl.load_workbook(out / "gaitwright.xlsx").worksheets[0].iter_rows(values_only=True)
+    return "\n".join(str(row[1]) for row in rows)
+
+
+def words_of_c3d(out: Path) -> str:
+    parameters = ezc3d.c3d(str(out / "walk_1" / "angles.c3d"))["parameters"]
+    return "\n".join(parameters["PROCESSING"]["STATUS"]["value"])
+
+
+def words_of_rerun(out: Path) -> str:
+    return "".join(
+        str(chunk.to_record_batch().to_pydict())
+        for chunk in RrdReader(out / "session.rrd").stream()
+        if chunk.entity_path == "/may_be_read"
+    )
+
+
+REASONS: dict[str, Callable[[Path], str]] = {
+    "json": lambda out: (out / "summary.json").read_text(encoding="utf-8"),
+    "fhir": lambda out: (out / "fhir_bundle.json").read_text(encoding="utf-8"),
+    "xlsx": words_of_about,
+    "rerun": words_of_rerun,
+    "c3d": words_of_c3d,
+    "mot": lambda out: (out / "walk_1" / "angles.mot").read_text(encoding="ascii"),
+}
+ANGLES_ONLY = ("c3d", "mot")  # which tell of no time
+
+
+@pytest.mark.parametrize("output", REASONS)
+def test_every_output_gives_the_reason(case: Case, out: Path, output: str) -> None:
+    is_of_angles = any(verdict != READ for name, verdict in case.expected.items() if name in CURVES)
+    assert (case.reason in REASONS[output](out)) == (is_of_angles or output not in ANGLES_ONLY)
