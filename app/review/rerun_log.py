@@ -127,7 +127,7 @@ def _rgba(colour: str) -> int:
     return int(f"{colour.removeprefix('#')}FF", 16)
 
 
-def _document(entity: str, text: str, media_type: str = rr.MediaType.TEXT) -> Chunk:
+def _document(entity: str, text: str, media_type: rr.MediaType = rr.MediaType.TEXT) -> Chunk:
     columns = rr.TextDocument.columns(text=[text], media_type=[media_type])
     return Chunk.from_columns(entity, indexes=[], columns=columns)
 

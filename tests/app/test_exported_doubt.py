@@ -252,7 +252,11 @@ def in_xlsx(out: Path) -> dict[str, str]:
             }
             for what in ("mean_deg", "shape_deg")
         )
-        by_cells = {(True, True): READ, (WITHHELD, True): SHAPE, (WITHHELD, WITHHELD): WITHHELD}
+        by_cells: dict[tuple[object, ...], str] = {
+            (True, True): READ,
+            (WITHHELD, True): SHAPE,
+            (WITHHELD, WITHHELD): WITHHELD,
+        }
         said[name] = by_cells[*height, *shape]
         if said[name] == READ:
             said[name] = status if status in (READ, CARE) else "contradicts itself"

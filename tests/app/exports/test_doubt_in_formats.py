@@ -214,7 +214,7 @@ def test_a_workbook_has_no_number_where_a_figure_is_withheld(
         *("left_ankle_mean_deg", "right_knee_mean_deg", "right_knee_shape_deg"),
         *("right_ankle_mean_deg", "right_ankle_shape_deg", "right_ankle_stride_sd_deg", "right_ankle_status"),
     }
-    about = {row[0]: row[1] for row in book["About"].iter_rows(values_only=True)}
+    about = {row[0]: str(row[1]) for row in book["About"].iter_rows(values_only=True)}
     name = mixed.name
     assert about[f"{name}, left knee, shape"] == "read"
     assert about[f"{name}, right ankle, shape"].startswith("withheld: The joint's axis is known to 12.0° only")
