@@ -38,6 +38,7 @@ from core.verdicts.quantities import (
     WINDOWS,
     QuantityClass,
     assessment_of,
+    assessment_of_both,
     both_sides,
     joint_of,
     raw_values,
@@ -176,7 +177,9 @@ class Part:
         return self.cycle(joint).n >= MIN_STRIDES_FOR_MEAN and not math.isfinite(self.value(side, column).mean)
 
     def of_both(self, name: str) -> float:
-        """Cadence, double support or speed (the names of `BothFeet`), the mean of the walks in which it is told."""
+        """Cadence, double support or speed (the names of `BothFeet`), mean of the walks; NaN if one withholds it."""
+        if not assessment_of_both(self.verdicts, name).is_told:
+            return math.nan
         known = [value for walk in self.walks if math.isfinite(value := getattr(both_sides(walk), name))]
         return fmean(known) if known else math.nan
 

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_legs, conditions_of
 from app.reports.csv_report import typed_cell, write_table
+from app.reports.status import status_of
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
@@ -27,6 +28,7 @@ COMPARED_CYCLES = "compared_cycles.csv"
 SIDES = "sides.csv"
 OF_PART = ("part", "name", "walks")
 JUDGED = ("difference", "error", "error_sources", "status", "verdict")
+OF_CURVE = ("mean_deg", "stride_sd_deg", "n", "shape_deg", "status")
 HEADER = (
     *OF_PART,
     *(f"against_{what}" for what in OF_PART),
@@ -119,13 +121,20 @@ def write_compared_cycles(parts: Sequence[Part], path: Path) -> None:
         The file cannot be written.
     """
     curves = [(part, joint) for joint in Joint for part in parts if joint in part.joints]
-    cycles = [part.cycle(joint) for part, joint in curves]
-    heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in ("mean_deg", "stride_sd_deg", "n")]
-    lines = []
-    for percent in range(POINTS):
-        cells = [(_cell(float(one.mean[percent])), _cell(float(one.sd[percent])), str(one.n)) for one in cycles]
-        lines.append([str(percent), *(cell for of_cycle in cells for cell in of_cycle)])
+    cells = [list(_curve(part, joint)) for part, joint in curves]
+    heads = [f"{part.letter}_{joint}_{of}" for part, joint in curves for of in OF_CURVE]
+    lines = [[str(percent), *(cell for curve in cells for cell in curve[percent])] for percent in range(POINTS)]
     write_table(["percent", *heads], lines, path)
+
+
+def _curve(part: Part, joint: Joint) -> Iterator[tuple[str, ...]]:
+    """The cells of one mean curve, as in cycles.csv: of a joint without a height its shape alone."""
+    said, cycle = part.verdicts.joint(joint), part.cycle(joint)
+    shape = cycle.mean - cycle.mean.mean()
+    for percent in range(POINTS):
+        height = float(cycle.mean[percent]) if said.height.is_told else math.nan
+        known = (_cell(height), _cell(float(cycle.sd[percent])), str(cycle.n), _cell(float(shape[percent])))
+        yield (*known, status_of(said))
 
 
 def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> None:
@@ -156,25 +165,29 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
 
 
 def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
-    """How far apart the mean curves lie on average, where both are told from the same kind of zero."""
+    """How far apart the mean curves lie on average, where the heights of both are told from the same kind of zero."""
     nothing = MeanAndSd(math.nan, math.nan, 0)
     for joint in comparison.joints:
         if joint.side is not side or not comparison.has_one_zero(joint):
+            continue
+        said = together(of.verdicts.joint(joint).height for of in (part, comparison.against))
+        if not said.is_told:
             continue
         cycles = part.cycle(joint), comparison.against.cycle(joint)
         difference = curve_difference(cycles[0].mean, cycles[1].mean)
         if min(cycle.n for cycle in cycles) >= MIN_STRIDES_FOR_MEAN and math.isfinite(difference):
             name = f"{'knee' if joint.is_knee else 'ankle'}_curve_difference_deg"
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
-            status = together(of.verdicts.joint(joint).shape for of in (part, comparison.against)).verdict
-            yield Row(part, comparison.against, side, name, nothing, nothing, found, status)
+            yield Row(part, comparison.against, side, name, nothing, nothing, found, said.verdict)
 
 
 def _of_both(part: Part, against: Part) -> Iterator[Row]:
     for name in OF_BOTH:
         value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
-        if math.isfinite(difference := value.mean - other.mean):
-            status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
+        status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
+        if status is Verdict.WITHHELD:
+            yield Row(part, against, None, name, value, other, WITHHELD, status)
+        elif math.isfinite(difference := value.mean - other.mean):
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
             yield Row(part, against, None, name, value, other, found, status)
 

@@ -9,7 +9,7 @@ from app.gates_in_words import gate_sentence
 from core.body import Joint, Side
 from core.results import Analysis, RecordingAnalysis
 from core.samples import BoolArray, RecordingKind
-from core.verdicts.model import Assessment, Verdict, together
+from core.verdicts.model import Assessment, JointVerdicts, Verdict, together
 
 READ, CARE, WITHHELD = str(Verdict.READ), str(Verdict.CARE), str(Verdict.WITHHELD)
 RANGE_ONLY, NO_ZERO = "range_only", "no_zero"
@@ -26,11 +26,15 @@ class Said(NamedTuple):
 
 
 def joint_status(recording: RecordingAnalysis, joint: Joint) -> str:
+    """What holds of a joint's angle in one recording, as `status_of` has it."""
+    return status_of(recording.verdicts.joint(joint))
+
+
+def status_of(found: JointVerdicts) -> str:
     """What holds of a joint's angle in one word: read, care, withheld, range_only or no_zero; empty: not measured.
 
     `range_only`: the sign is not known, so the curve may be mirrored. `no_zero`: its height says nothing.
     """
-    found = recording.verdicts.joint(joint)
     if found.shape.verdict is Verdict.NOT_MEASURED:
         return ""
     if not found.shape.is_told:

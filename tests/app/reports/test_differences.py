@@ -1,0 +1,113 @@
+"""Do the tables of differences keep quiet about what is withheld in one of the two, and tell the rest?"""
+
+import csv
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.reports.comparison import Comparison, Kind, Part
+from app.reports.differences import rows_of, write_compared_cycles, write_differences, write_sides
+from core.body import Joint, Side
+from core.results import ZeroKind
+from tests.core.verdicts.built_walk import Told, calibrations, judged_walk, leg, walk
+
+
+def part(letter: str, told: Told | None = None, **changes: Any) -> Part:
+    """A condition of one walk."""
+    found = told or calibrations()
+    return Part(letter, f"condition {letter}", (judged_walk(walk(**changes), found),), found)
+
+
+def table(path: Path) -> list[dict[str, str]]:
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def differences(folder: Path, *parts: Part) -> dict[tuple[str, str], dict[str, str]]:
+    write_differences(rows_of(Comparison(Kind.CONDITIONS, parts)), folder / "differences.csv")
+    return {(row["side"], row["parameter"]): row for row in table(folder / "differences.csv")}
+
+
+def test_what_can_be_read_is_told_with_its_error_and_what_it_contains(tmp_path: Path) -> None:
+    found = differences(tmp_path, part("A"), part("B", left=leg(Side.LEFT, knee_range_deg=66.0)))
+    row = found["left", "knee_range_deg"]
+    assert (row["difference"], row["status"], row["verdict"]) == ("6.00000", "read", "exceeds_error")
+    assert float(row["error"]) == pytest.approx(2.772, abs=1e-3)
+    assert row["error_sources"] == "chance drift walk_to_walk"
+    assert found["right", "knee_range_deg"]["verdict"] == "inside_error"
+    assert found["both", "speed_m_s"]["status"] == "read"
+    assert ("left", "knee_curve_difference_deg") in found
+
+
+def test_what_is_withheld_in_one_of_the_two_has_no_difference_and_no_error(tmp_path: Path) -> None:
+    bad = part("B", calibrations(Joint.LEFT_KNEE, sign_margin=1.0))
+    found = differences(tmp_path, part("A"), bad)
+    for name in ("knee_range_deg", "knee_swing_peak_deg"):
+        row = found["left", name]
+        assert (row["status"], row["verdict"]) == ("withheld", "withheld")
+        assert row["difference"] == row["error"] == row["mean"] == ""
+        assert float(row["against_mean"]) == 60.0  # the other walk's own
+    assert ("left", "knee_curve_difference_deg") not in found
+    assert found["right", "knee_range_deg"]["verdict"] == "inside_error"
+
+
+def test_care_reaches_the_row(tmp_path: Path) -> None:
+    found = differences(tmp_path, part("A"), part("B", calibrations(Joint.LEFT_KNEE, lag_sd_s=0.005)))
+    assert found["left", "knee_range_deg"]["status"] == "care"
+    assert found["left", "knee_range_deg"]["verdict"] == "inside_error"
+    assert found["left", "ankle_range_deg"]["status"] == "read"
+
+
+def test_figures_of_both_legs_are_withheld_where_a_walk_withholds_them(tmp_path: Path) -> None:
+    """Of a condition of two walks the worse holds, although the other walk alone could tell."""
+    good, bad = part("A"), walk(left=leg(Side.LEFT, stance_percent=20.0))
+    pooled = replace(good, letter="B", walks=(*good.walks, judged_walk(bad)))
+    assert np.isnan(pooled.of_both("cadence_steps_min"))
+    assert good.of_both("cadence_steps_min") == pytest.approx(120 / 1.1)
+    found = differences(tmp_path, good, pooled)
+    for name in ("cadence_steps_min", "double_support_percent", "speed_m_s"):
+        row = found["both", name]
+        assert (row["status"], row["verdict"]) == ("withheld", "withheld")
+        assert row["mean"] == row["difference"] == row["error"] == ""
+        assert row["against_mean"] != ""
+
+
+def test_a_curve_without_a_height_is_compared_by_its_shape_alone(tmp_path: Path) -> None:
+    no_zero = part("B", calibrations(Joint.LEFT_KNEE, zero=ZeroKind.NONE))
+    too_high = part("C", left=leg(Side.LEFT, ankle_least_deg=30.0))
+    no_sign = part("D", calibrations(Joint.RIGHT_KNEE, is_sign_certain=False))
+    write_compared_cycles([part("A"), no_zero, too_high, no_sign], tmp_path / "compared_cycles.csv")
+    rows = table(tmp_path / "compared_cycles.csv")
+    assert [row["percent"] for row in rows] == [str(percent) for percent in range(101)]
+    for curve, status, has_height, has_shape in (
+        ("A_left_knee", "read", True, True),
+        ("B_left_knee", "no_zero", False, True),
+        ("B_right_knee", "read", True, True),
+        ("C_left_ankle", "no_zero", False, True),
+        ("D_right_knee", "range_only", False, False),
+    ):
+        assert {row[f"{curve}_status"] for row in rows} == {status}
+        assert {row[f"{curve}_mean_deg"] != "" for row in rows} == {has_height}
+        assert {row[f"{curve}_shape_deg"] != "" for row in rows} == {has_shape}
+    shape = [float(row["B_left_knee_shape_deg"]) for row in rows]
+    assert np.mean(shape) == pytest.approx(0.0, abs=1e-5)
+    assert np.ptp(shape) == pytest.approx(60.0)
+    found = differences(tmp_path, part("A"), too_high)
+    assert ("left", "ankle_curve_difference_deg") not in found
+    assert ("left", "knee_curve_difference_deg") in found
+
+
+def test_legs_are_set_side_by_side_with_their_status(tmp_path: Path) -> None:
+    one = part("A", calibrations(Joint.RIGHT_ANKLE, axis_sd_rad=None), left=leg(Side.LEFT, knee_range_deg=75.0))
+    write_sides([one], (Side.LEFT, Side.RIGHT), tmp_path / "sides.csv")
+    found = {row["parameter"]: row for row in table(tmp_path / "sides.csv")}
+    knee, ankle, time = (found[name] for name in ("knee_range_deg", "ankle_range_deg", "stride_time_s"))
+    assert (knee["difference"], knee["status"], knee["verdict"]) == ("15.00000", "read", "exceeds_error")
+    assert float(knee["error"]) == pytest.approx(9.2, abs=0.3)  # and what 1 ms of lag makes of each leg
+    assert "clock" in knee["error_sources"]
+    assert (ankle["status"], ankle["verdict"]) == ("withheld", "withheld")
+    assert ankle["difference"] == ankle["error"] == ankle["right_mean"] == ankle["symmetry_index_percent"] == ""
+    assert time["verdict"] == "no_published_figure"
