@@ -153,7 +153,8 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
     some = data.thinned(DECISION_SAMPLES)
     forces = joint_forces(some)
     coincidence = fit_forces(forces, some.heading(found.knots_rad)[:, forces.chosen])
-    cost = np.log(np.maximum(found.cost, RATE_COST_FLOOR)) + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
+    by_rates = np.log(np.maximum(found.cost, RATE_COST_FLOOR))
+    cost = by_rates + np.log(coincidence.cost + ACCELERATION_COST_FLOOR)
     best = int(np.argmin(cost))
     rivals = [k for k in range(len(found)) if _is_rival(found, best, k)]
     margin = float(np.exp(min(cost[k] for k in rivals) - cost[best])) if rivals else float("inf")
@@ -162,7 +163,7 @@ def decide(data: Datasets, downs: Downs | None = None) -> Decision:
         if elevation[best].max() > MAX_ELEVATION_RAD:
             prior = np.sum(elevation**2, axis=1) / (2 * ELEVATION_SD_RAD**2)
             alike = [k for k in range(len(found)) if not _is_rival(found, best, k)]
-            level = min(alike, key=lambda k: np.log(max(found.cost[k], RATE_COST_FLOOR)) + prior[k])
+            level = min(alike, key=lambda k: float(by_rates[k] + prior[k]))
             return Decision(found.pick(level), float(cost[level]), margin, did_flexion_dominate=False)
     return Decision(found.pick(best), float(cost[best]), margin)
 

@@ -62,7 +62,7 @@ def test_strides_that_follow_one_another_count_for_less() -> None:
 def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
     """Four of 60, of 63 and of 60: both halves are 61. Of deviations -1 and 2 the squares sum to 24, neighbours to 14.
 
-    r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.18182 x 3.8 = 0.69091; chance sqrt(0.18182 x 0.69091) = 0.35443.
+    r = 0.58333; SE^2 = 24/11 / 12 x 1.58333/0.41667 = 0.69091; chance sqrt(0.18182 x 0.69091) = 0.35443.
     The thirds: 0.25 x 3^2 - 2.5 x 0.35443 = 1.36393.
     """
     assert mean_of_strides(np.repeat([60.0, 63.0, 60.0], 4)).drift == pytest.approx(1.16787, abs=1e-4)
