@@ -141,6 +141,9 @@ SENTENCES = {
         "receiver for all sensors."
     ),
     "centre_unknown": "the joint centre could not be found from this motion. The angle does not need it.",
+    "ankle_axis_from_rates": (
+        "no tissue rings at this foot, so the axis comes straight from how foot and shank turned in walking."
+    ),
     "axis_from_walking": (
         "the joint axis comes from walking alone and is less certain. Record ten seconds of free motion."
     ),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.body import Joint
+from core.calibration.bare_axis import Axes, bare_axes
 from core.calibration.identify import Identification, identify_joint, moving_data
 from core.calibration.joint_axis import heading_from_axes
 from core.calibration.joint_centre import MAX_SD_M, nearest_to_sensors
@@ -27,7 +28,7 @@ class Identified:
     """One joint as identified, before its clinical sign and zero.
 
     The centres in `geometry` are the best there are and serve eq 15, which hardly feels them; where not
-    `is_centre_known` they are not reported.
+    `is_centre_known` they are not reported. `is_bare`: no tissue rings, and the axes are those of the bare rates.
     """
 
     basis: Basis
@@ -40,6 +41,7 @@ class Identified:
     hinge_residual_rad_s: float
     is_hinge: bool
     robust: Identification | None
+    is_bare: bool = False
 
     @property
     def lag(self) -> Lag | None:
@@ -97,13 +99,15 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
     centre_1, centre_2 = found.centre.proximal_m, found.centre.distal_m
     if joint.is_knee:
         centre_1, centre_2 = nearest_to_sensors(found.centre, found.axis_1, found.axis_2)
+    bare = _bare_axes(tracks, basis, found)
+    axis_1, axis_2 = bare or (found.axis_1, found.axis_2)
     # a walking person's centre is not in the data; a hinge's is
     is_centre_known = found.centre_sd_m < MAX_SD_M and (found.is_hinge or basis.free_motion is not None)
     return Identified(
         basis=basis,
         geometry=Geometry(
-            found.axis_1,
-            found.axis_2,
+            axis_1,
+            axis_2,
             centre_1,
             centre_2,
             found.lag.lag_s,
@@ -119,7 +123,16 @@ def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | 
         hinge_residual_rad_s=found.hinge_residual_rad_s,
         is_hinge=found.is_hinge,
         robust=found,
+        is_bare=bare is not None,
     )
+
+
+def _bare_axes(tracks: SensorTracks, basis: Basis, found: Identification) -> Axes | None:
+    """Axes of an ankle that walks without tissue, None of any other joint."""
+    if basis.joint.is_knee or found.is_hinge or not found.did_flexion_dominate:
+        return None
+    walked = moving_data(_pairs(tracks, basis.joint, basis.walks, found.lag.lag_s))
+    return bare_axes(walked, (found.axis_1, found.axis_2)) if walked else None
 
 
 def _downs(tracks: SensorTracks, basis: Basis) -> tuple[FloatArray, FloatArray] | None:

@@ -89,6 +89,8 @@ def _about_robust(calibration: JointCalibration, found: Identified, say: Say) ->
         say("axis_uncertain", Severity.WARNING, axis_sd_deg=round(float(np.rad2deg(calibration.axis_sd_rad)), 1))
     if calibration.centre_proximal_m is None:
         say("centre_unknown", Severity.INFO)
+    if found.is_bare:
+        say("ankle_axis_from_rates", Severity.INFO)
     if found.basis.free_motion is None:
         say("axis_from_walking", Severity.INFO)
 

@@ -286,6 +286,7 @@ CASES: dict[str, Case] = {
     "lag_corrected": Case(lambda: walked(clock_late_s={SHANK: 0.03})),
     "clock_moved": Case(late_in_the_walk),
     "clock_drifts": Case(lambda: walked(recordings=(Standing(), Walk(strides=12)), clock_rate={SHANK: 1.02})),
+    "ankle_axis_from_rates": Case(lambda: walked(sites=(SHANK, FOOT))),
     "labels_look_swapped": Case(lambda: exchanged({SHANK: Site.RIGHT_SHANK, Site.RIGHT_SHANK: SHANK})),
     "labels_look_mixed": Case(lambda: exchanged({THIGH: SHANK, SHANK: FOOT, FOOT: THIGH})),
     "strap_slipped": Case(slipped),

@@ -1,0 +1,43 @@
+"""Are the axes of a joint without tissue found from its bare rates, and only of such a joint?"""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import pytest
+
+from core.analysis import analyse
+from core.body import Joint, Site
+from core.calibration.bare_axis import bare_axes
+from core.calibration.joint_axis import moved
+from core.datasets import gather
+from core.rotations import angle_between
+from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
+
+if TYPE_CHECKING:
+    from tests.core.conftest import Person
+
+KNEE = Joint.LEFT_KNEE
+FOOT_ALONE = (Site.LEFT_SHANK, Site.LEFT_FOOT)
+
+
+def test_axes_that_are_off_come_nearer_by_half_and_more(person: "Person") -> None:
+    pair = person.exact_pair(KNEE, heading_rad=0.3)
+    data = gather((pair,), [np.arange(5, 590)])
+    true = [person.axis(site, KNEE) for site in (KNEE.proximal, KNEE.distal)]
+    start = [moved(axis[None], np.deg2rad([[4.0, -3.0]]))[0] for axis in true]
+    found = bare_axes(data, (start[0], start[1]))
+    assert found is not None
+    for axis, other in zip(found, true, strict=True):
+        assert np.rad2deg(angle_between(axis, other)) < 2.5  # of five
+
+
+@pytest.mark.parametrize(("tissue", "is_bare"), [(Tissue.RIGID, True), (Tissue.REAL, False)])
+def test_it_is_told_which_way_an_ankle_s_axis_was_found(tissue: Tissue, is_bare: bool) -> None:
+    recordings = (Standing(duration_s=2.0), FreeMotion(duration_s=6.0), Walk(strides=6))
+    found = analyse(simulate(WalkerSettings(seed=2, tissue=tissue, recordings=recordings, sites=FOOT_ALONE)).session)
+    told = {(f.key, f.where) for f in found.findings}
+    assert (("ankle_axis_from_rates", "left_ankle") in told) is is_bare
+
+
+def test_a_knee_is_never_found_so(person: "Person") -> None:
+    assert "ankle_axis_from_rates" not in {f.key for f in analyse(person.visit()).findings}
