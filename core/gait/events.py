@@ -38,6 +38,7 @@ LANDING_RATIO = 1.4  # a landing ends steeply, and soft tissue rings after it
 MIN_ROLL_RAD_S = 0.5  # slower push-off or loading, and the foot is put down and lifted flat
 FOREFOOT_RAD = np.deg2rad(3.0)  # heels first, real feet go 2 deg below their rest
 FLAT_LANDING_RAD = np.deg2rad(8.0)  # toes no further up before landing may come down in the air
+MAX_STRAIGHT_RAD = np.deg2rad(12.0)  # straight strides turn a foot by up to 5 deg
 MIN_LOWERED_RAD = np.deg2rad(17.0)  # a foot that turns its toes down less on leaving is lifted; healthy ones turn 50
 SHAKING_SHARE = 0.25  # of the level of rest: so far apart, flat feet's rates are not the feet's; real ones are by 0.16
 MIN_SWINGS_TO_AVERAGE = 4
@@ -186,7 +187,8 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
         for event, found in enumerate((*_leaving(leaving[k], usual, a), *_landing(landings[k], usual, motion.step_s))):
             timing.put(k, event, found, EventSource.PITCH)
     is_flat = np.array([motion.pitch_rad[m : b + 1].max() < FLAT_LANDING_RAD for _, m, b in spans], dtype=bool)
-    is_landed = sole.is_landing(timing.index[:, CONTACT], is_flat, motion.step_s)
+    is_straight = np.abs(motion.turn_rad) < MAX_STRAIGHT_RAD
+    is_landed = sole.is_landing(timing.index[:, CONTACT], is_flat, is_straight, motion.step_s)
     is_rolling = (push > MIN_ROLL_RAD_S) & (load > MIN_ROLL_RAD_S) & is_landed
     is_usual = is_rolling & is_heel_first & (push > 0.5 * usual.push_rad_s) & (load > 0.5 * usual.load_rad_s)
     _even_out(timing, motion, spans, is_usual)

@@ -18,7 +18,7 @@ MAX_SENSOR_HEIGHT_M = 0.15
 TRAVEL_SHARE = 0.05  # of the sole's greatest speed: more, and it travels
 LANDED_SHARE = 0.25  # more, and it has not landed: real feet that land heels first go on at 0.1 to 0.2
 STANDING_SHARE = 0.04  # less, and it stands, however it came down
-MAX_EARLY_S, MAX_LATE_S = 0.03, 0.01  # the pitch of a flat foot that lands further from its sole tells something else
+MAX_EARLY_S, MAX_LATE_S = 0.04, 0.01  # the pitch of a flat foot that lands further from its sole tells something else
 NEAR_SHARE, SHOCK_S = 0.5, 0.05  # a shock counts from so long before the sole becomes slower than this share;
 # a sole that lands softly stands twice that after it was slower than LANDED_SHARE, and what moves it later is the shoe
 MIN_SHOCK_M_S2 = 5.0  # from sample to sample; feet put down softly after a stroke begin here
@@ -42,13 +42,15 @@ class SoleTravel:
     lands_reach: FloatArray
     speed_share: FloatArray
 
-    def is_landing(self, index: FloatArray, is_flat: BoolArray, step_s: float) -> BoolArray:
+    def is_landing(self, index: FloatArray, is_flat: BoolArray, is_straight: BoolArray, step_s: float) -> BoolArray:
         """Whether the soles may land at these indices (k,), as they have all but ceased to travel; False where NaN.
 
         A foot that comes down flat has no heel to land on: its sole has to stand, and to land then.
+        In a turn the way of a swing is no straight one, and its sole tells less.
         """
         at = np.where(np.isfinite(index), index, 0.0).astype(int)
-        is_slow = self.speed_share[at] < np.where(is_flat, STANDING_SHARE, LANDED_SHARE)
+        most = np.where(is_flat, STANDING_SHARE, np.where(is_straight, LANDED_SHARE, np.inf))
+        is_slow = self.speed_share[at] < most
         after_s = step_s * (index - self.lands)
         is_then = (after_s > -MAX_EARLY_S) & (after_s < MAX_LATE_S)
         return np.isfinite(index) & is_slow & (is_then | ~is_flat)

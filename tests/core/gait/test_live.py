@@ -308,6 +308,6 @@ def test_optics_feet_are_told_as_offline(test_data: Callable[[str], Path], is_ax
         assert sum(e.is_late for e in told if e.event in ROLLING) <= (2 if every < 4 else 4)
     least = 64 if every == 1 else 62
     assert found[FootEvent.TOE_OFF] >= least
-    assert found[FootEvent.INITIAL_CONTACT] >= least - 2
-    assert found[FootEvent.HEEL_RISE] >= least - 4
+    assert found[FootEvent.INITIAL_CONTACT] >= least - 3  # steps to a halt land flat: by the sole afterwards
+    assert found[FootEvent.HEEL_RISE] >= least - 8  # looked at afterwards, all swings together say where heels rise
     assert found[FootEvent.FULL_CONTACT] >= least - 4
