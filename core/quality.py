@@ -35,7 +35,8 @@ COMPARED_ROWS = 2000
 MIN_DISTINCT = 0.8  # share of rows that are unlike all others: a finer sensor than that never repeats itself by chance
 MOVING_RAD_S = 0.5
 CLIPPED_RUN = 3  # equal extreme values in a row
-CLIPPED_STEPS = 4  # of the sensor's least steps: noise goes on by one or two
+MIN_CLIPPED = 6  # samples: what happens once is chance
+CLIPPED_STEPS = 5  # of the sensor's least steps: noise goes on by one or two
 CLIPPED_BEYOND_M_S2, CLIPPED_BEYOND_RAD_S = 14.7, 1.5  # 1.5 g; the narrowest ranges are 2 g and 125 deg/s
 MIN_CLIPPED_PERCENT = 0.05
 CLOCK_OFFSET_S = 5.0
@@ -216,15 +217,17 @@ def _clipped_percent(values: FloatArray, beyond: float) -> float:
         runs = [(int(i), int(j)) for i, j in zip(edges[::2], edges[1::2], strict=True) if j - i >= CLIPPED_RUN]
         least = CLIPPED_STEPS * float(np.min(steps[steps > 0.0], initial=np.inf))
         clipped = sum(j - i for i, j in runs if _would_go_on(v, i, j, limit, least))
-        worst = max(worst, 100 * clipped / len(v))
+        if clipped >= MIN_CLIPPED:
+            worst = max(worst, 100 * clipped / len(v))
     return worst
 
 
 def _would_go_on(v: FloatArray, first: int, end: int, limit: float, least: float) -> bool:
-    """Whether the samples before or after a run of extremes lead beyond it, by `least` and more than flatness does."""
-    reached = [2 * v[i] - v[k] for i, k in ((first - 1, first - 2), (end, end + 1)) if 0 <= k < len(v)]
-    nearest = [limit - v[i] for i in (first - 1, end) if 0 <= i < len(v)]
-    return bool(reached) and max(reached) - limit > max(least, 0.5 * max(nearest))
+    """Whether a signal comes and leaves by more than `least`, and one of both leads beyond more than flatness does."""
+    sides = [(v[i], v[i] - v[k]) for i, k in ((first - 1, first - 2), (end, end + 1)) if 0 <= k < len(v)]
+    farthest = max((limit - near for near, _ in sides), default=0.0)
+    beyond = max((near + slope - limit for near, slope in sides), default=0.0)
+    return beyond > max(least, 0.5 * farthest) and all(slope > least for _, slope in sides)
 
 
 def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:

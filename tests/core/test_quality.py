@@ -341,8 +341,8 @@ def test_a_slow_peak_of_a_coarse_sensor_is_not_its_range(person: "Person") -> No
 
 def test_a_coarse_sensor_in_free_motion_has_a_range_wider_than_that() -> None:
     motion = (FreeMotion(duration_s=8.0),)
-    for seed in (6, 14, 18):
-        made = simulate(WalkerSettings(seed, motion, errors=VERY_COARSE, rate_hz=200.0))
+    for seed, errors in ((14, VERY_COARSE), (18, VERY_COARSE), (117, COARSE)):
+        made = simulate(WalkerSettings(seed, motion, errors=errors, rate_hz=200.0))
         assert not look_at(made.session).findings
 
 
