@@ -110,3 +110,21 @@ def test_a_c3d_holds_shapes_and_a_motion_file_no_angle(folder: Path, simulated: 
     (path,) = folder.glob("walk*/angles.mot")
     header = path.read_text().split("endheader\n")[1].splitlines()[0]
     assert header == "time"
+
+
+def test_a_c3d_and_a_motion_file_say_what_they_left_out(folder: Path) -> None:
+    (path,) = folder.glob("walk*/angles.c3d")
+    parameters = ezc3d.c3d(str(path))["parameters"]
+    status = dict(text.split(": ", 1) for text in parameters["PROCESSING"]["STATUS"]["value"])
+    assert set(status) == {str(joint) for joint in Joint}
+    assert all(text.startswith("no_zero: ") and text.isascii() for text in status.values())
+    for label, words in zip(
+        parameters["POINT"]["LABELS"]["value"], parameters["POINT"]["DESCRIPTIONS"]["value"], strict=True
+    ):
+        bends = "knee flexion" if "Knee" in label else "ankle dorsiflexion"
+        assert words == f"x: {bends} less its mean, for there is no zero; y, z not measured"
+    (path,) = folder.glob("walk*/angles.mot")
+    head = path.read_text().split("endheader\n")[0]
+    for coordinate in ("knee_angle_l", "knee_angle_r", "ankle_angle_l", "ankle_angle_r"):
+        assert f"\n{coordinate} is left out, no_zero: " in head
+    assert "\nnColumns=1\n" in head

@@ -104,6 +104,8 @@ def test_the_motion_file_names_each_joint_as_opensim_does(exported: Path, truth:
     values = np.array([[float(cell) for cell in line.split("\t")] for line in lines[1:]])
     assert names[0] == "time"
     assert sorted(names[1:]) == sorted(MOT)
+    head = (walk_folder(exported) / "angles.mot").read_text()
+    assert all(f"\n{name} is here, read" in head for name in MOT)
     check_columns(truth, values[:, 0], dict(zip(names[1:], values[:, 1:].T, strict=True)), MOT)
 
 
@@ -118,6 +120,8 @@ def test_the_c3d_names_each_joint_as_motion_laboratories_do(exported: Path, trut
     check_columns(truth, time_s, dict(zip(labels, frames[0], strict=True)), C3D)
     assert (frames[1:3] == 0.0).all()  # ab-/adduction and rotation are not measured
     assert point["TYPE_GROUPS"]["value"] == ["ANGLES"]
+    status = dict(text.split(": ", 1) for text in read["parameters"]["PROCESSING"]["STATUS"]["value"])
+    assert {joint: text.split(":")[0] for joint, text in status.items()} == dict.fromkeys(map(str, Joint), "read")
     assert point["ANGLES"]["value"] == labels
     assert point["ANGLE_UNITS"]["value"] == ["deg"]
     for label, words in zip(labels, point["DESCRIPTIONS"]["value"], strict=True):
