@@ -117,3 +117,10 @@ def test_sensors_sit_where_they_are_strapped(walked: SimulatedSession) -> None:
         for joint in (knee, ankle):
             for axis in (joint.axis_proximal, joint.axis_distal):
                 assert np.linalg.norm(axis) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("joint", list(Joint))
+def test_it_stands_after_the_walk_as_it_stood_before(walked: SimulatedSession, joint: Joint) -> None:
+    angle_deg = np.rad2deg(walked.truth.recordings["walk 1"].joints[joint].angle_rad)
+    assert angle_deg[-1] == pytest.approx(angle_deg[0], abs=0.3)
+    assert abs(angle_deg[0]) < 12.0
