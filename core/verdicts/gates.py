@@ -133,7 +133,7 @@ def _leg_verdicts(
 def _pairing(found: JointCalibration) -> Iterator[GateReason]:
     margin = found.sign_margin
     if not found.is_same_joint or (margin is not None and margin < LIMITS.pairing_margin):
-        yield GateReason("pairing", Verdict.WITHHELD, _known(margin), LIMITS.pairing_margin)
+        yield GateReason("pairing", Verdict.WITHHELD, _below(margin, LIMITS.pairing_margin), LIMITS.pairing_margin)
 
 
 def _axis(found: JointCalibration) -> Iterator[GateReason]:
@@ -151,14 +151,14 @@ def _lag(found: JointCalibration) -> Iterator[GateReason]:
     if found.is_clock_shared:
         return
     if found.is_lag_at_border or sd_ms is None or not sd_ms <= most:
-        yield GateReason("lag", Verdict.WITHHELD, _known(sd_ms), most, "ms")
+        yield GateReason("lag", Verdict.WITHHELD, None if found.is_lag_at_border else _known(sd_ms), most, "ms")
     elif sd_ms > care:
         yield GateReason("lag", Verdict.CARE, sd_ms, care, "ms")
 
 
 def _sign(found: JointCalibration) -> Iterator[GateReason]:
     if not found.is_sign_certain:
-        yield GateReason("sign", Verdict.WITHHELD, _known(found.clinical_sign_margin), MIN_MARGIN)
+        yield GateReason("sign", Verdict.WITHHELD, _below(found.clinical_sign_margin, MIN_MARGIN), MIN_MARGIN)
 
 
 def _zero(found: JointCalibration) -> Iterator[GateReason]:
@@ -304,6 +304,12 @@ def _steady(values: FloatArray, limit: float, unit: str, gate: str = "halves") -
     ratio = abs(float(odd.mean() - even.mean())) / max(error, 1e-9)
     if ratio > LIMITS.odd_even_ratio:
         yield GateReason("odd_even", Verdict.CARE, ratio, LIMITS.odd_even_ratio)
+
+
+def _below(margin: float | None, limit: float) -> float | None:
+    """The margin where it is what closed the gate: beyond its limit it was something else, and no figure tells it."""
+    known = _known(margin)
+    return known if known is not None and known < limit else None
 
 
 def _known(value: float | None) -> float | None:

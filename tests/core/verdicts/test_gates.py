@@ -90,6 +90,23 @@ def test_a_reason_tells_what_was_found_and_what_would_have_passed() -> None:
     assert (sign.value, sign.limit) == (0.1, MIN_MARGIN)
 
 
+@pytest.mark.parametrize(
+    ("gate", "part", "changes"),
+    [
+        ("pairing", "shape", {"is_same_joint": False, "sign_margin": 3.0}),
+        ("sign", "sign", {"is_sign_certain": False, "clinical_sign_margin": 0.99}),
+        ("lag", "shape", {"is_lag_at_border": True, "lag_sd_s": 0.001}),
+    ],
+)
+def test_a_figure_that_would_have_passed_is_not_given_as_the_reason(
+    gate: str, part: str, changes: dict[str, Any]
+) -> None:
+    """As of a stiff knee, whose few degrees tell no sign however clearly they lean one way."""
+    found = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **changes)).joint(Joint.LEFT_KNEE)
+    (reason,) = getattr(found, part).reasons
+    assert (reason.gate, reason.verdict, reason.value) == (gate, Verdict.WITHHELD, None)
+
+
 def test_a_foot_sensor_that_may_be_on_another_foot_puts_its_legs_strides_in_doubt() -> None:
     found = gates_of(walk(), calibrations(Joint.LEFT_ANKLE, sign_margin=1.1))
     assert not_read(found) == {
