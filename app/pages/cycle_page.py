@@ -36,7 +36,7 @@ GROUPS = (
 )
 SPEED_WORDS = {"slow": later("slow"), "comfortable": later("comfortable"), "fast": later("fast")}
 KIND_WORDS = {"knee": later("Knee"), "ankle": later("Ankle")}
-NO_SPEED = later("This walk: speed not known, for it needs a foot sensor and usable strides.")
+NO_SPEED = later("This walk: speed not known, or withheld.")
 NO_SIDE = later("No band: a prosthetic leg is not compared with other people's.")
 CARE = later("{mark} read with care.")
 

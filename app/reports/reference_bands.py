@@ -25,7 +25,7 @@ FOLDER = files("resources") / "reference_bands"
 NOBODY = AgeAndHeight()  # of whom nothing is known
 WHY_NO_BAND = {
     NoBand.CHILD: later("No band: the groups at hand are adults."),
-    NoBand.SPEED_UNKNOWN: later("No band: it is chosen by walking speed, which is not known or withheld."),
+    NoBand.SPEED_UNKNOWN: later("No band: it is chosen by walking speed."),
     NoBand.HEIGHT_MISSING: later("No band: the patient's height is missing, which says how fast this speed is."),
     NoBand.OTHER_SPEED: later("No band at this speed."),
 }

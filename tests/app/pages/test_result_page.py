@@ -10,16 +10,19 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.pages.cycle_page import FASTER, NO_SPEED, SLOWER
+from app.pages.cycle_page import NO_SIDE, NO_SPEED
 from app.pages.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
-from app.reports.gait_csv import parameter
+from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
 from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
-from core.gait.strides import Reason
-from core.results import Analysis, RecordingAnalysis, SideGait
+from core.norms import AgeAndHeight, NoBand
+from core.results import Analysis, SideGait
+from core.verdicts.quantities import raw_values
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 
+GROWN = AgeAndHeight(30, 1.70)
 WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
 
 
@@ -48,29 +51,16 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[Resul
 
 def changed(analysis: Analysis, gait: Mapping[Side, SideGait]) -> Analysis:
     """Give the analysis with another gait in its walk."""
-    recordings = [replace(r, gait=gait) if r.gait else r for r in analysis.recordings]
-    return replace(analysis, recordings=tuple(recordings))
-
-
-def walk_of(analysis: Analysis) -> RecordingAnalysis:
-    (walk,) = (recording for recording in analysis.recordings if recording.gait)
-    return walk
+    return rewalked(analysis, gait=gait)
 
 
 def at_speed(analysis: Analysis, speed_m_s: float) -> Analysis:
     """Give the analysis of a walk whose strides were as long as that speed makes them."""
     gait = {}
     for side, found in walk_of(analysis).gait.items():
-        strides = replace(found.strides, length_m=speed_m_s * found.strides.time_s)
-        gait[side] = replace(found, strides=strides)
-    return changed(analysis, gait=gait)
-
-
-def with_used(analysis: Analysis, count: int) -> Analysis:
-    gait = {}
-    for side, found in walk_of(analysis).gait.items():
-        reason = (Reason.USED,) * count + (Reason.TURN,) * (len(found.strides) - count)
-        gait[side] = replace(found, strides=replace(found.strides, reason=reason))
+        length_m = speed_m_s * found.strides.time_s
+        parameters = {**found.parameters, "stride_length_m": length_m, "speed_m_s": length_m / found.strides.time_s}
+        gait[side] = replace(found, strides=replace(found.strides, length_m=length_m), parameters=parameters)
     return changed(analysis, gait=gait)
 
 
@@ -158,27 +148,25 @@ def test_a_letter_typed_into_a_field_stays_there(qtbot: QtBot, page: ResultPage)
 def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analysis: Analysis) -> None:
     gait = walk_of(analysis).gait[Side.RIGHT]
     used = gait.strides.is_used
-    peaks = parameter(gait, "knee_swing_peak_deg")[used]
+    peaks = raw_values(gait, "knee_swing_peak_deg")[used]
     stance = gait.strides.stance_percent[used]
     rows = rows_of(page)
     assert rows["Swing peak"][1] == f"{np.mean(peaks):.1f} ± {np.std(peaks, ddof=1):.1f}"
     assert rows["Stance %"][1] == f"{np.mean(stance):.1f} ± {np.std(stance, ddof=1):.1f}"
-    assert rows["Swing peak"][2] == "59 to 66"
-    assert rows["Range"][2] == ""
+    assert rows["Swing peak"][2] == ""  # at 0.95 m/s the curves of 1.25 m/s are no comparison
     assert rows[""][1] == f"R, {np.count_nonzero(used)} strides"
 
 
-def test_under_ten_strides_no_spread_is_shown_and_under_three_the_mean_is_grey(
-    page: ResultPage, analysis: Analysis
-) -> None:
+def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: ResultPage, analysis: Analysis) -> None:
     model = page.cycles.peaks.table.figures
-    for count, has_spread, is_grey in ((10, True, False), (9, False, False), (2, False, True)):
-        page.show_analysis(with_used(analysis, count))
+    for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
+        page.show_analysis(with_few_strides(analysis, left=count, right=count))
         swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
-        cell = model.index(swing, 1)
-        assert ("±" in model.cell(cell)[1]) is has_spread, count
-        assert model.is_grey(cell) is is_grey, count
-    assert "L and R: under 3 strides" in page.cycles.peaks.note.text()
+        value, addition = model.cell(model.index(swing, 1))
+        assert ("±" in addition) is has_spread, count
+        assert addition.endswith(words), count
+        assert bool(value) is (count > 2), count
+    assert "L and R: under 3 strides, so without a mean." in page.cycles.peaks.note.text()
 
 
 def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
@@ -189,38 +177,96 @@ def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
         for column in range(1, 4)
     ]
     assert any(text.startswith("Knee swing peak, left: ") and text.endswith("°") for text in said)
-    assert "Knee swing peak, reference band: 59 to 66 °" in said
+    assert "Knee swing peak, reference band: no value" in said
     times = page.cycles.time_distance.table.figures
     cadence = str(times.data(times.index(1, 1), Qt.ItemDataRole.AccessibleTextRole))
     assert cadence.startswith("Cadence, both sides: ")
     assert cadence.endswith(" steps/min")
 
 
-def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage) -> None:
+def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
+    page.show_analysis(recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
+    model = page.cycles.peaks.table.figures
+    swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
+    heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
+    assert heard[0].endswith("°, read with care")
+    assert heard[1].endswith("°")
+    assert rows_of(page)["Swing peak"][0].endswith(" *")
+    assert "* read with care." in page.cycles.peaks.note.text()
+    assert "L: read with care. The joint's axis is known to 8.0°" in page.cycles.charts.knee.note
+    page.show_analysis(analysis)
+    assert "care" not in page.cycles.peaks.note.text() + page.cycles.charts.knee.note
+
+
+def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, analysis: Analysis) -> None:
+    page.show_analysis(at_speed(analysis, 1.2), who=GROWN)
     told = page.cycles.peaks_note.text
-    for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 0.9"):
+    for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 1.20"):
         assert part in told
-    assert "34 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
+    assert "32 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
+    assert rows_of(page)["Swing peak"][2] == "59 to 66"
+    assert rows_of(page)["Range"][2] == ""
 
 
-def test_a_speed_unlike_the_bands_is_pointed_out(page: ResultPage, analysis: Analysis) -> None:
-    for speed_m_s, words in ((0.9, SLOWER), (1.245, None), (1.6, FASTER)):
-        page.show_analysis(at_speed(analysis, speed_m_s))
-        told = page.cycles.peaks_note.text
-        assert f"This walk: {speed_m_s:.2f} m/s." in told
-        assert [one for one in (SLOWER, FASTER) if one in told] == ([] if words is None else [words])
-        assert page.cycles.peaks_note._mark.isVisible() is (words is not None)
-    page.show_analysis(at_speed(analysis, np.nan))
-    assert NO_SPEED in page.cycles.peaks_note.text
+@pytest.mark.parametrize(
+    ("speed_m_s", "who", "why"),
+    [
+        (1.2, AgeAndHeight(30, 1.70), None),
+        (1.2, AgeAndHeight(9, 1.30), NoBand.CHILD),
+        (1.09, AgeAndHeight(30, None), NoBand.HEIGHT_MISSING),
+        (0.9, AgeAndHeight(30, 1.70), NoBand.OTHER_SPEED),
+        (1.6, AgeAndHeight(30, 1.70), NoBand.OTHER_SPEED),
+        (np.nan, AgeAndHeight(30, 1.70), NoBand.SPEED_UNKNOWN),
+    ],
+)
+def test_a_band_is_drawn_only_where_it_may_stand_and_else_said_why_not(
+    page: ResultPage, analysis: Analysis, speed_m_s: float, who: AgeAndHeight, why: NoBand | None
+) -> None:
+    page.show_analysis(at_speed(analysis, speed_m_s), who=who)
+    told = page.cycles.peaks_note.text
+    assert (page.cycles.charts.knee.chart.band is not None) is (why is None)
+    assert [one for one, words in WHY_NO_BAND.items() if words in told] == ([] if why is None else [why])
+    assert (NO_SPEED in told) is bool(np.isnan(speed_m_s))
+
+
+def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> None:
+    for age, is_other in ((30, False), (62, True)):
+        page.show_analysis(at_speed(analysis, 1.2), who=AgeAndHeight(age, 1.7))
+        assert (OTHER_AGES in page.cycles.peaks_note.text) is is_other
+
+
+def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> None:
+    walk = at_speed(analysis, 1.2)
+    page.show_analysis(replace(walk, prosthetic_sides=frozenset({Side.RIGHT})), who=GROWN)
+    assert "The band is for the left leg alone." in page.cycles.peaks_note.text
+    page.show_analysis(replace(walk, prosthetic_sides=frozenset(Side)), who=GROWN)
+    assert NO_SIDE in page.cycles.peaks_note.text
+    assert page.cycles.charts.knee.chart.band is None
+    page.show_analysis(walk, who=GROWN)
+    assert "alone" not in page.cycles.peaks_note.text
 
 
 def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
-    gait = walk_of(analysis).gait
-    doubted = replace(gait[Side.LEFT], sign_in_doubt=frozenset({Joint.LEFT_KNEE}))
-    page.show_analysis(changed(analysis, gait={**gait, Side.LEFT: doubted}))
+    page.show_analysis(recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     assert page.cycles.charts.knee.note.startswith("L: sign unsure.")
     assert rows_of(page)["Swing peak"][0] == "sign unsure"
     assert "sign unsure" not in rows_of(page)["Swing peak"][1]
+
+
+def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
+    page.show_analysis(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
+    rows = rows_of(page)
+    for name in ("Stance dorsiflexion", "Push-off plantarflexion", "Swing dorsiflexion"):
+        assert rows[name][1] == "withheld"
+        assert rows[name][0] != "withheld"
+    assert rows["Double support %"][0] == "withheld"
+    panel = page.cycles.charts.ankle.withheld
+    assert (panel[Side.RIGHT].isVisible(), panel[Side.LEFT].isVisible()) == (True, False)
+    assert "record free motion" in panel[Side.RIGHT].text
+    assert "Right ankle: The two sensors do not move as neighbours" in page.cycles.peaks.note.text()
+    page.show_analysis(analysis)
+    assert not panel[Side.RIGHT].isVisible()
+    assert "neighbours" not in page.cycles.peaks.note.text()
 
 
 def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysis) -> None:
