@@ -34,6 +34,7 @@ from app.reports.comparison import (
     compare_sides,
     first_and_second,
     left_out_of_parts,
+    sources_in_words,
 )
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.walk_figures import SideCycle
@@ -59,24 +60,8 @@ WIDEST = 16_777_215  # Qt's own
 BRIEF = ("knee_swing_peak_deg", "knee_range_deg", "ankle_stance_dorsiflexion_deg", "stance_percent")
 MOST_SAID = 3  # sentences about differences; the table has all of them
 
-# what lies between the two means, and so is in the error beside chance between strides and drift
-ERROR = {
-    ComparisonKind.ATTACHED: later(
-        "Grey: measurement error, of chance between strides, drift, and what walks of one strapping differ by."
-    ),
-    ComparisonKind.STRAPPINGS: later(
-        "Grey: measurement error, of chance between strides, drift, clocks, and what strapping the sensors on anew "
-        "differs by. For the ankle the knee's figure is borrowed."
-    ),
-    ComparisonKind.VISITS: later(
-        "Grey: measurement error, of chance between strides, drift, clocks, and what visits with the sensors strapped "
-        "on anew differ by. For the ankle the knee's figure is borrowed."
-    ),
-    ComparisonKind.LEGS: later(
-        "Grey: measurement error, of chance between strides, drift, clocks, and what separately worn sensors differ "
-        "by. For the ankle the knee's figure is borrowed."
-    ),
-}
+ERROR = later("Grey: measurement error. It holds {sources}.")
+BORROWED = later("For the ankle the knee's figure is borrowed.")
 UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
 OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
 NOTHING = {
@@ -370,9 +355,9 @@ class ComparePage(QWidget):
             frame.setVisible(side in found.sides)
         letter = found.against.letter
         self.title.setText(tr("Change from {letter}").format(letter=letter))
-        kinds = {found.error_kind(part) for part in found.others} or {ComparisonKind.ATTACHED}
         told = [row.difference for row in found.rows if row.is_told]
-        self._say_error(max(kinds, key=list(ComparisonKind).index), told)
+        is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
+        self._say_error(told, is_borrowed=is_borrowed and any(not joint.is_knee for joint in found.joints))
         worth = sorted((row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence), key=weight)
         self._say([sentence(row) for row in worth], told, chosen)
         self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
@@ -396,7 +381,7 @@ class ComparePage(QWidget):
         one, other = LETTERS[first], LETTERS[second]
         self.title.setText(f"{self._affected_words}: {one} {MINUS} {other}")
         told = [row.difference for row in self.side_rows if row.is_told]
-        self._say_error(ComparisonKind.LEGS, told)
+        self._say_error(told, is_borrowed=any(not joint.is_knee for joint in part.joints))
         worth = [row for row in self.side_rows if row.is_told and row.difference.is_worth_a_sentence]
         self._say([side_sentence(row, first, second) for row in sorted(worth, key=side_weight)], told, parts[:1])
         groups = [
@@ -436,11 +421,12 @@ class ComparePage(QWidget):
         walk = part.walks[-1]
         return bands_of(walk, self._who).curves, sides_with_band(self._analysis, walk)
 
-    def _say_error(self, kind: ComparisonKind, told: Sequence[Difference]) -> None:
-        """What the error contains now."""
-        said = [tr(ERROR[kind])]
-        if any(found.is_unverified and found.error > 0 for found in told):
-            said.append(tr(UNVERIFIED))
+    def _say_error(self, told: Sequence[Difference], *, is_borrowed: bool) -> None:
+        """What the error contains, and what of it is not to be relied on."""
+        judged = [found for found in told if found.error > 0]
+        said = [tr(ERROR).format(sources=sources_in_words(judged))] if judged else []
+        said += [tr(BORROWED)] if judged and is_borrowed else []
+        said += [tr(UNVERIFIED)] if any(found.is_unverified for found in judged) else []
         self.error.setText(" ".join(said))
 
     def _say(self, worth: Sequence[str], told: Sequence[Difference], parts: Sequence[Part]) -> None:

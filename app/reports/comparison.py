@@ -4,7 +4,7 @@ Screen, report and files take their figures from here, so that no number is draw
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import cached_property
@@ -14,7 +14,7 @@ from statistics import fmean
 import numpy as np
 
 from app.reports.walk_figures import by_hand_in_words
-from app.wording import later
+from app.wording import joined, later, tr
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.gait.cycles import POINTS, MeanCycle, mean_cycle
@@ -27,6 +27,7 @@ from core.verdicts.measurement_error import (
     ANGLE_PER_LAG_DEG_S,
     ComparisonKind,
     Difference,
+    ErrorSource,
     Judgement,
     MeanOfStrides,
     compare,
@@ -45,6 +46,17 @@ from core.verdicts.quantities import (
     used_cycles,
 )
 
+ERROR_SOURCES = {
+    ErrorSource.CHANCE: later("chance between strides"),
+    ErrorSource.DRIFT: later("drift within a walk"),
+    ErrorSource.CLOCK: later("the sensors' clocks"),
+    ErrorSource.SPEED: later("another walking speed"),
+    ErrorSource.WALKS: later("what walks differ by"),
+    ErrorSource.STRAPS: later("strapping the sensors on"),
+    ErrorSource.DAYS: later("what days differ by"),
+    ErrorSource.EVENTS: later("events that come early or late"),
+    ErrorSource.ZERO: later("the zero"),
+}
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -82,6 +94,12 @@ MEASURES = (
     Measure("ankle_range_deg", later("Ankle range"), "ankle"),
     Measure("stance_percent", later("Stance time, % of stride"), "", "%"),
 )
+
+
+def sources_in_words(differences: Iterable[Difference]) -> str:
+    """What the errors of some differences contain, each once."""
+    found = {source for one in differences for source in one.sources}
+    return joined([tr(words) for source, words in ERROR_SOURCES.items() if source in found])
 
 
 class Kind(StrEnum):
@@ -155,10 +173,10 @@ class Part:
     def cycle(self, joint: Joint) -> MeanCycle:
         """Mean over the strides used of all walks, degrees; NaN throughout where its shape or sign is withheld."""
         found = self.verdicts.joint(joint)
-        if not together((found.shape, found.sign)).is_told:
+        cycles = [used_cycles(walk, joint) for walk in self.walks if joint.side in walk.gait]
+        if not cycles or not together((found.shape, found.sign)).is_told:
             return mean_cycle(np.empty((0, POINTS)))
-        walks = [walk for walk in self.walks if joint.side in walk.gait]
-        return mean_cycle(np.rad2deg(np.concatenate([used_cycles(walk, joint) for walk in walks])))
+        return mean_cycle(np.rad2deg(np.concatenate(cycles)))
 
     def is_measured(self, side: Side, measure: Measure) -> bool:
         joint = measure.joint(side)

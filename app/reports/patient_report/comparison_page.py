@@ -17,6 +17,7 @@ from app.reports.comparison import (
     Reservation,
     conditions_of,
     left_out_of_parts,
+    sources_in_words,
 )
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
@@ -244,25 +245,16 @@ def _how_judged(comparison: Comparison) -> str:
     """What the error contains, with what was added for what lies between the walks."""
     kinds = {comparison.error_kind(part) for part in comparison.others}
     kind = max(kinds, key=list(ComparisonKind).index)
-    sigmas = [sigma_of(name, kind) for name in ("knee_range_deg", "stance_percent")]
-    knee, stance = (signed_error(sigma) for sigma in sigmas)
-    said = (
-        tr(
-            "Measurement error: 1.96 times the standard deviation of the difference. It holds chance between strides, "
-            "the drift within each walk, and what walks of one strapping differ by: {knee}° of knee range and {stance} "
-            "points of stance for a difference."
-        )
-        if kind is ComparisonKind.ATTACHED
-        else tr(
-            "Measurement error: 1.96 times the standard deviation of the difference. It holds chance between strides, "
-            "the drift within each walk, and what putting sensors on anew differs by: {knee}° of knee range and "
-            "{stance} points of stance for a difference."
-        )
+    knee, stance = (signed_error(sigma_of(name, kind)) for name in ("knee_range_deg", "stance_percent"))
+    told = [row.difference for row in comparison.rows if row.is_told and row.difference.error > 0]
+    said = tr(
+        "Measurement error: 1.96 times the standard deviation of the difference. It holds {sources}; what lies between "
+        "the walks alone makes {knee}° of knee range and {stance} points of stance."
     )
     lines = tr("Vertical lines: toe\u2011off of each. {letters} sit on the lines; the first is thin and pale.")
     parts = [
-        said.format(knee=knee, stance=stance),
-        dagger_note(),
+        *([said.format(sources=sources_in_words(told), knee=knee, stance=stance)] if told else []),
+        *([dagger_note()] if any(found.is_unverified for found in told) else []),
         *([tr("{mark}: read with care.").format(mark=CARE)] if _has_care(comparison) else []),
         lines.format(letters=joined([p.letter for p in comparison.parts])),
     ]

@@ -172,11 +172,11 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
             tr("Measurement error used for the words"),
             tr(
                 "The error of a difference is 1.96 times its standard deviation: chance between strides, the drift "
-                "within each walk, the sensors' clocks, and what lies between the two. Between walks with the sensors "
-                "left on this is at least {degree}° of range and {stance} points of stance; between visits and legs, "
-                "where the sensors are put on separately, {knee_error}° of the knee (upper end of the minimal "
-                "detectable change published, 3.4–9.2°, 15 volunteers; for the ankle the same is borrowed, †). The "
-                "words say how large a difference is. They do not say whether it is good."
+                "within each walk, the sensors' clocks, another speed, and what lies between the two. Between walks "
+                "with the sensors left on this is at least {degree}° of range and {stance} points of stance; between "
+                "visits and legs, where the sensors are put on separately, {knee_error}° of the knee (upper end of the "
+                "minimal detectable change published, 3.4–9.2°, 15 volunteers; for the ankle the same is borrowed, †). "
+                "The words say how large a difference is. They do not say whether it is good."
             ),
         ),
         (

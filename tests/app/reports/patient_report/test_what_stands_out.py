@@ -1,0 +1,236 @@
+"""The sentences of page one: each has a case in which it must come, and one in which it must not."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.reports.patient_report.comparison_page import comparison_of
+from app.reports.patient_report.document import facts_of
+from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.what_stands_out import MAX_FINDINGS, findings, what_stands_out
+from core.body import Joint, Side
+from core.results import Analysis, ZeroKind
+from core.verdicts.gates import judged
+from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
+
+NO_DIFFERENCE = "No difference is larger than its error."
+ALL_INSIDE = "Every peak that could be judged lies within 2 SD of the band"
+ZERO = "Zero is the standing posture"
+
+
+def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
+    """The sentences of a report, of another analysis where one is given."""
+    if analysis is not None:
+        request = replace(request, visit=Visit(request.visit.session, analysis))
+    _, bullets = what_stands_out(facts_of(request), comparison_of(request))
+    sentences = bullets["said"]
+    assert isinstance(sentences, list)
+    return [str(sentence).replace("\u00a0", " ").replace("\u2212", "-") for sentence in sentences]
+
+
+def of_a_child(request: ReportRequest, analysis: Analysis) -> ReportRequest:
+    session = request.visit.session
+    child = replace(session, started="2026-11-20", patient=replace(session.patient, birth_year=2016))
+    return replace(request, visit=Visit(child, analysis))
+
+
+def with_more(analysis: Analysis, side: Side, name: str, more: float) -> Analysis:
+    """One parameter of a leg larger in every stride of every walk; an angle in degrees."""
+    recordings = []
+    for one in analysis.recordings:
+        gait = dict(one.gait)
+        if side in gait:
+            is_angle = name.endswith("_rad")
+            added = np.deg2rad(more) if is_angle else more
+            parameters = {**gait[side].parameters, name: gait[side].parameters[name] + added}
+            gait[side] = replace(gait[side], parameters=parameters)
+        recordings.append(replace(one, gait=gait))
+    return judged(replace(analysis, recordings=tuple(recordings)))
+
+
+def raised(analysis: Analysis, joint: Joint, by_deg: float) -> Analysis:
+    """One joint's curve lying higher as a whole, as a zero taken in another posture makes it."""
+    walk = walk_of(analysis)
+    found, kind = walk.gait[joint.side], "knee" if joint.is_knee else "ankle"
+    is_height = {
+        name: name.startswith(kind) and "range" not in name and "percent" not in name for name in found.parameters
+    }
+    parameters = {
+        name: values + np.deg2rad(by_deg) if is_height[name] else values for name, values in found.parameters.items()
+    }
+    cycles = {**found.cycles, joint: found.cycles[joint] + np.deg2rad(by_deg)}
+    return rewalked(analysis, gait={**walk.gait, joint.side: replace(found, parameters=parameters, cycles=cycles)})
+
+
+def test_where_nothing_differs_that_is_said_and_the_caveat_of_the_zero(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    first, last = said(request_of_demonstration)
+    assert first.startswith(f"{NO_DIFFERENCE} {ALL_INSIDE}")
+    assert last.startswith(ZERO)
+
+
+def test_without_a_standing_zero_its_caveat_is_not_said(request_of_demonstration: ReportRequest) -> None:
+    analysis = recalibrated(request_of_demonstration.visit.analysis, zero=ZeroKind.GONIOMETER)
+    assert not any(ZERO in sentence for sentence in said(request_of_demonstration, analysis))
+
+
+@pytest.mark.parametrize(("more_deg", "is_told"), [(-3.0, False), (-20.0, True)])
+def test_a_knee_that_moves_less_than_the_other_by_more_than_its_error(
+    request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
+) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", more_deg)
+    told = [
+        sentence for sentence in said(request_of_demonstration, analysis) if "Knee range over the stride" in sentence
+    ]
+    assert bool(told) is is_told
+    if is_told:
+        assert told[0].startswith("Knee range over the stride: left 41.7°, right 63.0°; difference -21.3°, error 9.")
+    assert any(NO_DIFFERENCE in sentence for sentence in said(request_of_demonstration, analysis)) is not is_told
+
+
+def test_with_the_legs_exchanged_the_sentence_is_mirrored(request_of_demonstration: ReportRequest) -> None:
+    for side, signs in ((Side.LEFT, "-"), (Side.RIGHT, "+")):
+        analysis = with_more(request_of_demonstration.visit.analysis, side, "knee_range_rad", -20.0)
+        assert f"difference {signs}" in said(request_of_demonstration, analysis)[0]
+
+
+def test_an_ankle_between_legs_is_in_the_table_and_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "ankle_range_rad", -20.0)
+    sentences = said(request_of_demonstration, analysis)
+    assert not any("nkle range" in sentence for sentence in sentences)
+    assert not any(NO_DIFFERENCE in sentence for sentence in sentences)  # it would be untrue
+    assert "the tables mark what exceeds it" in sentences[0]
+
+
+@pytest.mark.parametrize(("more", "is_told"), [(2.0, False), (6.0, True)])
+def test_stance_that_lasts_longer_on_one_leg(
+    request_of_demonstration: ReportRequest, more: float, is_told: bool
+) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", more)
+    request = of_a_child(request_of_demonstration, analysis)  # who has no band
+    told = [one for one in said(request) if one.startswith("Stance, share of the stride: left 6")]
+    assert bool(told) is is_told
+
+
+@pytest.mark.parametrize(("more", "is_told"), [(1.0, False), (4.0, True)])
+def test_stance_beyond_two_sd_of_its_band(request_of_demonstration: ReportRequest, more: float, is_told: bool) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", more)
+    told = [
+        one for one in said(request_of_demonstration, analysis) if one.startswith("Stance, share of the stride, left")
+    ]
+    assert bool(told) is is_told
+    if is_told:
+        assert told[0].endswith("band [2] 60.3 ± 1.1 %: more than 2 SD above.")
+
+
+def test_stance_of_a_foot_that_rolls_on_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "stance_percent", 8.0)
+    gait = walk_of(analysis).gait
+    assert any("Stance" in sentence for sentence in said(request_of_demonstration, analysis))
+    rolls_on = replace(gait[Side.LEFT], is_toe_off_biased=True)
+    biased = rewalked(analysis, gait={**gait, Side.LEFT: rolls_on})
+    assert not any("Stance, " in sentence for sentence in said(request_of_demonstration, biased))
+
+
+def test_a_zero_in_another_posture_changes_no_sentence_up_to_seven_degrees(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    usual = said(request_of_demonstration)
+    for joint, by_deg in ((Joint.LEFT_KNEE, 7.0), (Joint.RIGHT_ANKLE, -3.0), (Joint.LEFT_ANKLE, 7.0)):
+        assert said(request_of_demonstration, raised(analysis, joint, by_deg)) == usual, joint
+
+
+def test_a_curve_that_lies_ten_degrees_off_sends_to_the_zero_first(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    told = said(request_of_demonstration, raised(analysis, Joint.RIGHT_ANKLE, 20.0))
+    assert any(
+        one.startswith("Right ankle: the whole curve lies +1")
+        and one.endswith("° from the band: look at the zero first.")
+        for one in told
+    )
+    assert not any("the whole curve lies" in one for one in said(request_of_demonstration))
+    unset = recalibrated(raised(analysis, Joint.RIGHT_ANKLE, 20.0), zero=ZeroKind.NONE)
+    assert not any("the whole curve lies" in one for one in said(request_of_demonstration, unset))
+
+
+@pytest.mark.parametrize(("more_deg", "is_told"), [(-4.0, False), (-14.0, True)])
+def test_a_peak_beyond_two_sd_of_the_band_at_the_curves_height(
+    request_of_demonstration: ReportRequest, more_deg: float, is_told: bool
+) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_swing_peak_rad", more_deg)
+    told = [one for one in said(request_of_demonstration, analysis) if "Left knee most flexed, swing" in one]
+    assert bool(told) is is_told
+    if is_told:
+        assert "band [1] at the curve's height" in told[0]
+        assert told[0].endswith("more than 2 SD below.")
+    assert not any("band" in sentence for sentence in said(of_a_child(request_of_demonstration, analysis)))
+
+
+def test_what_is_withheld_is_told_in_the_caveat_alone(request_of_demonstration: ReportRequest) -> None:
+    shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -20.0)
+    analysis = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
+    sentences = said(request_of_demonstration, analysis)
+    assert not any("Knee range" in sentence for sentence in sentences)
+    assert sentences[-1].startswith("Left knee: The two sensors do not move as neighbours (margin 1.05, 1.30 wanted).")
+    assert not any("neighbours" in sentence for sentence in said(request_of_demonstration, shortened))
+
+
+def test_of_too_few_strides_nothing_is_told(request_of_demonstration: ReportRequest) -> None:
+    shortened = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -30.0)
+    assert any("Knee range" in one for one in said(request_of_demonstration, shortened))
+    for count in (2, 9):
+        analysis = with_few_strides(shortened, left=count)
+        assert not any("Knee range" in one for one in said(request_of_demonstration, analysis)), count
+
+
+def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    for name, more in (
+        ("knee_range_rad", -25.0),
+        ("knee_swing_peak_rad", -25.0),
+        ("knee_loading_peak_rad", 30.0),
+        ("ankle_stance_dorsiflexion_rad", -20.0),
+        ("stance_percent", 9.0),
+        ("step_time_s", 0.3),
+    ):
+        analysis = with_more(analysis, Side.LEFT, name, more)
+    request = replace(request_of_demonstration, visit=Visit(request_of_demonstration.visit.session, analysis))
+    told = findings(facts_of(request), None)
+    assert len(told) == MAX_FINDINGS
+    below = [one for one in told if "knee" in one.lower() and ("below" in one or "difference \u2212" in one)]
+    assert len(below) == 1
+    assert not any("tance" in one and "share" in one for one in told)  # shapes come first
+
+
+def test_a_change_between_conditions_is_told_only_beyond_its_error(request_of_alignments: ReportRequest) -> None:
+    analysis = request_of_alignments.visit.analysis
+    usual = said(request_of_alignments)
+    assert not any("alignment A; difference" in sentence for sentence in usual)
+    last = analysis.recordings[-1]
+    changed = with_more(replace(analysis, recordings=(last,)), Side.LEFT, "knee_range_rad", -25.0).recordings[-1]
+    loud = said(request_of_alignments, judged(replace(analysis, recordings=(*analysis.recordings[:-1], changed))))
+    assert any(
+        "knee range over the stride: " in one and "at \u2068alignment A\u2069; difference -2" in one for one in loud
+    )
+
+
+def test_speeds_apart_are_the_caveat_where_nothing_is_withheld(request_of_alignments: ReportRequest) -> None:
+    assert said(request_of_alignments)[-1].startswith("Speed A: 1.05, B: ")
+    alone = replace(request_of_alignments, walks=request_of_alignments.walks[-1:])
+    assert not any(one.startswith("Speed ") for one in said(alone))
+    withheld = recalibrated(
+        request_of_alignments.visit.analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05
+    )
+    assert not any(one.startswith("Speed ") for one in said(request_of_alignments, withheld))
+
+
+def test_no_sentence_judges(request_of_demonstration: ReportRequest) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_range_rad", -25.0)
+    words = " ".join([*said(request_of_demonstration), *said(request_of_demonstration, analysis)]).lower()
+    for word in ("better", "worse", "normal", "significant", "improved", "mostly"):
+        assert word not in words
