@@ -171,12 +171,12 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
         (
             tr("Measurement error used for the words"),
             tr(
-                "The error of a difference is 1.96 times its standard deviation: chance between strides, the drift "
-                "within each walk, the sensors' clocks, another speed, and what lies between the two. Between walks "
-                "with the sensors left on this is at least {degree}° of range and {stance} points of stance; between "
-                "visits and legs, where the sensors are put on separately, {knee_error}° of the knee (upper end of the "
-                "minimal detectable change published, 3.4–9.2°, 15 volunteers; for the ankle the same is borrowed, †). "
-                "The words say how large a difference is. They do not say whether it is good."
+                "The error of a difference is 1.96 times its standard deviation: chance between strides, drift, the "
+                "sensors' clocks, another speed, and what lies between the two: with the sensors left on at least "
+                "{degree}° of range and {stance} points of stance; between visits and legs, where they are put on "
+                "separately, {knee_error}° of the knee (upper end of the minimal detectable change published, "
+                "3.4–9.2°, 15 volunteers; for the ankle borrowed, †). The words say how large a difference is, not "
+                "whether it is good."
             ),
         ),
         (
@@ -184,9 +184,8 @@ def _method(facts: Facts) -> list[tuple[str, str]]:
             tr(
                 "The band shows other people, measured with optical markers, and is not a target. Laboratories "
                 "differ by 5–7° in the height of such curves, so a peak is judged after laying the band at the height "
-                "of its curve. Knees are read 9 ± 4 % too flexed against optical markers: one lies below or above only "
-                "as measured and divided by {overread}. The band is chosen by speed and height (Froude number) and "
-                "left away at another speed; a prosthetic leg has none. Compare age and footwear in the source below."
+                "of its curve; a knee, which is read 9 ± 4 % too flexed, both as measured and divided by {overread}. "
+                "The band is chosen by speed and height (Froude number). A prosthetic leg has none."
             ),
         ),
     ]

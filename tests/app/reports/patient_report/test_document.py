@@ -69,7 +69,7 @@ def test_every_figure_has_words_with_numbers_in_them(report: bytes) -> None:
 def test_column_headings_are_tagged_as_such(report: bytes) -> None:
     with pikepdf.open(io.BytesIO(report)) as pdf:
         kinds = [str(node.get("/S")) for node in elements(pdf.Root.StructTreeRoot.K)]
-    assert kinds.count("/Table") == 4
+    assert kinds.count("/Table") == 5
     assert kinds.count("/TH") > 20
     assert "/H1" in kinds
 
@@ -159,13 +159,13 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
     first = first_page(request_of_alignments)
     assert "Measured in walking: knee and ankle of both legs, with 6 motion sensors." in first
     assert "Compared, C shown on this page: A alignment A · B alignment B · C alignment C" in first
-    assert re.search(r"knee in swing at alignment C \d+°; against alignment A", first)
+    assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference can come from speed." in first
     with_one_leg_before = replace(request_of_alignments, earlier=request_of_one_leg.visit)
     first = first_page(with_one_leg_before)
-    assert re.search(r"Left, knee in swing: \d+°; since the earlier visit \S+°: inside measurement error", first)
+    assert "No difference is larger than its error." in first
     first = first_page(request_of_one_leg)
     assert "Measured in walking: knee and ankle of the left leg, with 3 motion sensors." in first
-    assert "More than 2 SD from band [1]: ankle most plantarflexed, loading, L −13° (band −4 ± 2°)" in first
+    assert "Every peak that could be judged lies within 2 SD of the band, at its curve's height." in first
     assert "Right, n = 0" not in first
     assert "Symmetry =" not in first
     assert "Whose bands these are: last page." in first

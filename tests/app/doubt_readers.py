@@ -1,0 +1,143 @@
+"""What do the report and the results on the screen say of each figure: told, to be read with care, or withheld?
+
+Read from the words alone, as a reader has them: the text of the PDF and the cells of the tables. Figures are named as
+in strides.csv; what is withheld for want of a zero or of a sign is withheld here.
+"""
+
+import io
+import re
+from collections.abc import Iterator, Mapping
+from enum import StrEnum
+
+import pypdf
+
+from app.pages.result_page import ResultPage
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD
+from app.widgets.figures_table import CARE_MARK, SIDE_OF, FiguresModel
+from core.body import Side
+
+
+class Said(StrEnum):
+    """What a reader learns of one figure."""
+
+    TOLD = "told"
+    CARE = "care"
+    WITHHELD = "withheld"
+    NOT_MEASURED = "not_measured"
+
+
+Doubts = dict[tuple[Side, str], Said]
+
+NUMBER = r"\u2212?\d+\.\d+(?: ± \d+\.\d+)?(?: \*)?"
+CELL = rf"({NUMBER}|withheld|not measured|no peak|–)"
+AT = r"(?:\d+|–)"
+PEAKS = {  # rows of the table on page three by the beginning of their names, in each group
+    "knee": {
+        "Most flexed, loading (5–30 %)": "knee_loading_peak_deg",
+        "Least flexed, stance (25–60 %)": "knee_stance_minimum_deg",
+        "Most flexed, swing (55–90 %)": "knee_swing_peak_deg",
+        "Range over the stride": "knee_range_deg",
+    },
+    "ankle": {
+        "Most plantarflexed, loading (0–20 %)": "ankle_loading_plantarflexion_deg",
+        "Most dorsiflexed, stance (20–60 %)": "ankle_stance_dorsiflexion_deg",
+        "Most plantarflexed, push\u2011off (50–80 %)": "ankle_push_off_plantarflexion_deg",
+        "Most dorsiflexed, swing (70–95 %)": "ankle_swing_dorsiflexion_deg",
+        "Range over the stride": "ankle_range_deg",
+    },
+}
+TIMES = {  # rows of the table on page one
+    "Stride time, s": "stride_time_s",
+    "Stride length, m": "stride_length_m",
+    "Stance, % of stride": "stance_percent",
+    "Swing, % of stride": "swing_percent",
+}
+OF_BOTH = {
+    "Walking speed, m/s": "speed_m_s",
+    "Cadence, steps/min": "cadence_steps_min",
+    "Double support, % of stride": "double_support_percent",
+}
+
+
+def said_in_report(pdf: bytes) -> Doubts:
+    """Of the figures in the tables on pages one and three; those of both legs stand at each."""
+    pages = [" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
+    found: Doubts = {}
+    times = pages[0].split("Time and distance", 1)[1]
+    for name, column in TIMES.items():
+        found |= _row(times, rf"{re.escape(name)} {CELL} {CELL} ", column)
+    for name, column in OF_BOTH.items():
+        match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|withheld|not measured) ", times)
+        assert match is not None, f"page one has no row {name}"
+        found |= {(side, column): _in_report(match[1]) for side in Side}
+    knee, _, ankle = pages[2].partition("Ankle (dorsiflexion +)")
+    for kind, group in (("knee", knee), ("ankle", ankle)):
+        for name, column in PEAKS[kind].items() if group else ():
+            found |= _row(group, rf"{re.escape(name)} {CELL} {AT} {CELL} {AT} ", column)
+    return found
+
+
+def _row(text: str, pattern: str, column: str) -> Doubts:
+    match = re.search(pattern, text)
+    assert match is not None, f"the report has no row of {column}"
+    return {(side, column): _in_report(cell) for side, cell in zip(Side, match.groups(), strict=True)}
+
+
+def _in_report(cell: str) -> Said:
+    if cell == "withheld":
+        return Said.WITHHELD
+    if cell in ("not measured", "–"):
+        return Said.NOT_MEASURED
+    return Said.CARE if cell.endswith("*") else Said.TOLD
+
+
+ON_SCREEN = {  # rows of the tables beside the charts, peaks with the heading above them
+    "Knee, Loading peak": "knee_loading_peak_deg",
+    "Knee, Stance minimum": "knee_stance_minimum_deg",
+    "Knee, Swing peak": "knee_swing_peak_deg",
+    "Knee, Range": "knee_range_deg",
+    "Ankle, Stance dorsiflexion": "ankle_stance_dorsiflexion_deg",
+    "Ankle, Push-off plantarflexion": "ankle_push_off_plantarflexion_deg",
+    "Ankle, Swing dorsiflexion": "ankle_swing_dorsiflexion_deg",
+    "Ankle, Range": "ankle_range_deg",
+    "Walking speed": "speed_m_s",
+    "Cadence": "cadence_steps_min",
+    "Stride time": "stride_time_s",
+    "Stride length": "stride_length_m",
+    "Stance": "stance_percent",
+    "Double support": "double_support_percent",
+}
+UNKNOWN: Mapping[str, Said] = {
+    WITHHELD: Said.WITHHELD,
+    NO_ZERO: Said.WITHHELD,
+    NO_HEIGHT: Said.WITHHELD,
+    MAY_BE_MIRRORED: Said.WITHHELD,
+    "none": Said.NOT_MEASURED,
+    "": Said.NOT_MEASURED,
+}
+
+
+def said_on_screen(page: ResultPage) -> Doubts:
+    """Of the figures in the tables of the walk that is shown; those of both legs stand at each."""
+    tables = (page.cycles.peaks.table, page.cycles.time_distance.table)
+    return {key: said for table in tables for key, said in _of_table(table.figures)}
+
+
+def _of_table(model: FiguresModel) -> Iterator[tuple[tuple[Side, str], Said]]:
+    heading = ""
+    for number, row in enumerate(model.rows):
+        if isinstance(row, str):
+            heading = f"{row}, "
+            continue
+        column = ON_SCREEN.get(heading + row.name)
+        if column is None:
+            continue
+        for at, side in SIDE_OF.items():
+            cell = next(iter(SIDE_OF)) if row.both is not None else at
+            yield (side, column), _on_screen(*model.cell(model.index(number, cell)))
+
+
+def _on_screen(value: str, addition: str) -> Said:
+    if not value:
+        return UNKNOWN[addition]
+    return Said.CARE if f"{value} {addition}".rstrip().endswith(CARE_MARK) else Said.TOLD
