@@ -102,11 +102,11 @@ def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_vi
     found = Comparison(Kind.CONDITIONS, parts)
     kinds = {found.error_kind(part) for part in found.others}
     assert kinds == {ComparisonKind.STRAPPINGS}
-    told = {row.measure.column: row.difference for row in found.rows if row.side is Side.LEFT}
-    assert told["knee_range_deg"].error > 9.2  # the published error, and chance and drift
-    assert ErrorSource.STRAPS in told["knee_range_deg"].sources
-    assert ErrorSource.ZERO in told["knee_swing_peak_deg"].sources
-    assert told["ankle_range_deg"].is_unverified
+    by_column = {row.measure.column: row.difference for row in found.rows if row.side is Side.LEFT}
+    assert by_column["knee_range_deg"].error > 9.2  # the published error, and chance and drift
+    assert ErrorSource.STRAPS in by_column["knee_range_deg"].sources
+    assert ErrorSource.ZERO in by_column["knee_swing_peak_deg"].sources
+    assert by_column["ankle_range_deg"].is_unverified
 
 
 def test_within_one_attachment_the_error_holds_what_walks_differ_by_and_no_strapping(parts: tuple[Part, ...]) -> None:
@@ -282,7 +282,7 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     shown(page, analysis, session, Kind.SIDES)
-    rows = {row.name: row.cells for row in page.compare.table.model().rows}
+    rows = {row.name: row.cells for row in page.compare.table.figures.rows}
     assert rows["Ankle range"][2].addition == "\N{DAGGER}"
     assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
     assert "For the ankle the knee's figure is borrowed." in page.compare.error.text()
@@ -293,14 +293,14 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     for words in ("chance between strides", "drift within a walk", "another walking speed", "what walks differ by"):
         assert words in told
     assert "strapping" not in told
-    stance = [row.cells[2] for row in page.compare.table.model().rows if row.name.startswith("Stance")]
+    stance = [row.cells[2] for row in page.compare.table.figures.rows if row.name.startswith("Stance")]
     assert [cell.addition for cell in stance] == ["", ""]  # measured by ourselves
 
 
 def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     shown(page, doubtful, session, Kind.SIDES)
-    rows = {row.name: [cell.value for cell in row.cells] for row in page.compare.table.model().rows}
+    rows = {row.name: [cell.value for cell in row.cells] for row in page.compare.table.figures.rows}
     assert rows["Ankle range"][1:3] == ["withheld", "\N{EN DASH}"]
     assert rows["Ankle range"][0] not in ("withheld", "\N{EN DASH}")
     assert "withheld" not in rows["Knee range"]

@@ -162,7 +162,7 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
     assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference can come from speed." in first
     with_one_leg_before = replace(request_of_alignments, earlier=request_of_one_leg.visit)
     first = first_page(with_one_leg_before)
-    assert "No difference is larger than its error." in first
+    assert "No difference is so much larger than its error that it is told here" in first
     first = first_page(request_of_one_leg)
     assert "Measured in walking: knee and ankle of the left leg, with 3 motion sensors." in first
     assert "Every peak that could be judged lies within 2 SD of the band, at its curve's height." in first

@@ -48,7 +48,7 @@ def figures_of(pdf: bytes) -> tuple[int, list[str]]:
     pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
     lines = pages[2].extract_text().splitlines()
     first = lines.index("Peaks and range")
-    last = next(k for k, line in enumerate(lines) if "marks what" in line)
+    last = next(k for k, line in enumerate(lines) if "Differences are formed" in line)
     return len(pages), lines[first:last]
 
 
