@@ -14,7 +14,6 @@ from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
 from core.norms import ReferenceCurves
 
-BAND_AGES = (18, 39)  # "young adults", in the words of the band's source
 DRAWING_HEIGHT = 108
 
 
@@ -31,6 +30,7 @@ class BandCard(Card):
 
     def __init__(self, look: Look, curves: ReferenceCurves) -> None:
         super().__init__(look, padding=20, spacing=6)
+        self._ages_years = curves.ages_years
         group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
             n=curves.n, speed=f"{curves.speed_m_s:.2f}"
         )
@@ -48,15 +48,15 @@ class BandCard(Card):
 
     def judge(self, age: int | None) -> None:
         """Say whether a patient of `age` years is of the group's age."""
-        youngest, oldest = BAND_AGES
+        youngest, oldest = self._ages_years
         if age is None:
             words = tr("Type the birth year to hear whether the band fits the age.")
         elif age > oldest:
-            words = tr("Younger and faster than most patients of {age}. Read with care.").format(age=age)
+            words = tr("Of other ages than {age}: drawn, but nothing is said of a distance from it.").format(age=age)
         elif age < youngest:
-            words = tr("Adults: children of {age} walk otherwise. Read with care.").format(age=age)
+            words = tr("Adults: children of {age} walk otherwise, so no band is drawn.").format(age=age)
         else:
-            words = tr("Of the patient's age. The speed still has to fit.")
+            words = tr("Of the patient's age. The speed still has to fit, for which the height is needed.")
         self._words.setText(words)
 
     def _on_spacing_changed(self) -> None:
