@@ -120,7 +120,7 @@ def test_a_code_in_use_is_said_and_offered(page: PatientPage) -> None:
     ("birth_year", "words"),
     [
         (None, "Type the birth year"),
-        (1968, "Younger and faster than most patients of 58."),
+        (1968, "Of other ages than 58: drawn, but nothing is said of a distance from it."),
         (2000, "Of the patient's age."),
         (2016, "children of 10"),
     ],
