@@ -43,7 +43,7 @@ def of_samples(change: Change, site: Site = SHANK, recording: str = "walk 1") ->
 
 
 def walked(**settings: object) -> Session:
-    return simulate(WalkerSettings(**{"seed": 3, "recordings": BRIEF, **settings})).session  # type: ignore[arg-type]
+    return simulate(WalkerSettings(**{"seed": 3, "recordings": BRIEF, **settings})).session  # type: ignore[arg-type] # names of fields
 
 
 def changed(session: Session, change: Change, sites: tuple[Site, ...], names: tuple[str, ...] = ()) -> Session:
@@ -53,11 +53,6 @@ def changed(session: Session, change: Change, sites: tuple[Site, ...], names: tu
         for r in session.recordings
     )
     return replace(session, recordings=recordings)
-
-
-def fast_clock(block: ImuBlock) -> ImuBlock:
-    """Stamps that run two percent fast."""
-    return replace(block, time_s=block.time_s[0] + 1.02 * (block.time_s - block.time_s[0]))
 
 
 def part(block: ImuBlock, here: BoolArray | slice) -> ImuBlock:
