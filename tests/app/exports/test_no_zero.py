@@ -70,6 +70,9 @@ def test_the_summary_has_no_figure_of_a_height(folder: Path) -> None:
         assert told[side, "knee_range_deg"]["mean"] == pytest.approx(62.0, abs=6.0)
     statuses = {name: row["status"] for (side, name), row in told.items() if side == "left"}
     assert statuses["knee_swing_peak_deg"] == "withheld"
+    reasons = list(told["left", "knee_range_deg"])[-1]
+    assert len(told["left", "knee_swing_peak_deg"][reasons]) > 20
+    assert told["left", "knee_range_deg"][reasons] is None
     assert statuses["knee_range_deg"] == statuses["stance_percent"] == "read"
 
 
