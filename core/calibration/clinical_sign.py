@@ -12,7 +12,8 @@ from core.samples import FloatArray
 
 MIN_RANGE_RAD = np.deg2rad(10.0)  # a stiff knee: its few degrees do not tell which way it bends
 MIN_SWING_RAD_S = 0.7  # a shank slower than this is not walking
-MIN_MARGIN = 0.25
+MIN_MARGIN = 0.5  # a shank that swings forward twice as fast as back has 0.33, three times 0.5
+CONTRADICTION = 0.25  # so much against what another witness says is no chance
 MIN_AXES_ALIGNMENT = 0.5
 MIN_SWINGS = 3  # of a foot, for it to tell where its toes are
 
@@ -95,7 +96,7 @@ def ankle_sign(
     if abs(alignment) < MIN_AXES_ALIGNMENT:
         return ClinicalSign(-1 if swing >= 0 else 1, abs(swing), is_certain=False)
     from_knee = knee.sign * (1 if alignment > 0 else -1)
-    disagree = from_knee * swing < -MIN_MARGIN
+    disagree = from_knee * swing < -CONTRADICTION
     return ClinicalSign(-from_knee, min(knee.margin, abs(alignment)), not disagree)
 
 
