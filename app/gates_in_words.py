@@ -32,6 +32,10 @@ SENTENCES = {
     "plausible": later("The range over the stride is {value} (limit {limit}). Look at the curve and at the sensors."),
     "plausible_height": later("The curve reaches {value} (limit {limit}). Set the zero again."),
     "zero": later("No zero was set, so heights say nothing. Let the patient stand still for three seconds."),
+    "clock_drift": later(
+        "One sensor's clock runs {value} faster or slower than the others'. Use one receiver for all sensors, then "
+        "record again."
+    ),
     "strap": later(
         "A strap slipped from {value} on; later strides are left out. Tighten it and record free motion again."
     ),

@@ -109,7 +109,7 @@ SENTENCES = {
     "feet_only": "only feet carry sensors, so there are steps and no joint angles.",
     "too_little_motion": "no axis was found, for lack of motion or usable samples. Record ten seconds of free motion.",
     "sign_in_doubt": (
-        "two solutions fit almost equally well (margin {margin:.2f}, 1.3 wanted). Check which sensor is where, or "
+        "two solutions fit almost equally well (margin {margin:.2f}, 1.5 wanted). Check which sensor is where, or "
         "record free motion."
     ),
     "clinical_sign_uncertain": (

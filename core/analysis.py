@@ -13,7 +13,7 @@ from core.calibration import certainty
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_from_foot, knee_sign, range_of
 from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to_zero
 from core.chosen_strides import leave_out
-from core.clock_drift import about_clocks
+from core.clock_drift import about_clocks, clock_drifts
 from core.findings import Finding, Severity
 from core.gait.clocks import leg_clocks
 from core.gait.foot import follow
@@ -95,7 +95,8 @@ def analyse(
         tracks, told = tracks_of_kind(session, span, quality.unusable)
         findings += told
         findings += about_labels(tracks)
-        findings += about_clocks(tracks)
+        drifts = clock_drifts(tracks)
+        findings += about_clocks(drifts)
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)
@@ -114,6 +115,7 @@ def analyse(
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
             found = _with_clocks(tracks, recording, _before_slips(found, slipped), lags)
+            found = replace(found, drifting_percent={s: p for (name, s), p in drifts.items() if name == recording.name})
             here = {joint: calibrated[bases[recording.name, joint]] for joint in found.joints}
             found = replace(found, verdicts=verdicts_of(found, here, stiff_sides))
             recordings.append(found)

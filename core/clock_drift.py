@@ -5,6 +5,7 @@ the walk. Those likenesses rise and fall together in all sensors, whatever their
 from stride to stride, a clock runs away: at two percent by a stride in a minute, and the knee reads 92 degrees for 62.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 
 import numpy as np
@@ -30,16 +31,23 @@ MIN_DRIFT_S = 0.08  # over the whole walk: starting and stopping look later or e
 SIGMAS = 5.0
 
 
-def about_clocks(tracks: SensorTracks) -> list[Finding]:
+def clock_drifts(tracks: SensorTracks) -> dict[tuple[str, Site], float]:
+    """How much faster than its leg's a clock runs, percent, by walk and site; those that do not are missing."""
+    return {
+        (recording.name, site): 100.0 * drift
+        for recording in tracks.span
+        if recording.kind is RecordingKind.WALKING
+        for side in Side
+        for site, drift in _drifts(tracks, recording, side).items()
+    }
+
+
+def about_clocks(drifts: Mapping[tuple[str, Site], float]) -> list[Finding]:
     """A finding for every sensor whose clock runs away from the others of its leg in a walk."""
-    findings = []
-    for recording in tracks.span:
-        if recording.kind is RecordingKind.WALKING:
-            for side in Side:
-                for site, drift in _drifts(tracks, recording, side).items():
-                    numbers = {"drift_percent": round(100 * drift, 1)}
-                    findings.append(Finding("clock_drifts", Severity.WARNING, f"{recording.name}, {site}", numbers))
-    return findings
+    return [
+        Finding("clock_drifts", Severity.WARNING, f"{name}, {site}", {"drift_percent": round(percent, 1)})
+        for (name, site), percent in drifts.items()
+    ]
 
 
 def _drifts(tracks: SensorTracks, recording: Recording, side: Side) -> dict[Site, float]:

@@ -138,6 +138,8 @@ class RecordingAnalysis:
         Samples missing, by site.
     slipped_from_s
         From when on a side's straps are not to be trusted, on the recording's clock; -inf throughout.
+    drifting_percent
+        How much faster than its leg's clock that of a site runs, where it does.
     clocks
         What ties the clocks of both legs; None where not both were measured.
     verdicts
@@ -152,6 +154,7 @@ class RecordingAnalysis:
     gait: Mapping[Side, SideGait] = field(default_factory=dict)
     lost_percent: Mapping[Site, float] = field(default_factory=dict)
     slipped_from_s: Mapping[Side, float] = field(default_factory=dict)
+    drifting_percent: Mapping[Site, float] = field(default_factory=dict)
     clocks: LegClocks | None = None
     verdicts: Verdicts = field(default_factory=Verdicts)
 

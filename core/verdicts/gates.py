@@ -32,7 +32,7 @@ from core.verdicts.model import (
 class Limits:
     """Where each gate closes. `care` and `withheld` of a pair are where reading with care begins, and where it ends."""
 
-    pairing_margin: float = 1.3  # of the best hypothesis over its best rival, in motion below 4 Hz
+    pairing_margin: float = 1.5  # of the best hypothesis over its best rival, in motion below 4 Hz
     axis_sd_deg: tuple[float, float] = (6.5, 9.0)  # 15 deg of motion off the plane leak 15 sin sd: 1.7 and 2.3 deg
     lag_sd_ms: tuple[float, float] = (2.0, 10.0)  # 400 deg/s for 10 ms are 4 deg
     knee_range_deg: tuple[float, float] = (5.0, 90.0)  # walking knees 62 +- 4, stiff ones to 5
@@ -94,6 +94,7 @@ def _joint_verdicts(
         *_axis(calibration),
         *_lag(calibration),
         *_lost(recording, joint.proximal, joint.distal),
+        *_drifting(recording, Verdict.WITHHELD, joint.proximal, joint.distal),
     ]
     height = [*shape, *_zero(calibration), *_sign(calibration)]
     gait = recording.gait.get(joint.side)
@@ -119,10 +120,11 @@ def _leg_verdicts(
     if ankle is not None and ankle_of(side) in recording.joints:  # its foot sensor may not be on this foot
         shared += [GateReason(r.gate, Verdict.CARE, r.value, r.limit, r.unit) for r in _pairing(ankle)]
     shared += _events(gait)
-    timing = [*shared, *_steady_times(gait)]
+    foot = Site(f"{side}_{Segment.FOOT}")
+    timing = [*shared, *_steady_times(gait), *_drifting(recording, Verdict.CARE, foot)]
     if gait.is_toe_off_biased:
         timing.append(GateReason("toe_off", Verdict.CARE))
-    distance = [*shared, *_lost(recording, Site(f"{side}_{Segment.FOOT}")), *_equal_lengths(recording), *_speed(gait)]
+    distance = [*shared, *_lost(recording, foot), *_equal_lengths(recording), *_speed(gait)]
     has_length = bool(np.isfinite(strides.length_m[used]).any())
     return LegVerdicts(assess(timing), assess(distance) if has_length or not used.any() else NOT_MEASURED)
 
@@ -181,6 +183,12 @@ def _lost(recording: RecordingAnalysis, *sites: Site) -> Iterator[GateReason]:
     if percent > care:
         is_most = percent > most
         yield GateReason("loss", Verdict.WITHHELD if is_most else Verdict.CARE, percent, most if is_most else care, "%")
+
+
+def _drifting(recording: RecordingAnalysis, verdict: Verdict, *sites: Site) -> Iterator[GateReason]:
+    percent = max((abs(recording.drifting_percent.get(site, 0.0)) for site in sites), default=0.0)
+    if percent:
+        yield GateReason("clock_drift", verdict, percent, None, "%")
 
 
 def _strides(used: int) -> Iterator[GateReason]:
@@ -276,6 +284,8 @@ def _between(recording: RecordingAnalysis) -> Assessment:
     clocks = recording.clocks
     if len(recording.gait) < len(Side) or clocks is None:
         return NOT_MEASURED
+    if recording.drifting_percent:
+        return assess(_drifting(recording, Verdict.WITHHELD, *recording.drifting_percent))
     verdict = Verdict(clocks.trust)
     if verdict is Verdict.READ:
         return READ

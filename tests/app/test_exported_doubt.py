@@ -1,13 +1,14 @@
 """Do all outputs doubt the same figures? One simulated session per cause of doubt, every file read by another program.
 
 What has to be said stands in `SAID`, written by hand. Each output has a function that takes the folder of a case and
-gives what it says of the quantities that it tells of; `OUTPUTS` lists them, and what else shows figures belongs there.
+gives what it says of the quantities that it tells of; `OUTPUTS` lists them. Report and screen are read by their words.
 """
 
 import csv
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from datetime import UTC, datetime
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any
@@ -16,16 +17,24 @@ import ezc3d
 import openpyxl
 import pytest
 from fhir.resources.R4B.bundle import Bundle
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 from rerun.chunk import RrdReader
 
 from app.exports.exports import Format, export_from_folder
+from app.pages.result_page import ResultPage
+from app.reports.patient_report.document import make_report
+from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.reference_bands import age_and_height
 from app.reports.result_folder import write_results
+from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
 from core.samples import Recording, Session
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 from devices.walker_body import GaitChange
+from tests.app.doubt_readers import Said, said_in_report, said_on_screen
 
 NUMBER = (int, float)
 READ, CARE, SHAPE, WITHHELD = "read", "care", "shape", "withheld"
@@ -344,7 +353,7 @@ def in_rerun(out: Path) -> dict[str, str]:
 
 
 RERUN = tuple(name for name in QUANTITIES if name.endswith(("curve", "stance", "length", "range")))
-# what each output tells of; the report and the screen belong here too, each with a function of its own
+# what each output tells of
 OUTPUTS: dict[str, tuple[Callable[[Path], dict[str, str]], tuple[str, ...]]] = {
     "csv": (in_csv, (*OF_SIDES, *CURVES)),
     "json": (in_json, QUANTITIES),
@@ -360,6 +369,34 @@ OUTPUTS: dict[str, tuple[Callable[[Path], dict[str, str]], tuple[str, ...]]] = {
 def test_every_output_says_the_same(case: Case, out: Path, output: str) -> None:
     read, tells_of = OUTPUTS[output]
     assert read(out) == {name: case.expected[name] for name in tells_of}
+
+
+@pytest.fixture
+def page(qtbot: QtBot, qapp: QApplication) -> Iterator[ResultPage]:
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    yield page
+    qapp.setStyleSheet("")
+
+
+SPOKEN = {READ: Said.TOLD, CARE: Said.CARE, WITHHELD: Said.WITHHELD}
+
+
+def test_report_and_screen_say_the_same(case: Case, analysed: tuple[Session, Analysis], page: ResultPage) -> None:
+    session, analysis = analysed
+    made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
+    report = said_in_report(make_report(ReportRequest(Visit(session, analysis), (WALK,), made_at, "1.2.3")))
+    page.show_analysis(analysis, session.recordings, who=age_and_height(session))
+    screen = said_on_screen(page)
+    places = {name: (Side(side), column) for name, (side, column) in OF_SIDES.items()}
+    places |= {name: (Side.LEFT, column) for name, column in BOTH.items()}
+    for found in (report, screen):
+        told = {name: found[place] for name, place in places.items() if place in found}
+        assert len(told) > 10
+        assert told == {name: SPOKEN[case.expected[name]] for name in told}
 
 
 def words_of_about(out: Path) -> str:

@@ -43,7 +43,7 @@ def of_samples(change: Change, site: Site = SHANK, recording: str = "walk 1") ->
 
 
 def walked(**settings: object) -> Session:
-    return simulate(WalkerSettings(**{"seed": 3, "recordings": BRIEF, **settings})).session  # type: ignore[arg-type] # names of fields
+    return simulate(WalkerSettings(**{"seed": 3, "recordings": BRIEF, **settings})).session  # type: ignore[arg-type]  # names of fields
 
 
 def changed(session: Session, change: Change, sites: tuple[Site, ...], names: tuple[str, ...] = ()) -> Session:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from core.body import Site
-from core.clock_drift import about_clocks
+from core.clock_drift import about_clocks, clock_drifts
 from core.samples import RateKind, Session
 from core.sensors import SensorTracks
 from devices.walker import Tissue, Walk, WalkerSettings, simulate
@@ -26,7 +26,7 @@ def with_fast_clock(session: Session, site: Site, share: float) -> Session:
 
 def drifts(session: Session) -> dict[str, float]:
     tracks = SensorTracks(session, session.recordings, frozenset(), RateKind.INSTANTANEOUS)
-    found = about_clocks(tracks)
+    found = about_clocks(clock_drifts(tracks))
     assert {f.key for f in found} <= {"clock_drifts"}
     return {f.where: float(f.numbers["drift_percent"]) for f in found}
 

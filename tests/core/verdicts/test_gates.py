@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 
 from core.body import Joint, Side, Site
-from core.calibration.clinical_sign import MIN_MARGIN
 from core.gait.clocks import ClockTie
 from core.gait.strides import Reason
 from core.results import Analysis, Calibration, Method, RecordingAnalysis, ZeroKind
@@ -44,9 +43,9 @@ def test_a_walk_of_which_all_is_sure_can_be_read_throughout() -> None:
 
 
 JOINT_GATES = [
-    ("pairing", {"sign_margin": 1.3}, {}),
+    ("pairing", {"sign_margin": 1.5}, {}),
     ("pairing", {"sign_margin": None}, {}),
-    ("pairing", {"sign_margin": 1.29}, {"withheld": SHAPE_HEIGHT}),
+    ("pairing", {"sign_margin": 1.49}, {"withheld": SHAPE_HEIGHT}),
     ("pairing", {"is_same_joint": False}, {"withheld": SHAPE_HEIGHT}),
     ("sign", {"is_sign_certain": False}, {"withheld": ("height", "sign")}),
     ("axis", {"axis_sd_rad": np.deg2rad(6.499)}, {}),
@@ -87,7 +86,7 @@ def test_a_reason_tells_what_was_found_and_what_would_have_passed() -> None:
     assert lag == (GateReason("lag", Verdict.WITHHELD, 20.0, 10.0, "ms"),)
     margin = {"is_sign_certain": False, "clinical_sign_margin": 0.1}
     (sign,) = gates_of(walk(), calibrations(Joint.LEFT_KNEE, **margin)).joint(Joint.LEFT_KNEE).sign.reasons
-    assert (sign.value, sign.limit) == (0.1, MIN_MARGIN)
+    assert (sign.value, sign.limit) == (0.1, 0.5)
 
 
 @pytest.mark.parametrize(
@@ -374,3 +373,13 @@ def test_an_analysis_is_judged_with_what_each_recording_was_measured_with() -> N
     assert not_read(second) == {}
     assert not_read(first)[f"{KNEE} shape"] == ("withheld", ("plausible",))
     assert "zero" in not_read(first)[f"{KNEE} height"][1]
+
+
+def test_a_clock_that_runs_away_withholds_its_joints_and_what_compares_the_legs() -> None:
+    found = gates_of(replace(walk(), drifting_percent={Site.LEFT_SHANK: 2.0}))
+    gate = ("clock_drift",)
+    both = {f"left_{kind} {part}": ("withheld", gate) for kind in ("knee", "ankle") for part in ("shape", "height")}
+    assert not_read(found) == {**both, "between": ("withheld", gate)}
+    of_foot = not_read(gates_of(replace(walk(), drifting_percent={Site.RIGHT_FOOT: -2.0})))
+    assert of_foot["right timing"] == ("care", gate)
+    assert not any(name.startswith(("left", "right_knee")) for name in of_foot)

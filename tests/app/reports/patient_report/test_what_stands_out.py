@@ -174,7 +174,7 @@ def test_what_is_withheld_is_told_in_the_caveat_alone(request_of_demonstration: 
     analysis = recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     sentences = said(request_of_demonstration, analysis)
     assert not any("Knee range" in sentence for sentence in sentences)
-    assert sentences[-1].startswith("Left knee: The two sensors do not move as neighbours (margin 1.05, 1.30 wanted).")
+    assert sentences[-1].startswith("Left knee: The two sensors do not move as neighbours (margin 1.05, 1.50 wanted).")
     assert not any("neighbours" in sentence for sentence in said(request_of_demonstration, shortened))
 
 
