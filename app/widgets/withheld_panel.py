@@ -13,6 +13,7 @@ from core.body import Side
 from core.verdicts.model import Verdict
 
 PADDING = 8
+LEAST_WIDTH = 260  # narrower, its sentences have no room in height
 
 
 class WithheldPanel(QWidget):
@@ -64,4 +65,5 @@ class WithheldPanel(QWidget):
         self._row.setContentsMargins(px(PADDING), px(PADDING), px(PADDING), px(PADDING))
         self._row.setSpacing(px(8))
         self._words.setSpacing(px(2))
+        self.setMinimumWidth(px(LEAST_WIDTH))
         self.update()
