@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.joint_force import JointForce
-from core.pair import FAST_RAD_S, OrientedTrack
+from core.pair import FAST_RAD_S, OrientedTrack, angular_acceleration, lever_matrix
 from core.placement.steps import at_once
+from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray, IntArray
 from core.tracks import at_positions
 
@@ -21,7 +21,7 @@ MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
 LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
 WINDOW_S = 15.0  # over which two headings hardly drift apart
 MAX_INSTANTS = 400
-BORDER = 8  # instants that a low-pass knows from one side only
+BORDER_SAMPLES = 2  # without angular acceleration (eq 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,23 +111,31 @@ def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, flo
 def _felt(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Felt:
     rows = np.full((len(time_s), 21), np.nan)
     for one in stretches:
-        force = one.joint_force
-        half = max(1, round(0.5 * MEAN_S / force.step_s))
-        reach_s = (2 * half + BORDER) * force.step_s
-        is_inside = (time_s >= force.start_s + reach_s) & (time_s <= force.end_s - reach_s)
+        reach_s = (2 * _half_width(one.track.step_s) + BORDER_SAMPLES + 2) * one.track.step_s
+        is_inside = (time_s >= one.track.start_s + reach_s) & (time_s <= one.track.end_s - reach_s)
         if is_inside.any():
-            rows[is_inside] = _smooth_terms(force, time_s[is_inside], half)
+            rows[is_inside] = _smooth_terms(one, time_s[is_inside])
     terms = rows.reshape(-1, 3, 7)
     return Felt(terms, np.gradient(terms, STEP_S, axis=0))
 
 
-def _smooth_terms(force: JointForce, time_s: FloatArray, half: int) -> FloatArray:
+def _smooth_terms(one: OrientedTrack, time_s: FloatArray) -> FloatArray:
     """Terms row by row (n, 21), averaged around ascending instants inside a stretch."""
-    middle = (time_s - force.start_s) / force.step_s
+    track = one.track
+    half = _half_width(track.step_s)
+    middle = (time_s - track.start_s) / track.step_s
     first = int(middle[0]) - 2 * half - 1
-    near = force.terms[first : int(middle[-1]) + 2 * half + 3].reshape(-1, 21)
-    smooth = _running_mean(_running_mean(near, half), half)
+    near = slice(first, int(middle[-1]) + 2 * half + 3)
+    swing = lever_matrix(track.gyr_rad_s[near], angular_acceleration(track.gyr_rad_s, track.step_s)[near])
+    earth_from = matrix_from_quaternion(one.q_earth_from_sensor[near])
+    force = earth_from @ track.acc_m_s2[near][..., None]
+    terms = np.concatenate([earth_from @ swing, earth_from, force], axis=2).reshape(-1, 21)
+    smooth = _running_mean(_running_mean(terms, half), half)
     return at_positions(smooth, middle - first - 2 * half)
+
+
+def _half_width(step_s: float) -> int:
+    return max(1, round(0.5 * MEAN_S / step_s))
 
 
 def _running_mean(values: FloatArray, half: int) -> FloatArray:
