@@ -41,9 +41,10 @@ def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray
     block : (n,)
         Which block each sample belongs to.
     """
-    information = np.einsum("nr,nri,nrj->ij", weight, slope, slope)
+    weighted = slope * weight[..., None]
+    information = np.tensordot(weighted, slope, axes=([0, 1], [0, 1]))
     information += 1e-9 * np.trace(information) / len(information) * np.eye(len(information))
-    score = np.einsum("nr,nri->ni", weight * value, slope)
+    score = (value[:, None, :] @ weighted)[:, 0]
     sums = np.zeros((int(block.max()) + 1, score.shape[1]))
     np.add.at(sums, block, score)
     inverse = np.linalg.inv(information)

@@ -10,6 +10,7 @@ from core.calibration.joint_axis import (
     Candidates,
     heading_from_axes,
     heading_prior,
+    in_earth,
     knot_weights,
     loss_and_weights,
     residuals,
@@ -83,10 +84,11 @@ def _fitted(
     data: Datasets, axis_1: FloatArray, axis_2: FloatArray, forces: Forces | None, knots: FloatArray
 ) -> FloatArray:
     shares, prior, information = knot_weights(data), heading_prior(data), sample_information(data)
+    known = in_earth(data)
     rate_scale, neutral_scale = RATE_SCALE_RAD_S, NEUTRAL_SCALE_RAD
     for step in range(STEPS):
         heading = data.heading(knots)
-        r = residuals(data, axis_1[None], axis_2[None], heading[None], rate_scale, neutral_scale)
+        r = residuals(data, axis_1[None], axis_2[None], heading[None], rate_scale, neutral_scale, known)
         weight = loss_and_weights(r.value)[1][0] * information
         slope = np.sum(weight * r.by_heading[0] * r.value[0], axis=1)
         bend = np.sum(weight * r.by_heading[0] ** 2, axis=1)

@@ -31,7 +31,8 @@ def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) 
 
 def _in_plane_length(rate: FloatArray, axis: FloatArray) -> FloatArray:
     """|g x j| (n,)."""
-    return np.sqrt(np.sum((rate @ np.stack(joint_frame(axis), axis=1)) ** 2, axis=1))
+    in_plane = rate @ np.stack(joint_frame(axis), axis=1)
+    return np.asarray(np.sqrt(in_plane[:, 0] ** 2 + in_plane[:, 1] ** 2))
 
 
 def hinge_residual(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
@@ -65,9 +66,10 @@ def hinge_axes(
         scale = np.array([max(robust_sd(value[:, k]), MIN_SCALE_RAD_S) for k in range(2)])
         value, slope = value / scale, slope / scale[:, None]
         weight = 1 / np.sqrt(1 + value**2)
-        information = np.einsum("nr,nri,nrj->ij", weight, slope, slope) + 1e-9 * np.eye(5)
+        weighted = (slope * weight[..., None]).reshape(-1, 5)
+        information = weighted.T @ slope.reshape(-1, 5) + 1e-9 * np.eye(5)
         information[4, 4] += (ACCELERATION_WEIGHT_S_M * BIAS_PRIOR_M_S2) ** -2
-        score = np.einsum("nr,nri->i", weight * value, slope)
+        score = value.ravel() @ weighted
         score[4] += bias * (ACCELERATION_WEIGHT_S_M * BIAS_PRIOR_M_S2) ** -2
         step = -np.linalg.solve(information, score)
         j1, j2 = moved(j1[None], step[None, :2])[0], moved(j2[None], step[None, 2:4])[0]
@@ -86,10 +88,12 @@ def _residuals(
     slope = np.zeros((len(data), 2, 5))
     value[:, 1] = ACCELERATION_WEIGHT_S_M * (shifted_1 @ j1 - shifted_2 @ j2)
     slope[:, 1, 4] = -1.0
-    value[:, 0] = in_plane_difference(data, j1, j2)
+    value[:, 0] = 0.0
     for sign, rate, shifted, axis, at in ((1, data.g1, shifted_1, j1, 0), (-1, data.g2, shifted_2, j2, 2)):
-        length = np.maximum(_in_plane_length(rate, axis), 1e-6)
         tangents = np.stack(joint_frame(axis), axis=1)
-        slope[:, 0, at : at + 2] = -sign * ((rate @ axis) / length)[:, None] * (rate @ tangents)
+        in_plane = rate @ tangents
+        length = np.sqrt(in_plane[:, 0] ** 2 + in_plane[:, 1] ** 2)
+        value[:, 0] += sign * length
+        slope[:, 0, at : at + 2] = (-sign * (rate @ axis) / np.maximum(length, 1e-6))[:, None] * in_plane
         slope[:, 1, at : at + 2] = sign * ACCELERATION_WEIGHT_S_M * (shifted @ tangents)
     return value, slope

@@ -146,78 +146,127 @@ def knot_weights(data: Datasets) -> FloatArray:
 
 
 @dataclass(frozen=True, slots=True)
+class InEarth:
+    """Both sensors' rotations (3, 3, n) and rates (3, n), each in its own earth: what no hypothesis changes."""
+
+    turn_1: FloatArray
+    turn_2: FloatArray
+    rate_1: FloatArray
+    rate_2: FloatArray
+
+
+def in_earth(data: Datasets) -> InEarth:
+    turns = [np.ascontiguousarray(turn.transpose(1, 2, 0)) for turn in (data.earth_from_1, data.earth_from_2)]
+    rates = [np.sum(turn * rate.T, axis=1) for turn, rate in zip(turns, (data.g1, data.g2), strict=True)]
+    return InEarth(*turns, *rates)
+
+
+@dataclass(frozen=True, slots=True)
 class Residuals:
     """Three groups of residuals per candidate and sample and their slopes.
 
     `value` (c, n, 7): off-axis relative rate seen from sensor 1 (2) and from sensor 2 (2), parting of the axes (3),
-    each over its scale. `by_axes` (c, n, 7, 4): slopes by the two tangent coordinates of each axis; `by_heading` (c,
-    n, 7).
+    each over its scale. `by_heading` (c, n, 7): slopes by the heading. Of the slopes by the two tangent coordinates of
+    each axis few are not zero: `along_1`, `along_2` (c, n), the relative rate along the axes, and `across_1`,
+    `across_2` (3, 2, c, n), the tangents in the earth of sensor 1, over their scales.
     """
 
     value: FloatArray
-    by_axes: FloatArray
     by_heading: FloatArray
+    along_1: FloatArray
+    along_2: FloatArray
+    across_1: FloatArray
+    across_2: FloatArray
+
+    @property
+    def by_axes(self) -> FloatArray:
+        """All slopes (c, n, 7, 4) by the tangent coordinates."""
+        slopes = np.zeros((*self.value.shape, 4))
+        for k in range(2):
+            slopes[..., k, k] = -self.along_1
+            slopes[..., 2 + k, 2 + k] = -self.along_2
+            slopes[..., 4:7, k] = np.moveaxis(self.across_1[:, k], 0, -1)
+            slopes[..., 4:7, 2 + k] = -np.moveaxis(self.across_2[:, k], 0, -1)
+        return slopes
 
 
 GROUPS = (slice(0, 2), slice(2, 4), slice(4, 7))
 
 
 def residuals(
-    data: Datasets, axis_1: FloatArray, axis_2: FloatArray, heading: FloatArray, rate_scale: float, neutral_scale: float
+    data: Datasets,
+    axis_1: FloatArray,
+    axis_2: FloatArray,
+    heading: FloatArray,
+    rate_scale: float,
+    neutral_scale: float,
+    known: InEarth | None = None,
 ) -> Residuals:
-    """Residuals at axes (c, 3) and headings (c, n)."""
-    x1, y1 = joint_frame(axis_1)
-    x2, y2 = joint_frame(axis_2)
-    seen_1 = _in_earth(data.earth_from_1, np.stack([x1, y1, axis_1]))
-    seen_2 = _in_earth(data.earth_from_2, np.stack([x2, y2, axis_2]))
-    seen_2 = turn_about_vertical(heading, seen_2)  # now in the earth of sensor 1
-    rate_1 = (data.earth_from_1 @ data.g1[..., None])[..., 0]
-    rate_2 = turn_about_vertical(heading, (data.earth_from_2 @ data.g2[..., None])[..., 0][None])
-    relative = rate_2 - rate_1
-    value = np.empty((*heading.shape, 7))
-    by_axes = np.zeros((*heading.shape, 7, 4))
-    by_heading = np.empty((*heading.shape, 7))
+    """Residuals at axes (c, 3) and headings (c, n).
+
+    Parameters
+    ----------
+    known
+        Of `data`, where it is at hand.
+    """
+    earth = known or in_earth(data)
+    axes = np.stack([axis_1, axis_2])
+    x, y = joint_frame(axes)
+    frames = np.stack([x, y, axes], axis=1)  # (2, 3, c, 3)
+    cosine, sine = np.cos(heading), np.sin(heading)
     rate_weight = 1 / (np.sqrt(2) * rate_scale)
-    along_1 = np.sum(relative * seen_1[2], axis=-1)
-    along_2 = np.sum(relative * seen_2[2], axis=-1)
-    for k in range(2):
-        value[..., k] = np.sum(relative * seen_1[k], axis=-1) * rate_weight
-        by_axes[..., k, k] = -along_1 * rate_weight
-        by_heading[..., k] = _turned_component(rate_2, seen_1[k]) * rate_weight
-        value[..., 2 + k] = np.sum(relative * seen_2[k], axis=-1) * rate_weight
-        by_axes[..., 2 + k, 2 + k] = -along_2 * rate_weight
-        by_heading[..., 2 + k] = -_turned_component(seen_2[k], rate_1) * rate_weight
-        by_axes[..., 4:7, k] = seen_1[k] / neutral_scale
-        by_axes[..., 4:7, 2 + k] = -seen_2[k] / neutral_scale
-    value[..., 4:7] = (seen_1[2] - seen_2[2]) / neutral_scale
-    by_heading[..., 4] = seen_2[2][..., 1] / neutral_scale
-    by_heading[..., 5] = -seen_2[2][..., 0] / neutral_scale
-    by_heading[..., 6] = 0.0
-    return Residuals(value, by_axes, by_heading)
+    # component, which of the frame, candidate, sample; all in the earth of sensor 1
+    seen_1 = _seen(earth.turn_1, frames[0])
+    seen_2 = _turned(cosine, sine, _seen(earth.turn_2, frames[1]))
+    rate_1, rate_2 = earth.rate_1 * rate_weight, _turned(cosine, sine, earth.rate_2[:, None] * rate_weight)
+    relative = rate_2 - rate_1[:, None]
+    from_1, from_2 = (np.sum(relative[:, None] * seen, axis=0) for seen in (seen_1, seen_2))
+    value = np.empty((7, *heading.shape))
+    by_heading = np.empty((7, *heading.shape))
+    value[0:2], value[2:4] = from_1[:2], from_2[:2]
+    by_heading[0:2] = rate_2[0] * seen_1[1, :2] - rate_2[1] * seen_1[0, :2]
+    by_heading[2:4] = seen_2[1, :2] * rate_1[0] - seen_2[0, :2] * rate_1[1]
+    seen_1 /= neutral_scale
+    seen_2 /= neutral_scale
+    value[4:7] = seen_1[:, 2] - seen_2[:, 2]
+    by_heading[4], by_heading[5], by_heading[6] = seen_2[1, 2], -seen_2[0, 2], 0.0
+    return Residuals(
+        np.moveaxis(value, 0, -1), np.moveaxis(by_heading, 0, -1), from_1[2], from_2[2], seen_1[:, :2], seen_2[:, :2]
+    )
 
 
-def _in_earth(earth_from: FloatArray, vectors: FloatArray) -> FloatArray:
-    """Vectors (k, c, 3) of a sensor as its earth sees them at each of n instants, (k, c, n, 3)."""
+def _seen(turn: FloatArray, vectors: FloatArray) -> FloatArray:
+    """Vectors (k, c, 3) of a sensor as its earth sees them at each of n instants, (3, k, c, n)."""
     k, c = vectors.shape[:2]
-    seen = earth_from.reshape(-1, 3) @ vectors.reshape(-1, 3).T
-    return np.ascontiguousarray(seen.T).reshape(k, c, -1, 3)
+    return np.asarray(vectors.reshape(-1, 3) @ turn).reshape(3, k, c, -1)
 
 
-def _turned_component(turning: FloatArray, fixed: FloatArray) -> FloatArray:
-    """Derivative of (Rz v) . fixed by the heading, where `turning` = Rz v."""
-    slope: FloatArray = turning[..., 0] * fixed[..., 1] - turning[..., 1] * fixed[..., 0]
-    return slope
+def _turned(cosine: FloatArray, sine: FloatArray, v: FloatArray) -> FloatArray:
+    """Vectors (3, ..., n) turned about the vertical by headings (c, n)."""
+    turned = np.empty((3, *np.broadcast_shapes(v.shape[1:], cosine.shape)))
+    turned[0] = cosine * v[0] - sine * v[1]
+    turned[1] = sine * v[0] + cosine * v[1]
+    turned[2] = v[2]
+    return turned
 
 
 def loss_and_weights(value: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Robust loss 2 (sqrt(1 + r^2) - 1) per sample (c, n), and the weight (c, n, 7) each residual has in it."""
+    roots = _roots(value)
     weights = np.empty_like(value)
-    loss = np.zeros(value.shape[:-1])
-    for group in GROUPS:
-        root = np.sqrt(1 + np.sum(value[..., group] ** 2, axis=-1))
-        loss += 2 * (root - 1)
+    for group, root in zip(GROUPS, roots, strict=True):
         weights[..., group] = (1 / root)[..., None]
-    return loss, weights
+    return _loss(roots), weights
+
+
+def _roots(value: FloatArray) -> FloatArray:
+    """sqrt(1 + r^2) of each group of residuals (c, n, 7), (3, c, n)."""
+    square = np.moveaxis(value, -1, 0) ** 2
+    return np.sqrt([1 + square[0] + square[1], 1 + square[2] + square[3], 1 + square[4] + square[5] + square[6]])
+
+
+def _loss(roots: FloatArray) -> FloatArray:
+    return np.asarray(2 * (np.sum(roots, axis=0) - 3))
 
 
 def polish(
@@ -230,40 +279,50 @@ def polish(
 ) -> Candidates:
     """Gauss-Newton on axes and heading knots of every candidate at once."""
     axis_1, axis_2, knots = start.axis_1, start.axis_2, start.knots_rad
-    weights_of_knots = knot_weights(data)
-    information = sample_information(data)
-    prior = heading_prior(data)
+    shares, information, prior = knot_weights(data), sample_information(data), heading_prior(data)
+    known = in_earth(data)
     for _ in range(steps):
-        r = residuals(data, axis_1, axis_2, data.heading(knots), rate_scale, neutral_scale)
-        _, weight = loss_and_weights(r.value)
-        step = _step(r, weight * information, weights_of_knots, prior, knots, is_axis_fixed)
-        axis_1, axis_2 = moved(axis_1, step[:, :2]), moved(axis_2, step[:, 2:4])
+        r = residuals(data, axis_1, axis_2, data.heading(knots), rate_scale, neutral_scale, known)
+        step = _step(r, information / _roots(r.value), shares, prior, knots, is_axis_fixed)
+        axis_1, axis_2 = moved(np.stack([axis_1, axis_2]), np.stack([step[:, :2], step[:, 2:4]]))
         knots = knots + step[:, 4:]
         if np.max(np.abs(step)) < MIN_STEP_RAD:
             break
-    r = residuals(data, axis_1, axis_2, data.heading(knots), rate_scale, neutral_scale)
-    cost = loss_and_weights(r.value)[0].mean(axis=1)
-    return Candidates(axis_1, axis_2, knots, cost)
+    r = residuals(data, axis_1, axis_2, data.heading(knots), rate_scale, neutral_scale, known)
+    return Candidates(axis_1, axis_2, knots, _loss(_roots(r.value)).mean(axis=1))
 
 
 def _step(
     r: Residuals, weight: FloatArray, knot_shares: FloatArray, prior: FloatArray, knots: FloatArray, is_axis_fixed: bool
 ) -> FloatArray:
-    c, k = len(knots), knots.shape[1]
-    weighted_heading = weight * r.by_heading
-    matrix = np.zeros((c, 4 + k, 4 + k))
-    matrix[:, :4, :4] = np.einsum("cnr,cnri,cnrj->cij", weight, r.by_axes, r.by_axes, optimize=True)
-    mixed = np.einsum("cnr,cnri->cin", weighted_heading, r.by_axes) @ knot_shares
-    matrix[:, :4, 4:] = mixed
-    matrix[:, 4:, :4] = np.swapaxes(mixed, 1, 2)
-    bend = np.sum(weighted_heading * r.by_heading, axis=-1)
+    """Changes (c, 4 + k) of the tangent coordinates and the knots; `weight` (3, c, n) is that of each group."""
+    c, k = knots.shape
+    v, h = np.moveaxis(r.value, -1, 0), np.moveaxis(r.by_heading, -1, 0)
+    groups = np.repeat(weight, [2, 2, 3], axis=0)
+    weighted, weighted_heading = groups * v, groups * h
+    matrix, slope = np.zeros((c, 4 + k, 4 + k)), np.zeros((c, 4 + k))
+    bend, push = np.sum(weighted_heading * h, axis=0), np.sum(weighted_heading * v, axis=0)
     matrix[:, 4:, 4:] = (knot_shares.T[None] * bend[:, None, :]) @ knot_shares + prior
-    slope = np.zeros((c, 4 + k))
-    slope[:, :4] = np.einsum("cnr,cnri->ci", weight * r.value, r.by_axes)
-    slope[:, 4:] = np.sum(weighted_heading * r.value, axis=-1) @ knot_shares + knots @ prior
+    slope[:, 4:] = push @ knot_shares + knots @ prior
     if is_axis_fixed:
-        matrix[:, :4, :] = matrix[:, :, :4] = 0.0
-        slope[:, :4] = 0.0
+        matrix[:, range(4), range(4)] = 1.0
+    else:
+        mixed = np.empty((4, *weight.shape[1:]))  # products of an axis's slope and the heading's
+        neutral = np.sum(weight[2], axis=1) * float(np.sum(r.across_1[:, 0, 0, 0] ** 2))  # tangents are of one length
+        sides = ((0, r.along_1, r.across_1, 1.0), (2, r.along_2, r.across_2, -1.0))
+        for first, along, across, sign in sides:
+            own = slice(first, first + 2)
+            mixed[own] = sign * np.sum(weighted_heading[4:, None] * across, axis=0) - weighted_heading[own] * along
+            force = sign * np.sum(weighted[4:, None] * across, axis=0) - weighted[own] * along
+            slope[:, own] = np.sum(force, axis=-1).T
+            matrix[:, (first, first + 1), (first, first + 1)] = (
+                np.sum(weight[first // 2] * along**2, axis=1) + neutral
+            )[:, None]
+        for i in range(2):
+            both = -np.sum(weight[2] * np.sum(r.across_1[:, i, None] * r.across_2, axis=0), axis=-1).T
+            matrix[:, i, 2:4] = matrix[:, 2:4, i] = both
+        share = np.moveaxis(mixed, 0, 1) @ knot_shares
+        matrix[:, :4, 4:], matrix[:, 4:, :4] = share, np.swapaxes(share, 1, 2)
     diagonal = np.arange(4 + k)
     matrix[:, diagonal, diagonal] += 1e-6 * (1 + matrix[:, diagonal, diagonal])
     step: FloatArray = -np.linalg.solve(matrix, slope[..., None])[..., 0]
@@ -291,7 +350,8 @@ def heading_prior(data: Datasets) -> FloatArray:
 
 
 def moved(axis: FloatArray, tangent: FloatArray) -> FloatArray:
-    """Axes (c, 3) moved along their own tangent coordinates (c, 2) and back to unit length."""
+    """Axes (..., 3) moved along their own tangent coordinates (..., 2) and back to unit length."""
     x, y = joint_frame(axis)
-    there = axis + tangent[:, :1] * x + tangent[:, 1:] * y
-    return there / np.linalg.norm(there, axis=1, keepdims=True)
+    there = axis + tangent[..., :1] * x + tangent[..., 1:] * y
+    moved_there: FloatArray = there / np.linalg.norm(there, axis=-1, keepdims=True)
+    return moved_there
