@@ -48,16 +48,16 @@ class Datasets:
         right = knots_rad[..., np.minimum(self.knot_left + 1, self.knots - 1)]
         return left + self.knot_share * (right - left)
 
-    def only(self, keep: BoolArray) -> "Datasets":
-        """The samples where `keep` (n,) holds, with all knots."""
+    def only(self, keep: BoolArray | IntArray) -> "Datasets":
+        """The samples where `keep` (n,) holds, or of those numbers, with all knots."""
         mine = {name: getattr(self, name)[keep] for name in _PER_SAMPLE}
         return replace(self, **mine)
 
     def thinned(self, count: int) -> "Datasets":
         """About `count` of the samples, evenly spread."""
-        keep = np.zeros(len(self), dtype=bool)
-        keep[np.linspace(0, len(self) - 1, min(count, len(self))).astype(int)] = True
-        return self.only(keep)
+        if count >= len(self):
+            return self
+        return self.only(np.linspace(0, len(self) - 1, count).astype(np.int64))
 
 
 _SIGNALS = ("time_s", "g1", "g2", "a1", "a2", "dg1", "dg2", "earth_from_1", "earth_from_2")
@@ -71,10 +71,14 @@ def moving_indices(pair: Pair, max_rate_rad_s: float = np.inf) -> IntArray:
         return np.empty(0, dtype=np.int64)
     is_used = pair.is_known.copy()
     is_used[: moving[0]] = is_used[moving[-1] + 1 :] = False
-    if np.isfinite(max_rate_rad_s):
-        is_used &= np.sum(pair.g1**2, axis=1) < max_rate_rad_s**2
-        is_used &= np.sum(pair.g2**2, axis=1) < max_rate_rad_s**2
-    return np.flatnonzero(is_used)
+    index: IntArray = np.flatnonzero(is_used)
+    return slow_ones(pair, index, max_rate_rad_s) if np.isfinite(max_rate_rad_s) else index
+
+
+def slow_ones(pair: Pair, index: IntArray, max_rate_rad_s: float) -> IntArray:
+    """Those of the samples at which both sensors turn more slowly than a rate."""
+    squares = [np.einsum("ni,ni->n", rate, rate) for rate in (pair.g1, pair.g2)]
+    return index[(np.maximum(*squares) < max_rate_rad_s**2)[index]]
 
 
 def united(parts: list[Datasets]) -> Datasets:

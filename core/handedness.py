@@ -7,6 +7,7 @@ we compute changes where all accelerometers are reversed alike.
 """
 
 from collections.abc import Mapping
+from functools import lru_cache
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
@@ -18,7 +19,7 @@ from core.samples import FloatArray, ImuBlock
 from core.tracks import even_tracks
 
 LOOKED_AT_S = 60.0
-TURN_HZ, GRID_HZ = 1.0, 10.0
+TURN_HZ, GRID_HZ, MEANS_HZ = 1.0, 10.0, 25.0
 MIN_OVERLAP_S = 5.0
 MIN_TURN_RAD_S = 0.1  # rms; on people a straight walk has 0.1-0.3
 # Correlation: of neighbours on people 0.1-0.9, in free motion and turns 0.6-1.0; below zero where one is reversed
@@ -73,8 +74,23 @@ def turn_about_vertical(block: ImuBlock) -> Turn:
     track = max(tracks, key=len)
     if track.end_s - track.start_s < MIN_OVERLAP_S or track.step_s > 0.2 / TURN_HZ:
         return None
-    gyr = np.ascontiguousarray(track.gyr_rad_s)
-    orientation = offlineVQF(gyr, np.ascontiguousarray(track.acc_m_s2), None, track.step_s)["quat6D"]
-    vertical = matrix_from_quaternion(orientation)[:, 2]
-    low = butter(2, TURN_HZ, fs=1.0 / track.step_s, output="sos")
-    return track.time_s, sosfiltfilt(low, np.einsum("ni,ni->n", gyr, vertical))
+    # so slow a turn needs no more than a mean of each few samples
+    width = max(1, round(1.0 / (MEANS_HZ * track.step_s)))
+    gyr, acc, time_s = (_means(v, width) for v in (track.gyr_rad_s, track.acc_m_s2, track.time_s))
+    step_s = width * track.step_s
+    vertical = matrix_from_quaternion(offlineVQF(gyr, acc, None, step_s)["quat6D"])[:, 2]
+    return time_s, sosfiltfilt(_low_pass(step_s), np.sum(gyr * vertical, axis=1))
+
+
+def _means(values: FloatArray, width: int) -> FloatArray:
+    """Means (n // width, ...) of `width` successive values (n, ...)."""
+    whole = len(values) // width * width
+    total = values[0:whole:width].copy()
+    for k in range(1, width):
+        total += values[k:whole:width]
+    return total / width
+
+
+@lru_cache(maxsize=16)
+def _low_pass(step_s: float) -> FloatArray:
+    return np.asarray(butter(2, TURN_HZ, fs=1.0 / step_s, output="sos"))

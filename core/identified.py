@@ -86,10 +86,11 @@ def _source(basis: Basis, is_hinge: bool) -> AxisSource:
 
 def _robustly(tracks: SensorTracks, basis: Basis, tau_s: float) -> Identified | None:
     joint, names = basis.joint, identifying_recordings(basis)
+    free = (basis.free_motion,) if basis.free_motion else ()
     found = identify_joint(
         lambda lag_s: _pairs(tracks, joint, names, lag_s),
         lambda lag_s: _pairs(tracks, joint, tuple(walk for walk in basis.walks if walk not in names), lag_s),
-        lambda lag_s: _pairs(tracks, joint, (basis.free_motion,) if basis.free_motion else (), lag_s),
+        lambda lag_s: _pairs(tracks, joint, free if free != names else (), lag_s),
         is_knee=joint.is_knee,
         is_from_walking=basis.free_motion is None,
         downs=_downs(tracks, basis),

@@ -22,6 +22,7 @@ from core.sensors import SensorTracks
 from core.tracks import Block, at_positions
 
 MIN_KNOWN_S = 0.5
+REMEMBERED_PAIRS = 4  # of at most ten minutes each: a joint is identified, then measured
 BROKEN_SD_RAD = np.deg2rad(2.0)  # measured on simulated walks with lost samples, in stretches of up to
 SETTLED_S = 5.0
 WITNESS_STEP_S = 0.05  # the statistics behind sign and certainty need no more
@@ -66,12 +67,20 @@ class Twist:
 
 def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
     """All stretches of one block in which both sensors of a joint were heard."""
-    proximal = tracks.oriented(recording, joint.proximal, block)
-    distal = tracks.oriented(recording, joint.distal, block)
-    return _paired(proximal, distal, lag_s)
+    key = (recording.name, joint, lag_s)
+    if block.number or key not in tracks.pairs:
+        proximal, distal = (tracks.oriented(recording, site, block) for site in (joint.proximal, joint.distal))
+        pairs = paired(proximal, distal, lag_s)
+        if block.number:
+            return pairs
+        while len(tracks.pairs) >= REMEMBERED_PAIRS:
+            del tracks.pairs[next(iter(tracks.pairs))]
+        tracks.pairs[key] = pairs
+    return tracks.pairs[key]
 
 
-def _paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
+def paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
+    """All stretches in which both sensors of a joint were heard, the distal one's stamps moved by a lag."""
     pairs = [pair_up(one, two, lag_s) for one in proximal for two in distal]
     return [pair for pair in pairs if pair is not None]
 
@@ -141,7 +150,7 @@ def _north_pairs(tracks: SensorTracks, recording: Recording, joint: Joint, block
     for site in (joint.proximal, joint.distal):
         found = [oriented_to_north(one.track) for one in tracks.oriented(recording, site, block)]
         sides.append([one for one in found if one is not None])
-    return _paired(sides[0], sides[1], lag_s)
+    return paired(sides[0], sides[1], lag_s)
 
 
 def _place(

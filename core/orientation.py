@@ -8,6 +8,7 @@ its predecessor; a rate that the device has averaged over the past interval is u
 from dataclasses import replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 from vqf import offlineVQF
 
 from core.pair import OrientedTrack
@@ -29,6 +30,19 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
         intervals, instants = interval_rates(rates), rates
     turned = offlineVQF(np.ascontiguousarray(intervals), np.ascontiguousarray(track.acc_m_s2), None, track.step_s)
     return OrientedTrack(replace(track, gyr_rad_s=instants), turned["quat6D"])
+
+
+def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
+    """What `oriented` would have made, up to the filter's own lag of a sample, of the same rates taken as averages.
+
+    The mean of two rates leads to half an interval before the stamp of the second; averages lead to the stamp itself.
+    """
+    track = one.track
+    half = Rotation.from_rotvec(0.5 * track.step_s * track.gyr_rad_s)
+    turned = Rotation.from_quat(one.q_earth_from_sensor, scalar_first=True) * half
+    rates = track.gyr_rad_s.copy()
+    rates[:-1] = 0.5 * (rates[:-1] + rates[1:])
+    return OrientedTrack(replace(track, gyr_rad_s=rates), turned.as_quat(scalar_first=True))
 
 
 def oriented_to_north(track: Track) -> OrientedTrack | None:

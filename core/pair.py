@@ -94,8 +94,19 @@ def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
 
 def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArray:
     """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3)."""
-    turn = cross_matrix(rate)
-    return turn @ turn + cross_matrix(angular_acceleration)
+    matrix = rate[..., :, None] * rate[..., None, :]
+    square = np.sum(rate**2, axis=-1)
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # [g]x[g]x = g g' - |g|^2
+        matrix[..., i, i] -= square
+        matrix[..., j, i] += angular_acceleration[..., k]
+        matrix[..., k, i] -= angular_acceleration[..., j]
+    return matrix
+
+
+def lever_acceleration(rate: FloatArray, angular_acceleration: FloatArray, lever_m: FloatArray) -> FloatArray:
+    """K o (n, 3) of one lever o (3,)."""
+    along, square = rate @ lever_m, np.sum(rate**2, axis=1)
+    return along[:, None] * rate - square[:, None] * lever_m - angular_acceleration @ cross_matrix(lever_m).T
 
 
 def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pair | None:

@@ -12,7 +12,9 @@ from core.calibration.identify import DECISION_SAMPLES, decide, moving_data
 from core.calibration.joint_axis import Candidates, heading_from_axes
 from core.datasets import Datasets
 from core.findings import Finding, Severity
-from core.measure import pairs_of
+from core.measure import paired
+from core.orientation import as_of_intervals
+from core.pair import OrientedTrack
 from core.samples import RateKind, Recording, RecordingKind, Session
 from core.sensors import SensorTracks
 
@@ -28,16 +30,15 @@ def tracks_of_kind(
 ) -> tuple[SensorTracks, list[Finding]]:
     """The tracks of a span, of the kind that the data show where sensors do not tell it; a finding says so."""
     instants = SensorTracks(session, span, unusable, RateKind.INSTANTANEOUS)
-    intervals = SensorTracks(session, span, unusable, RateKind.AVERAGED)
     evidence = 0.0
     for recording, joint in _untold(instants):
-        evidence += _evidence(instants, intervals, recording, joint)
+        evidence += _evidence(instants, recording, joint)
         if abs(evidence) > ENOUGH_EVIDENCE:
             break
     if evidence <= MIN_EVIDENCE:
         return instants, []
     found = Finding("rate_kind_found", Severity.INFO, "session", {"kind": str(RateKind.AVERAGED)})
-    return intervals, [found]
+    return SensorTracks(session, span, unusable, RateKind.AVERAGED), [found]
 
 
 def _untold(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
@@ -53,18 +54,20 @@ def _untold(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
     return found
 
 
-def _evidence(instants: SensorTracks, intervals: SensorTracks, recording: Recording, joint: Joint) -> float:
+def _evidence(tracks: SensorTracks, recording: Recording, joint: Joint) -> float:
     """Logarithm of what the accelerations of a joint disagree on, taken as instants, over that taken as intervals."""
-    data = _data(instants, recording, joint)
-    other = _data(intervals, recording, joint)
+    block = tracks.blocks(recording)[0]
+    sides = [tracks.oriented(recording, site, block) for site in (joint.proximal, joint.distal)]
+    data = _data(sides)
+    other = _data([[as_of_intervals(one) for one in side] for side in sides])
     if data is None or other is None:
         return 0.0
     best = decide(data).best
     return float(np.log(_cost(data, best) / _cost(other, best)))
 
 
-def _data(tracks: SensorTracks, recording: Recording, joint: Joint) -> Datasets | None:
-    data = moving_data(tuple(pairs_of(tracks, recording, joint, tracks.blocks(recording)[0], 0.0)))
+def _data(sides: list[list[OrientedTrack]]) -> Datasets | None:
+    data = moving_data(tuple(paired(sides[0], sides[1], 0.0)))
     return data.thinned(DECISION_SAMPLES) if data else None
 
 

@@ -4,10 +4,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from core.body import Site
+from core.body import Joint, Site
 from core.calibration.rest import Rest, rest_of
 from core.orientation import oriented
-from core.pair import OrientedTrack
+from core.pair import OrientedTrack, Pair
 from core.samples import FloatArray, RateKind, Recording, RecordingKind, Session
 from core.tracks import Block, blocks_of, even_tracks
 from core.validity import in_force
@@ -25,13 +25,15 @@ class GyroBias:
 class SensorTracks:
     """Oriented tracks of one span of validity, remembered while they are small.
 
-    `rate_kind` holds for sensors that do not tell theirs.
+    `rate_kind` holds for sensors that do not tell theirs. `pairs` of first blocks, the last few, by recording, joint
+    and lag, are kept by `measure.pairs_of`.
     """
 
     session: Session
     span: tuple[Recording, ...]
     unusable: frozenset[tuple[str, Site]]
     rate_kind: RateKind
+    pairs: dict[tuple[str, Joint, float], list[Pair]] = field(default_factory=dict)
     _tracks: dict[tuple[str, Site, int], list[OrientedTrack]] = field(default_factory=dict)
     _spans: dict[str, tuple[float, float]] = field(default_factory=dict)
     _rests: dict[tuple[str, Site], Rest | None] = field(default_factory=dict)

@@ -8,7 +8,7 @@ with the other as samples come in, here the drift is a line between knots, found
 import numpy as np
 
 from core.datasets import knot_positions
-from core.pair import Pair, lever_matrix
+from core.pair import Pair, lever_acceleration
 from core.published.angles import angle_from_rates
 from core.robust import robust_sd
 from core.rotations import in_plane, wrap
@@ -34,8 +34,8 @@ def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
     chosen = np.flatnonzero(pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]
     if len(chosen) < 2:
         return from_rates
-    force_1 = pair.a1[chosen] - unknowns[6:9] - lever_matrix(pair.g1[chosen], pair.dg1[chosen]) @ unknowns[0:3]
-    force_2 = pair.a2[chosen] - unknowns[9:12] - lever_matrix(pair.g2[chosen], pair.dg2[chosen]) @ unknowns[3:6]
+    force_1 = pair.a1[chosen] - unknowns[6:9] - lever_acceleration(pair.g1[chosen], pair.dg1[chosen], unknowns[0:3])
+    force_2 = pair.a2[chosen] - unknowns[9:12] - lever_acceleration(pair.g2[chosen], pair.dg2[chosen], unknowns[3:6])
     z1, z2 = in_plane(force_1, j1), in_plane(force_2, j2)
     # the true drift turns z2 exp(i from_rates) into z1; a long z tells its direction better than a short one
     ahead = z1 * np.conj(z2 * np.exp(1j * from_rates[chosen]))

@@ -3,6 +3,8 @@
 On a human joint the integral of g1.j1 - g2.j2 (eq 11) collects what moves beside the axis; the twist does not.
 """
 
+from functools import lru_cache
+
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
@@ -24,10 +26,10 @@ def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: Float
     heading_rad : (n,)
         Heading of the distal sensor's earth in the proximal one's.
     """
-    x1, y1 = (pair.earth_from_1 @ v for v in joint_frame(axis_1))
-    x2, y2 = (turn_about_vertical(heading_rad, pair.earth_from_2 @ v) for v in joint_frame(axis_2))
-    cosine = np.sum(x2 * x1, axis=1) + np.sum(y2 * y1, axis=1)
-    sine = np.sum(x2 * y1, axis=1) - np.sum(y2 * x1, axis=1)
+    x1, y1 = _in_earth(pair.earth_from_1, axis_1)
+    x2, y2 = (turn_about_vertical(heading_rad, v) for v in _in_earth(pair.earth_from_2, axis_2))
+    cosine = _dot(x2, x1) + _dot(y2, y1)
+    sine = _dot(x2, y1) - _dot(y2, x1)
     return np.unwrap(np.arctan2(sine, cosine))
 
 
@@ -36,12 +38,26 @@ def off_axis_rate(pair: Pair, axis_1: FloatArray, heading_rad: FloatArray) -> Fl
     rate_1 = np.einsum("nij,nj->ni", pair.earth_from_1, pair.g1)
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", pair.earth_from_2, pair.g2))
     relative = rate_2 - rate_1
-    return np.stack([np.sum(relative * (pair.earth_from_1 @ v), axis=1) for v in joint_frame(axis_1)], axis=1)
+    return np.stack([_dot(relative, v) for v in _in_earth(pair.earth_from_1, axis_1)], axis=1)
+
+
+def _in_earth(earth_from: FloatArray, axis: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The x and y (n, 3) of a sensor's joint frame as its earth sees them, for rotations (n, 3, 3)."""
+    seen = (earth_from.reshape(-1, 3) @ np.stack(joint_frame(axis), axis=1)).reshape(-1, 3, 2)
+    return seen[..., 0], seen[..., 1]
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("ni,ni->n", a, b))
 
 
 def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
     """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings."""
     if 1 / step_s < 4 * RINGING_HZ:
         return off_axis
-    above = butter(2, RINGING_HZ, "highpass", fs=1 / step_s, output="sos")
-    return np.asarray(sosfiltfilt(above, off_axis, axis=0))
+    return np.asarray(sosfiltfilt(_above_ringing(step_s), off_axis, axis=0))
+
+
+@lru_cache(maxsize=64)
+def _above_ringing(step_s: float) -> FloatArray:
+    return np.asarray(butter(2, RINGING_HZ, "highpass", fs=1 / step_s, output="sos"))

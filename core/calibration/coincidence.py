@@ -42,13 +42,13 @@ def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
 def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float = SCALE_M_S2) -> Coincidence:
     """Robust linear least squares for centres and biases under rotations (c, n, 3, 3)."""
     c, n = rotation_12.shape[:2]
-    design = np.empty((c, n, 3, 12))
+    design = np.empty((c, n, 3, 13))
     design[..., 0:3] = lever_matrix(data.g1, data.dg1)
     design[..., 3:6] = -rotation_12 @ lever_matrix(data.g2, data.dg2)
     design[..., 6:9] = np.eye(3)
     design[..., 9:12] = -rotation_12
-    target = data.a1 - np.einsum("cnij,nj->cni", rotation_12, data.a2)
-    return solve_robustly(design, target, scale_m_s2)
+    design[..., 12] = data.a1 - (rotation_12 @ data.a2[..., None])[..., 0]
+    return solve_robustly(design, scale_m_s2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,15 +103,16 @@ def distal_terms(data: Datasets, chosen: IntArray, shift_s: float) -> FloatArray
 
 def fit_forces(forces: JointForces, heading: FloatArray) -> Coincidence:
     """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples."""
-    turned = _turned(heading, forces.terms_2)
+    turned = turned_about_vertical(heading, forces.terms_2)
     c, n = heading.shape
-    design = np.empty((c, n, 3, 12))
+    design = np.empty((c, n, 3, 13))
     design[..., 0:3], design[..., 6:9] = forces.terms_1[..., 0:3], forces.terms_1[..., 3:6]
     design[..., 3:6], design[..., 9:12] = -turned[..., 0:3], -turned[..., 3:6]
-    return solve_robustly(design, forces.terms_1[..., 6] - turned[..., 6], SCALE_M_S2)
+    design[..., 12] = forces.terms_1[..., 6] - turned[..., 6]
+    return solve_robustly(design, SCALE_M_S2)
 
 
-def _turned(heading: FloatArray, terms: FloatArray) -> FloatArray:
+def turned_about_vertical(heading: FloatArray, terms: FloatArray) -> FloatArray:
     """Rz(heading) terms, (c, n, 3, 7) for headings (c, n)."""
     c, s = np.cos(heading)[..., None], np.sin(heading)[..., None]
     turned = np.empty((*heading.shape, 3, terms.shape[-1]))
@@ -129,7 +130,7 @@ def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray)
     heading : (n,)
     unknowns : (12,)
     """
-    turned = _turned(heading[None], forces.terms_2)[0]
+    turned = turned_about_vertical(heading[None], forces.terms_2)[0]
     one = forces.terms_1[..., 6] - forces.terms_1[..., :6] @ unknowns[[0, 1, 2, 6, 7, 8]]
     two = turned[..., 6] - turned[..., :6] @ unknowns[[3, 4, 5, 9, 10, 11]]
     felt = sum(_loss(terms[..., 6] - [0.0, 0.0, GRAVITY_M_S2]) for terms in (forces.terms_1, forces.terms_2))
@@ -140,17 +141,18 @@ def _loss(error: FloatArray) -> float:
     return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=1) / SCALE_M_S2**2) - 1))
 
 
-def solve_robustly(design: FloatArray, target: FloatArray, scale_m_s2: float) -> Coincidence:
-    c, n = target.shape[:2]
+def solve_robustly(design: FloatArray, scale_m_s2: float) -> Coincidence:
+    """Unknowns of each candidate, from design (c, n, 3, 13): the slopes by the unknowns, and what they have to give."""
+    c, n = design.shape[:2]
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6) * scale_m_s2**2
-    flat = design.reshape(c, 3 * n, 12)
-    weight = np.ones((c, n))
-    for _ in range(STEPS):
-        weighted = (design * weight[..., None, None]).reshape(c, 3 * n, 12)
-        information = np.swapaxes(weighted, 1, 2) @ flat + prior
-        unknowns = np.linalg.solve(information, np.swapaxes(weighted, 1, 2) @ target.reshape(c, 3 * n, 1))
-        error = (target.reshape(c, 3 * n, 1) - flat @ unknowns).reshape(c, n, 3)
-        root = np.sqrt(1 + np.sum(error**2, axis=-1) / scale_m_s2**2)
-        weight = 1 / root
+    flat, root = design.reshape(c, 3 * n, 13), np.ones((c, n))
+    for step in range(STEPS):
+        weighted = design * (1 / root)[..., None, None] if step else design
+        products = np.swapaxes(weighted.reshape(c, 3 * n, 13), 1, 2) @ flat
+        information = products[:, :12, :12] + prior
+        unknowns = np.linalg.solve(information, products[:, :12, 12:])
+        error = flat @ np.concatenate([-unknowns, np.ones((c, 1, 1))], axis=1)
+        square = error[..., 0] ** 2 / scale_m_s2**2
+        root = np.sqrt(1 + square[:, 0::3] + square[:, 1::3] + square[:, 2::3])
     cost = 2 * np.mean(root - 1, axis=1)
     return Coincidence(unknowns[..., 0], cost, np.linalg.inv(information) * scale_m_s2**2)

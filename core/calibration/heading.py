@@ -17,7 +17,7 @@ from core.calibration.joint_axis import (
     sample_information,
 )
 from core.datasets import Datasets, gather, knot_positions
-from core.pair import Pair, lever_matrix
+from core.pair import Pair, lever_acceleration
 from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
 
@@ -66,8 +66,8 @@ Forces = tuple[FloatArray, FloatArray]
 
 
 def _horizontal_forces(data: Datasets, x: FloatArray) -> Forces:
-    one = data.a1 - x[6:9] - lever_matrix(data.g1, data.dg1) @ x[0:3]
-    two = data.a2 - x[9:12] - lever_matrix(data.g2, data.dg2) @ x[3:6]
+    one = data.a1 - x[6:9] - lever_acceleration(data.g1, data.dg1, x[0:3])
+    two = data.a2 - x[9:12] - lever_acceleration(data.g2, data.dg2, x[3:6])
     earth = [np.einsum("nij,nj->ni", r, v) for r, v in ((data.earth_from_1, one), (data.earth_from_2, two))]
     return earth[0][:, 0] + 1j * earth[0][:, 1], earth[1][:, 0] + 1j * earth[1][:, 1]
 

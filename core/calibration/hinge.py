@@ -10,7 +10,7 @@ import numpy as np
 from core.calibration.coincidence import BIAS_PRIOR_M_S2
 from core.calibration.joint_axis import moved
 from core.datasets import Datasets
-from core.pair import lever_matrix
+from core.pair import lever_acceleration
 from core.robust import robust_sd
 from core.rotations import angle_between, joint_frame
 from core.samples import FloatArray
@@ -21,7 +21,7 @@ ACCELERATION_WEIGHT_S_M = 0.15  # rad/s per m/s2
 MIN_SCALE_RAD_S = 0.002
 MAX_MOVE_RAD = np.deg2rad(11.0)  # farther from the start it is another minimum
 STEPS = 8
-MIN_STEP = 1e-6
+MIN_STEP = 1e-5
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
@@ -56,8 +56,8 @@ def hinge_axes(
     Both axes, and the slopes (n, 2, 4) of the two residuals per sample by the four tangent coordinates, each already
     divided by its scale, with the residuals in column 4: (n, 2, 5).
     """
-    shifted_1 = data.a1 - unknowns[6:9] - lever_matrix(data.g1, data.dg1) @ unknowns[0:3]
-    shifted_2 = data.a2 - unknowns[9:12] - lever_matrix(data.g2, data.dg2) @ unknowns[3:6]
+    shifted_1 = data.a1 - unknowns[6:9] - lever_acceleration(data.g1, data.dg1, unknowns[0:3])
+    shifted_2 = data.a2 - unknowns[9:12] - lever_acceleration(data.g2, data.dg2, unknowns[3:6])
     j1, j2 = axis_1, axis_2
     bias = 0.0
     for _ in range(STEPS):

@@ -21,7 +21,7 @@ from core.calibration.joint_axis import (
 from core.calibration.joint_centre import JointCentre, centre_by_lengths, centre_by_vectors, centre_sd_m
 from core.calibration.lag import Lag, find_lag, sharpest_lag, smoothest_lag
 from core.calibration.refinement import refine_on_hinge
-from core.datasets import Datasets, gather, moving_indices, united
+from core.datasets import Datasets, gather, moving_indices, slow_ones, united
 from core.pair import FAST_RAD_S, Pair
 from core.rotations import wrap
 from core.samples import FloatArray
@@ -81,8 +81,8 @@ PairsAtLag = Callable[[float], tuple[Pair, ...]]
 
 def moving_data(pairs: tuple[Pair, ...]) -> Datasets | None:
     """All samples that tell about the joint; None when there is too little movement."""
-    slow = [moving_indices(pair, FAST_RAD_S) for pair in pairs]
     every = [moving_indices(pair) for pair in pairs]
+    slow = [slow_ones(pair, index, FAST_RAD_S) for pair, index in zip(pairs, every, strict=True)]
     # jumps and turns are left out where enough remains without them
     indices = [s if len(s) > 0.5 * len(e) else e for s, e in zip(slow, every, strict=True)]
     used = [(pair, index) for pair, index in zip(pairs, indices, strict=True) if len(index) * pair.step_s >= 0.5]
@@ -107,7 +107,7 @@ def identify_joint(
         Pairs that do not identify the axis but must agree when it is called a hinge.
     free_at
         Those of `pairs_at` that are of a free motion. It shows a human joint's centre better than together with walks,
-        whose tissue moves in step with the steps.
+        whose tissue moves in step with the steps. None where they are all of `pairs_at`.
     downs
         Specific forces (3,) of both sensors in standing.
     """

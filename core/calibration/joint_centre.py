@@ -8,9 +8,9 @@ import numpy as np
 from core.calibration.certainty import sandwich_covariance, time_blocks
 from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, fit_coincidence, relative_rotation
 from core.datasets import Datasets
-from core.pair import lever_matrix
+from core.pair import lever_acceleration
 from core.robust import robust_sd
-from core.rotations import joint_frame
+from core.rotations import cross, cross_matrix, joint_frame
 from core.samples import FloatArray
 
 MIN_SCALE_M_S2 = 0.02
@@ -55,8 +55,8 @@ def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
 
 
 def _vector_residual(data: Datasets, rotation: FloatArray, x: FloatArray) -> float:
-    one = data.a1 - x[6:9] - lever_matrix(data.g1, data.dg1) @ x[0:3]
-    two = data.a2 - x[9:12] - lever_matrix(data.g2, data.dg2) @ x[3:6]
+    one = data.a1 - x[6:9] - lever_acceleration(data.g1, data.dg1, x[0:3])
+    two = data.a2 - x[9:12] - lever_acceleration(data.g2, data.dg2, x[3:6])
     return robust_sd(one - np.einsum("nij,nj->ni", rotation, two))
 
 
@@ -68,35 +68,42 @@ def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
     start : (12,)
         From `centre_by_vectors`.
     """
-    lever_1, lever_2 = lever_matrix(data.g1, data.dg1), lever_matrix(data.g2, data.dg2)
+    g1, dg1, a1 = (np.ascontiguousarray(v.T) for v in (data.g1, data.dg1, data.a1))
+    g2, dg2, a2 = (np.ascontiguousarray(v.T) for v in (data.g2, data.dg2, data.a2))
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6)
     x = start.copy()
+    slope = np.empty((12, len(data)))
     for _ in range(NORM_STEPS):
-        one, two = data.a1 - x[6:9] - lever_1 @ x[0:3], data.a2 - x[9:12] - lever_2 @ x[3:6]
-        length_1, length_2 = np.linalg.norm(one, axis=1), np.linalg.norm(two, axis=1)
+        length_1, slope[0:3], slope[6:9] = _length(g1, dg1, a1, x[0:3], x[6:9])
+        length_2, slope[3:6], slope[9:12] = _length(g2, dg2, a2, x[3:6], x[9:12])
+        slope[3:6] *= -1.0
+        slope[9:12] *= -1.0
         error = length_1 - length_2
         scale = max(MIN_SCALE_M_S2, robust_sd(error))
-        unit_1, unit_2 = one / length_1[:, None], two / length_2[:, None]
-        slope = np.concatenate(
-            [
-                -np.einsum("ni,nij->nj", unit_1, lever_1),
-                np.einsum("ni,nij->nj", unit_2, lever_2),
-                -unit_1,
-                unit_2,
-            ],
-            axis=1,
-        )
         weight = 1 / np.sqrt(1 + (error / scale) ** 2) / scale**2
-        information = (slope * weight[:, None]).T @ slope + prior
-        step = -np.linalg.solve(information, slope.T @ (weight * error) + prior @ x)
+        information = (slope * weight) @ slope.T + prior
+        step = -np.linalg.solve(information, slope @ (weight * error) + prior @ x)
         x = x + step
         if np.max(np.abs(step[:6])) < 1e-6:
             break
     effort = float(weight @ (np.sum(data.dg1**2, axis=1) + np.sum(data.dg2**2, axis=1)))
     shared = 1 + IN_STEP_M**2 * effort
     unseen = np.linalg.inv((information - prior) / shared + prior)
-    seen = sandwich_covariance(slope[:, None, :], error[:, None], weight[:, None], time_blocks(data))
+    seen = sandwich_covariance(slope.T[:, None, :], error[:, None], weight[:, None], time_blocks(data))
     return JointCentre(x, unseen + SEEN_SHARE * seen)
+
+
+def _length(
+    rate: FloatArray, change: FloatArray, force: FloatArray, centre_m: FloatArray, bias: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """|a - b - K o| (n,) of signals (3, n), and its slopes (3, n) by o and by b."""
+    square = np.sum(rate**2, axis=0)
+    lever = (centre_m @ rate) * rate - square * centre_m[:, None] - cross_matrix(centre_m) @ change
+    shifted = force - bias[:, None] - lever
+    length = np.sqrt(np.sum(shifted**2, axis=0))
+    unit = shifted / length
+    by_centre = square * unit - np.sum(unit * rate, axis=0) * rate - cross(unit.T, change.T).T
+    return length, by_centre, -unit
 
 
 def centre_sd_m(

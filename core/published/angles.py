@@ -6,7 +6,7 @@ angle about the proximal joint axis from the distal to the proximal x axis, the 
 
 import numpy as np
 
-from core.pair import Pair, lever_matrix
+from core.pair import Pair, lever_acceleration
 from core.rotations import in_plane, joint_frame, wrap
 from core.samples import FloatArray
 
@@ -34,8 +34,8 @@ def angle_from_rates(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatAr
 
 def angle_from_accelerations(pair: Pair, j1: FloatArray, j2: FloatArray, o1: FloatArray, o2: FloatArray) -> FloatArray:
     """Eqs 12 to 14: angle (n,) between the shifted accelerations in the joint plane, NaN where it means nothing."""
-    z1 = in_plane(pair.a1 - np.einsum("nij,j->ni", lever_matrix(pair.g1, pair.dg1), o1), j1)
-    z2 = in_plane(pair.a2 - np.einsum("nij,j->ni", lever_matrix(pair.g2, pair.dg2), o2), j2)
+    z1 = in_plane(pair.a1 - lever_acceleration(pair.g1, pair.dg1, o1), j1)
+    z2 = in_plane(pair.a2 - lever_acceleration(pair.g2, pair.dg2, o2), j2)
     angle = -np.angle(z1 * np.conj(z2))
     with np.errstate(invalid="ignore"):
         angle[~(np.minimum(np.abs(z1), np.abs(z2)) > MIN_IN_PLANE_M_S2)] = np.nan

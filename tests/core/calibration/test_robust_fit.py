@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.body import Joint
-from core.calibration.coincidence import relative_rotation, solve_robustly
+from core.calibration.coincidence import Coincidence, relative_rotation, solve_robustly
 from core.calibration.hinge import hinge_residual, in_plane_difference
 from core.calibration.joint_centre import JointCentre
 from core.calibration.refinement import refine_on_hinge
@@ -21,10 +21,14 @@ if TYPE_CHECKING:
 KNEE = Joint.LEFT_KNEE
 
 
+def fitted(design: FloatArray, target: FloatArray, scale_m_s2: float) -> Coincidence:
+    return solve_robustly(np.concatenate([design, target[..., None]], axis=-1), scale_m_s2)
+
+
 def test_what_no_sample_shows_is_as_unknown_as_before() -> None:
     """Centres within 0.3 m of the joint, accelerometers' biases of 0.05 m/s2."""
     for scale_m_s2 in (0.5, 0.1):
-        found = solve_robustly(np.zeros((1, 4, 3, 12)), np.ones((1, 4, 3)), scale_m_s2)
+        found = fitted(np.zeros((1, 4, 3, 12)), np.ones((1, 4, 3)), scale_m_s2)
         np.testing.assert_allclose(found.unknowns, 0.0)
         np.testing.assert_allclose(found.covariance[0], np.diag([0.09] * 6 + [0.0025] * 6))
 
@@ -33,10 +37,10 @@ def test_an_error_costs_its_square_while_it_is_small_and_its_size_when_it_is_lar
     """2 (sqrt(1 + e2 / s2) - 1) with e = 2 and 0.01 m/s2, s = 0.5 m/s2: 6.2462 and 0.0004."""
     target = np.zeros((2, 5, 3))
     target[0, :, 1], target[1, :, 2] = 2.0, 0.01
-    cost = solve_robustly(np.zeros((2, 5, 3, 12)), target, 0.5).cost
+    cost = fitted(np.zeros((2, 5, 3, 12)), target, 0.5).cost
     assert cost == pytest.approx([6.24621125, 0.00039996], rel=1e-4)
     target[0, 1:] = 0.0
-    assert solve_robustly(np.zeros((2, 5, 3, 12)), target, 0.5).cost[0] == pytest.approx(6.24621125 / 5, rel=1e-4)
+    assert fitted(np.zeros((2, 5, 3, 12)), target, 0.5).cost[0] == pytest.approx(6.24621125 / 5, rel=1e-4)
 
 
 def test_one_unknown_is_found_between_its_samples_and_what_was_known_before() -> None:
@@ -46,7 +50,7 @@ def test_one_unknown_is_found_between_its_samples_and_what_was_known_before() ->
         design[..., 0, 7] = 1.0
         target = np.zeros((1, samples, 3))
         target[..., 0] = 0.04
-        found = solve_robustly(design, target, 0.5)
+        found = fitted(design, target, 0.5)
         assert found.unknowns[0, 7] == pytest.approx(0.04 * share, rel=0.01)
         assert found.covariance[0, 7, 7] == pytest.approx(0.25 / (samples + 100), rel=0.01)
         assert np.count_nonzero(found.unknowns) == 1
@@ -58,7 +62,7 @@ def test_few_samples_that_are_far_off_hardly_count() -> None:
     design[..., 0, 0] = 1.0
     target[..., 0] = 0.2
     target[0, :100, 0] = 20.0
-    found = float(solve_robustly(design, target, 0.5).unknowns[0, 0])
+    found = float(fitted(design, target, 0.5).unknowns[0, 0])
     assert 0.2 < found < 0.35  # the mean is 2.18
 
 
