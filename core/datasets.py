@@ -93,6 +93,22 @@ def knot_positions(pair: Pair) -> tuple[int, FloatArray]:
     return intervals, (pair.time_s - pair.time_s[0]) / pair.duration_s * intervals
 
 
+def knot_sums(left: IntArray, share: FloatArray, values: FloatArray, knots: int) -> FloatArray:
+    """Sums (k,) of values (n,), each shared out between the knot to its left and the next."""
+    return np.bincount(left, (1 - share) * values, knots) + np.bincount(left + 1, share * values, knots)
+
+
+def knot_products(left: IntArray, share: FloatArray, weight: FloatArray, knots: int) -> FloatArray:
+    """S' diag(weight) S (k, k), with S (n, k) the knots' shares: a sample feels two neighbouring knots, no others."""
+    product = np.zeros((knots, knots))
+    own = np.bincount(left, (1 - share) ** 2 * weight, knots) + np.bincount(left + 1, share**2 * weight, knots)
+    mixed = np.bincount(left, share * (1 - share) * weight, knots)[: knots - 1]
+    row = np.arange(knots)
+    product[row, row] = own
+    product[row[:-1], row[1:]] = product[row[1:], row[:-1]] = mixed
+    return product
+
+
 def gather(pairs: tuple[Pair, ...], indices: list[IntArray]) -> Datasets:
     """Join the samples at `indices` of each pair."""
     left, share, spacing, stretch = [], [], [], []

@@ -8,7 +8,6 @@ its predecessor; a rate that the device has averaged over the past interval is u
 from dataclasses import replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from vqf import offlineVQF
 
 from core.pair import OrientedTrack
@@ -38,11 +37,16 @@ def as_of_intervals(one: OrientedTrack) -> OrientedTrack:
     The mean of two rates leads to half an interval before the stamp of the second; averages lead to the stamp itself.
     """
     track = one.track
-    half = Rotation.from_rotvec(0.5 * track.step_s * track.gyr_rad_s)
-    turned = Rotation.from_quat(one.q_earth_from_sensor, scalar_first=True) * half
+    x, y, z = 0.25 * track.step_s * track.gyr_rad_s.T  # half of half an interval's angle, small enough for its sine
+    w, i, j, k = one.q_earth_from_sensor.T
+    turned = np.stack(
+        [w - i * x - j * y - k * z, i + w * x + j * z - k * y, j + w * y + k * x - i * z, k + w * z + i * y - j * x],
+        axis=1,
+    )
+    turned /= np.sqrt(np.einsum("ni,ni->n", turned, turned))[:, None]
     rates = track.gyr_rad_s.copy()
     rates[:-1] = 0.5 * (rates[:-1] + rates[1:])
-    return OrientedTrack(replace(track, gyr_rad_s=rates), turned.as_quat(scalar_first=True))
+    return OrientedTrack(replace(track, gyr_rad_s=rates), turned)
 
 
 def oriented_to_north(track: Track) -> OrientedTrack | None:

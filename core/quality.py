@@ -27,6 +27,7 @@ GRAVITY_RANGE_G = (0.7, 1.4)  # median specific force of a sensor that reports g
 PLAUSIBLE_M_S2 = (5.0, 20.0)
 PLAUSIBLE_RAD_S = 35.0  # 2000 deg/s, the range of the sensors; a walking shank reaches 8
 LARGE = 1e6
+LOOKED_AT_ROWS = 6000  # units show in so many rows as in all
 STEPS_TOGETHER, STEPS_BESIDE = 30, 5
 SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
 MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
@@ -136,10 +137,12 @@ def _about_units(block: ImuBlock, is_there: BoolArray, kind: RecordingKind) -> l
     """What makes a sensor unusable as a whole: no signal, or units that its magnitudes betray."""
     about: list[About] = []
     # no figure that a sensor could mean is cut off here, and none is so large that its square overflows
-    force, rate = (_lengths(np.clip(v[is_there], -LARGE, LARGE)) for v in (block.acc_m_s2, block.gyr_rad_s))
+    gyr, acc = block.gyr_rad_s[is_there], block.acc_m_s2[is_there]
+    some = slice(None, None, max(1, len(gyr) // LOOKED_AT_ROWS))
+    force, rate = (_lengths(np.clip(v[some], -LARGE, LARGE)) for v in (acc, gyr))
     median_force, high_rate = float(np.median(force)), float(np.quantile(rate, 0.99))
-    is_gyro_dead = not np.any(np.diff(block.gyr_rad_s[is_there], axis=0)) and kind is not RecordingKind.STANDING
-    if not np.any(force) or (is_gyro_dead and not np.any(rate)):
+    is_gyro_dead = bool(np.all(gyr == gyr[0])) and kind is not RecordingKind.STANDING
+    if not np.any(acc) or (is_gyro_dead and not np.any(gyr)):
         about.append(("all_zero", Severity.GRAVE, {}))
     elif is_gyro_dead:
         about.append(("stuck_throughout", Severity.GRAVE, {}))

@@ -1,5 +1,7 @@
 """The few things about directions and rotations that SciPy's Rotation lacks."""
 
+import math
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -25,10 +27,26 @@ def joint_frame(axis: FloatArray) -> tuple[FloatArray, FloatArray]:
     axis : (..., 3)
         Unit vectors.
     """
+    if axis.ndim == 1:
+        return _frame_of_one(*axis.tolist())
     c = np.eye(3)[np.argmin(np.abs(axis), axis=-1)]
     x = cross(axis, c)
     x /= np.sqrt(np.sum(x**2, axis=-1, keepdims=True))
     return x, cross(axis, x)
+
+
+def _frame_of_one(a: float, b: float, c: float) -> tuple[FloatArray, FloatArray]:
+    """As `joint_frame`, of one axis, for which arrays are slow."""
+    least = min(abs(a), abs(b), abs(c))
+    if abs(a) == least:
+        x = 0.0, c, -b
+    elif abs(b) == least:
+        x = -c, 0.0, a
+    else:
+        x = b, -a, 0.0
+    length = math.sqrt(x[0] ** 2 + x[1] ** 2 + x[2] ** 2)
+    p, q, r = x[0] / length, x[1] / length, x[2] / length
+    return np.array([p, q, r]), np.array([b * r - c * q, c * p - a * r, a * q - b * p])
 
 
 def cross(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -102,7 +102,7 @@ def even_tracks(block: ImuBlock, from_s: float = -np.inf, to_s: float = np.inf) 
         signals["q_device"] = continuous(_without_gaps(_unit(block.q_earth_from_sensor[part][is_there])))
     step_s = nominal_step_s(time_s)
     gap_s = np.diff(time_s)
-    speed = np.linalg.norm(gyr, axis=1)
+    speed = np.sqrt(np.einsum("ni,ni->n", gyr, gyr))
     is_still = np.maximum(speed[:-1], speed[1:]) < STILL_RAD_S
     allowed_s = np.maximum(np.where(is_still, MAX_STILL_GAP_S, MAX_BRIDGED_GAP_S), 1.5 * step_s)
     cuts = np.flatnonzero(gap_s > allowed_s) + 1

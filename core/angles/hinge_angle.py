@@ -7,7 +7,7 @@ with the other as samples come in, here the drift is a line between knots, found
 
 import numpy as np
 
-from core.datasets import knot_positions
+from core.datasets import knot_positions, knot_products, knot_sums
 from core.pair import Pair, lever_acceleration
 from core.published.angles import angle_from_rates
 from core.robust import robust_sd
@@ -47,13 +47,10 @@ def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
 def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArray, start: float) -> FloatArray:
     intervals, position = knot_positions(pair)
     over = np.flatnonzero(pair.is_measured[1:] & ~pair.is_measured[:-1])  # what a gap hid turns all that follows
-    terms = intervals + 1 + len(over)
-    at = np.zeros((len(chosen), terms))
+    lines, terms = intervals + 1, intervals + 1 + len(over)
     left = np.minimum(position[chosen].astype(int), intervals - 1)
     share = position[chosen] - left
-    row = np.arange(len(chosen))
-    at[row, left], at[row, left + 1] = 1 - share, share
-    at[:, intervals + 1 :] = chosen[:, None] > over
+    after = (chosen[:, None] > over).astype(np.float64)
     walk = np.diff(np.eye(terms)[: intervals + 1], axis=0)
     prior = walk.T @ walk / (DRIFT_WALK_RAD**2 * pair.duration_s / intervals)
     prior[range(intervals + 1, terms), range(intervals + 1, terms)] = GAP_RAD**-2
@@ -61,12 +58,21 @@ def _fit_drift(pair: Pair, chosen: IntArray, angle: FloatArray, length: FloatArr
     knots = np.zeros(terms)
     knots[: intervals + 1] = start
     for _ in range(STEPS):
-        error = length * wrap(angle - at @ knots)
+        drift = (1 - share) * knots[left] + share * knots[left + 1] + after @ knots[lines:]
+        error = length * wrap(angle - drift)
         scale = max(robust_sd(error), MIN_SCALE_M_S2)
         weight = information * length**2 / (scale**2 * np.sqrt(1 + (error / scale) ** 2))
-        matrix = at.T @ (at * weight[:, None]) + prior
-        step = at.T @ (weight * error / np.maximum(length, 1e-9)) - prior @ knots
-        knots = knots + np.linalg.solve(matrix + 1e-9 * np.eye(len(matrix)), step)
+        push = weight * error / np.maximum(length, 1e-9)
+        matrix, step = prior + 1e-9 * np.eye(terms), -prior @ knots
+        matrix[:lines, :lines] += knot_products(left, share, weight, lines)
+        step[:lines] += knot_sums(left, share, push, lines)
+        if len(over):
+            mixed = np.stack([knot_sums(left, share, weight * one, lines) for one in after.T], axis=1)
+            matrix[:lines, lines:] += mixed
+            matrix[lines:, :lines] += mixed.T
+            matrix[lines:, lines:] += after.T @ (after * weight[:, None])
+            step[lines:] += push @ after
+        knots = knots + np.linalg.solve(matrix, step)
     drift = np.interp(position, np.arange(intervals + 1), knots[: intervals + 1])
     jumps = np.zeros(len(pair))
     jumps[over + 1] = knots[intervals + 1 :]

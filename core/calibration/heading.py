@@ -11,12 +11,11 @@ from core.calibration.joint_axis import (
     heading_from_axes,
     heading_prior,
     in_earth,
-    knot_weights,
     loss_and_weights,
     residuals,
     sample_information,
 )
-from core.datasets import Datasets, gather, knot_positions
+from core.datasets import Datasets, gather, knot_positions, knot_products, knot_sums
 from core.pair import Pair, lever_acceleration
 from core.robust import robust_sd
 from core.samples import BoolArray, FloatArray, IntArray
@@ -83,7 +82,8 @@ def _scanned(forces: Forces, knots: int) -> FloatArray:
 def _fitted(
     data: Datasets, axis_1: FloatArray, axis_2: FloatArray, forces: Forces | None, knots: FloatArray
 ) -> FloatArray:
-    shares, prior, information = knot_weights(data), heading_prior(data), sample_information(data)
+    prior, information = heading_prior(data), sample_information(data)
+    knots_of = data.knot_left, data.knot_share
     known = in_earth(data)
     rate_scale, neutral_scale = RATE_SCALE_RAD_S, NEUTRAL_SCALE_RAD
     for step in range(STEPS):
@@ -95,9 +95,9 @@ def _fitted(
         if forces is not None:
             by_force = _force_terms(data, forces, heading)
             slope, bend = slope + by_force[0], bend + by_force[1]
-        matrix = shares.T @ (shares * bend[:, None]) + prior
+        matrix = knot_products(*knots_of, bend, data.knots) + prior
         matrix += 1e-6 * (1 + np.trace(matrix) / len(matrix)) * np.eye(len(matrix))
-        change = np.linalg.solve(matrix, shares.T @ slope + prior @ knots)
+        change = np.linalg.solve(matrix, knot_sums(*knots_of, slope, data.knots) + prior @ knots)
         knots = knots - change
         if step >= STEPS // 2 and np.max(np.abs(change)) < MIN_STEP_RAD:
             break
