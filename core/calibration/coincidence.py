@@ -41,6 +41,11 @@ def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
 
 def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float = SCALE_M_S2) -> Coincidence:
     """Robust linear least squares for centres and biases under rotations (c, n, 3, 3)."""
+    return solve_robustly(coincidence_design(data, rotation_12), scale_m_s2)
+
+
+def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
+    """What `solve_robustly` takes (c, n, 3, 13), of accelerations as they are, under rotations (c, n, 3, 3)."""
     c, n = rotation_12.shape[:2]
     design = np.empty((c, n, 3, 13))
     design[..., 0:3] = lever_matrix(data.g1, data.dg1)
@@ -48,7 +53,7 @@ def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float =
     design[..., 6:9] = np.eye(3)
     design[..., 9:12] = -rotation_12
     design[..., 12] = data.a1 - (rotation_12 @ data.a2[..., None])[..., 0]
-    return solve_robustly(design, scale_m_s2)
+    return design
 
 
 @dataclass(frozen=True, slots=True)

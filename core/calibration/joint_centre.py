@@ -6,9 +6,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.calibration.certainty import sandwich_covariance, time_blocks
-from core.calibration.coincidence import BIAS_PRIOR_M_S2, CENTRE_PRIOR_M, fit_coincidence, relative_rotation
+from core.calibration.coincidence import (
+    BIAS_PRIOR_M_S2,
+    CENTRE_PRIOR_M,
+    SCALE_M_S2,
+    coincidence_design,
+    relative_rotation,
+    solve_robustly,
+)
 from core.datasets import Datasets
-from core.pair import lever_acceleration
 from core.robust import robust_sd
 from core.rotations import cross, cross_matrix, joint_frame
 from core.samples import FloatArray
@@ -47,17 +53,11 @@ class JointCentre:
 
 def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
     """The vector form of eq 7 under known relative orientation: best on a hinge."""
-    rotation = relative_rotation(data, data.heading(knots_rad)[None])
-    first = fit_coincidence(data, rotation)
-    scale = max(MIN_SCALE_M_S2, _vector_residual(data, rotation[0], first.unknowns[0]))
-    fit = fit_coincidence(data, rotation, scale)
+    design = coincidence_design(data, relative_rotation(data, data.heading(knots_rad)[None]))
+    first = solve_robustly(design, SCALE_M_S2).unknowns[0]
+    left = design[0, ..., 12] - design[0, ..., :12] @ first
+    fit = solve_robustly(design, max(MIN_SCALE_M_S2, robust_sd(left)))
     return JointCentre(fit.unknowns[0], fit.covariance[0])
-
-
-def _vector_residual(data: Datasets, rotation: FloatArray, x: FloatArray) -> float:
-    one = data.a1 - x[6:9] - lever_acceleration(data.g1, data.dg1, x[0:3])
-    two = data.a2 - x[9:12] - lever_acceleration(data.g2, data.dg2, x[3:6])
-    return robust_sd(one - np.einsum("nij,nj->ni", rotation, two))
 
 
 def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
