@@ -95,9 +95,8 @@ def knot_positions(pair: Pair) -> tuple[int, FloatArray]:
 
 def knot_sums(left: IntArray, share: FloatArray, values: FloatArray, knots: int) -> FloatArray:
     """Sums (k,) of values (n,), each shared out between the knot to its left and the next."""
-    left_sums: FloatArray = np.bincount(left, (1 - share) * values, knots)
-    right_sums: FloatArray = np.bincount(left + 1, share * values, knots)
-    return left_sums + right_sums
+    sums = np.bincount(left, (1 - share) * values, knots) + np.bincount(left + 1, share * values, knots)
+    return sums.astype(np.float64)
 
 
 def knot_products(left: IntArray, share: FloatArray, weight: FloatArray, knots: int) -> FloatArray:

@@ -14,7 +14,7 @@ from core.pair import MOVING_RAD_S
 from core.rotations import joint_frame, turn_about_vertical
 from core.samples import FloatArray
 
-MAX_RINGING_RAD_S = 0.2  # above 3 Hz, root mean square; simulated rigid feet have 0.17 to 0.19, people 0.5 to 0.7
+MAX_RINGING_RAD_S = 0.21  # above 3 Hz, root mean square; simulated rigid feet have 0.17 to 0.20, people 0.5 to 0.7
 FAST_SHARE_S2 = 0.1  # fast parts count less, by 1 / (1 + 0.1 |w|^2)
 ROUNDS, HEADING_STEPS = 4, 3
 SAMPLES = 800
