@@ -25,7 +25,7 @@ from core.samples import FloatArray
 from devices.walker import Manner, Tissue, Walk, WalkerSettings, simulate
 
 T = np.arange(1000) / 100
-SWING = 7 * np.exp(2 * (np.cos(6 * T) - 1)) - 2  # 5 rad/s forward, 2 back
+SWING = 9 * np.exp(2 * (np.cos(6 * T) - 1)) - 2  # 7 rad/s forward, 2 back
 FLEXION = np.deg2rad(30 - 30 * np.cos(6 * T))
 
 
