@@ -59,7 +59,7 @@ def test_without_walking_and_standing_nothing_tells() -> None:
 
 
 def test_a_shank_that_hardly_swings_has_no_opinion() -> None:
-    assert forward_swing(0.2 * SWING) == 0.0
+    assert forward_swing(0.14 * SWING) == 0.0
 
 
 @pytest.mark.parametrize("knee_turn", [1, -1])
