@@ -15,7 +15,7 @@ from core.calibration.zero import standing_twist, within_half_a_turn, wrapped_to
 from core.chosen_strides import leave_out
 from core.clock_drift import about_clocks, clock_drifts
 from core.findings import Finding, Severity
-from core.gait.clocks import leg_clocks
+from core.gait.clocks import LegSteps, leg_clocks
 from core.gait.foot import follow
 from core.gait.strides import Reason
 from core.identified import Identified, clock_moved_s, identify
@@ -485,7 +485,20 @@ def _with_clocks(
     if len(found.gait) < len(Side):
         return found
     lags_s = {joint: lag_s for (name, joint), lag_s in lags.items() if name == recording.name}
-    return replace(found, clocks=leg_clocks(tracks.session, recording, found.gait, lags_s))
+    steps = {side: _steps_of(tracks, recording, side, gait) for side, gait in found.gait.items()}
+    return replace(found, clocks=leg_clocks(tracks.session, recording, steps, lags_s))
+
+
+def _steps_of(tracks: SensorTracks, recording: Recording, side: Side, gait: SideGait) -> LegSteps:
+    site, used = site_of_events(tracks, recording, side), gait.strides.is_used
+    assert site is not None  # or there were no gait
+    usual = (_median_of_known(gait.parameters[name][used]) for name in ("step_time_s", "stance_percent"))
+    return LegSteps(site, *usual)
+
+
+def _median_of_known(values: FloatArray) -> float:
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else float("nan")
 
 
 def _clock_offset_s(

@@ -43,7 +43,7 @@ def write_motion(recording: RecordingAnalysis, is_simulated: bool, path: Path) -
         "",
         *([SIMULATED] if is_simulated else []),
         f"Made by gaitwright. {RESEARCH}",
-        "Knee flexion and ankle dorsiflexion are positive. Coordinates that stand nowhere in this file were not measured.",
+        "Knee flexion and ankle dorsiflexion are positive. What is named nowhere in this file was not measured.",
         *(f"{COORDINATES[joint]} is {_said(recording, joint, joint in joints)}" for joint in measured),
         "endheader",
         "\t".join(["time", *(COORDINATES[joint] for joint in joints)]),

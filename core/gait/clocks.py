@@ -8,16 +8,12 @@ number: stamps of 0.00, 0.01, 0.02 s are made up, and two sensors started apart 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from core.body import Joint, Segment, Side, Site
+from core.body import Joint, Side, Site
 from core.samples import FloatArray, Recording, Session
 from core.tracks import nominal_step_s
-
-if TYPE_CHECKING:  # which holds this evidence
-    from core.results import SideGait
 
 READ_S, CARE_S = 0.005, 0.020  # of what the clocks may still be apart
 MAX_LAG_S = 0.005  # found inside of a leg: the sensors' clocks are not what they seem
@@ -51,6 +47,15 @@ class ClockGate(StrEnum):
     UNKNOWN = "unknown"
     LAG = "lag"
     STEP_SHARE = "step_share"
+
+
+@dataclass(frozen=True, slots=True)
+class LegSteps:
+    """What one leg's clock is judged by: the site of its events, and its usual step time and stance; NaN: not known."""
+
+    site: Site
+    step_time_s: float
+    stance_percent: float
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,26 +112,25 @@ class LegClocks:
 
 
 def leg_clocks(
-    session: Session, recording: Recording, gait: "Mapping[Side, SideGait]", lags_s: Mapping[Joint, float]
+    session: Session, recording: Recording, steps: Mapping[Side, LegSteps], lags_s: Mapping[Joint, float]
 ) -> LegClocks:
     """What the session says, the stamps prove and the steps contradict about the clocks of both legs.
 
     Parameters
     ----------
-    gait
-        Of this recording.
+    steps
+        Of the legs that walked in this recording.
     lags_s
         Of each joint, as found between its two sensors.
     """
-    tie, residual_s = _tie(session, recording, gait)
-    share, difference = _share_and_difference(gait)
+    tie, residual_s = _tie(session, recording, steps)
+    share, difference = _share_and_difference(steps)
     lag_s = max((abs(one) for one in lags_s.values()), default=0.0)
     return LegClocks(tie, residual_s, lag_s, share, difference)
 
 
-def _tie(session: Session, recording: Recording, gait: "Mapping[Side, SideGait]") -> tuple[ClockTie, float]:
-    sites = [_site_of(side, gait[side], recording) for side in Side if side in gait]
-    known = [site for site in sites if site is not None]
+def _tie(session: Session, recording: Recording, steps: Mapping[Side, LegSteps]) -> tuple[ClockTie, float]:
+    known = [steps[side].site for side in Side if side in steps and recording.holds(steps[side].site)]
     if len(known) < len(Side):
         return ClockTie.UNKNOWN, float("nan")
     ids = [info.clock if (info := session.sensors.get(site)) else "" for site in known]
@@ -134,12 +138,6 @@ def _tie(session: Session, recording: Recording, gait: "Mapping[Side, SideGait]"
         return (ClockTie.ONE_CLOCK, 0.0) if len(set(ids)) == 1 else (ClockTie.UNKNOWN, float("nan"))
     residual_s = stamps_residual_s(*(recording.imu[site].time_s for site in known))
     return (ClockTie.HOST_CLOCK if np.isfinite(residual_s) else ClockTie.UNKNOWN), residual_s
-
-
-def _site_of(side: Side, gait: "SideGait", recording: Recording) -> Site | None:
-    is_from_shank = any(events.is_from_shank for events in gait.events)
-    site = Site(f"{side}_{Segment.SHANK if is_from_shank else Segment.FOOT}")
-    return site if recording.holds(site) else None
 
 
 def stamps_residual_s(one_s: FloatArray, other_s: FloatArray) -> float:
@@ -181,18 +179,10 @@ def _line(stamps_s: FloatArray) -> StampLine:
     return StampLine(rms_s, min(off_s) < MADE_UP_S)
 
 
-def _share_and_difference(gait: "Mapping[Side, SideGait]") -> tuple[float, float]:
+def _share_and_difference(steps: Mapping[Side, LegSteps]) -> tuple[float, float]:
     """The left step's share of both, and the stances' difference, percent; NaN where a side tells none."""
-    steps, stances = [], []
-    for side in Side:
-        if side not in gait:
-            return float("nan"), float("nan")
-        is_used = gait[side].strides.is_used
-        steps.append(_median(gait[side].parameters["step_time_s"][is_used]))
-        stances.append(_median(gait[side].parameters["stance_percent"][is_used]))
-    return 100.0 * steps[0] / (steps[0] + steps[1]), stances[0] - stances[1]
-
-
-def _median(values: FloatArray) -> float:
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) else float("nan")
+    if len(steps) < len(Side):
+        return float("nan"), float("nan")
+    left, right = (steps[side] for side in Side)
+    share = 100.0 * left.step_time_s / (left.step_time_s + right.step_time_s)
+    return share, left.stance_percent - right.stance_percent

@@ -8,7 +8,7 @@ import pytest
 
 from core.analysis import analyse
 from core.body import Joint, Side, Site
-from core.gait.clocks import ClockGate, ClockTie, ClockTrust, LegClocks, leg_clocks, stamps_residual_s
+from core.gait.clocks import ClockGate, ClockTie, ClockTrust, LegClocks, LegSteps, leg_clocks, stamps_residual_s
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, SensorInfo, Session
 from devices.walker import Standing, Walk, WalkerSettings, simulate
@@ -24,19 +24,27 @@ def walked() -> Walked:
     return session, analyse(session).recordings[0]
 
 
+def usual(walk: RecordingAnalysis, side: Side, name: str) -> float:
+    gait = walk.gait[side]
+    return float(np.nanmedian(gait.parameters[name][gait.strides.is_used]))
+
+
 def clocks_of(
     walked: Walked, clocks: tuple[str, str] = ("", ""), lags_s: Mapping[Joint, float] | None = None, late_s: float = 0.0
 ) -> LegClocks:
     """Of the walk, its sensors named `clocks`, the right foot's steps moved by `late_s`."""
     session, walk = walked
     told = {site: SensorInfo(clock=clock) for site, clock in zip(FEET, clocks, strict=True)}
-    step_s = {side: walk.gait[side].parameters["step_time_s"] for side in Side}
-    moved = {Side.LEFT: step_s[Side.LEFT] - late_s, Side.RIGHT: step_s[Side.RIGHT] + late_s}
-    gait = {
-        side: replace(walk.gait[side], parameters={**walk.gait[side].parameters, "step_time_s": moved[side]})
+    later_s = {Side.LEFT: -late_s, Side.RIGHT: late_s}
+    steps = {
+        side: LegSteps(
+            Site(f"{side}_foot"),
+            usual(walk, side, "step_time_s") + later_s[side],
+            usual(walk, side, "stance_percent"),
+        )
         for side in Side
     }
-    return leg_clocks(replace(session, sensors=told), session.recordings[1], gait, lags_s or {})
+    return leg_clocks(replace(session, sensors=told), session.recordings[1], steps, lags_s or {})
 
 
 def test_sensors_of_one_clock_are_read(walked: Walked) -> None:
