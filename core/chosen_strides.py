@@ -13,7 +13,7 @@ from core.findings import Finding, Severity
 from core.gait.strides import Reason
 from core.results import Analysis, RecordingAnalysis, SideGait
 from core.samples import Recording
-from core.verdicts.gates import verdicts_of
+from core.verdicts.gates import judged
 from core.walk_findings import about_walk
 
 
@@ -26,12 +26,15 @@ def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
         In which nothing was left out by hand yet.
     """
     chosen = {recording.name: recording.left_out_s for recording in recordings if any(recording.left_out_s.values())}
-    walks, findings = [], list(analysis.findings)
-    for walk in analysis.recordings:
-        times_s = chosen.get(walk.name, {})
-        found = replace(walk, gait={side: _without(gait, times_s.get(side, ())) for side, gait in walk.gait.items()})
-        found = replace(found, verdicts=verdicts_of(found, analysis.calibrated_for(found), analysis.stiff_sides))
-        walks.append(found)
+    if not chosen:
+        return analysis
+    walks = tuple(
+        replace(walk, gait={s: _without(g, chosen.get(walk.name, {}).get(s, ())) for s, g in walk.gait.items()})
+        for walk in analysis.recordings
+    )
+    left = judged(replace(analysis, recordings=walks))
+    findings = list(analysis.findings)
+    for walk, found in zip(analysis.recordings, left.recordings, strict=True):
         told = [
             Finding(
                 "strides_left_out_by_hand",
@@ -47,7 +50,7 @@ def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
             findings = [finding for finding in findings if finding not in before or finding in after]
             findings += [finding for finding in after if finding not in findings]
             findings += told
-    return replace(analysis, recordings=tuple(walks), findings=tuple(findings)) if chosen else analysis
+    return replace(left, findings=tuple(findings))
 
 
 def left_out_by_hand(gait: SideGait) -> int:

@@ -173,7 +173,6 @@ class Analysis:
     findings: tuple[Finding, ...] = ()
     affected_side: Side | None = None
     stiff_sides: frozenset[Side] = frozenset()
-    prosthetic_sides: frozenset[Side] = frozenset()
 
     def calibrated_for(self, recording: RecordingAnalysis) -> Mapping[Joint, JointCalibration]:
         """The calibrations that `recording` was measured with."""

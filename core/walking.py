@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
+from core.gait.clocks import LegClocks, LegSteps, leg_clocks
 from core.gait.cycles import (
     ANKLE_WINDOWS,
     KNEE_WINDOWS,
@@ -38,6 +39,27 @@ def site_of_events(tracks: SensorTracks, recording: Recording, side: Side) -> Si
 def prosthetic_sides(patient: Patient) -> frozenset[Side]:
     """The sides that wear a prosthetic foot, as the clinic typed them."""
     return frozenset(side for side in Side if patient.prosthetic_side in (side, "both"))
+
+
+def clocks_in(
+    tracks: SensorTracks, recording: Recording, gait: Mapping[Side, SideGait], lags_s: Mapping[Joint, float]
+) -> LegClocks | None:
+    """What ties the clocks of both legs in one walk; None where not both were measured."""
+    sites = {side: site for side in gait if (site := site_of_events(tracks, recording, side)) is not None}
+    if len(sites) < len(Side):
+        return None
+    steps = {
+        side: LegSteps(site, *(_usual(gait[side], name) for name in ("step_time_s", "stance_percent")))
+        for side, site in sites.items()
+    }
+    return leg_clocks(tracks.session, recording, steps, lags_s)
+
+
+def _usual(gait: SideGait, name: str) -> float:
+    """The median of a parameter over the strides used in which it is known."""
+    values = gait.parameters[name][gait.strides.is_used]
+    known = values[np.isfinite(values)]
+    return float(np.median(known)) if len(known) else float("nan")
 
 
 def gait_in(
