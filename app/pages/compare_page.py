@@ -419,7 +419,7 @@ class ComparePage(QWidget):
         if self._analysis is None or not part.walks:
             return None, frozenset()
         walk = part.walks[-1]
-        return bands_of(walk, self._who).curves, sides_with_band(self._analysis, walk)
+        return bands_of(walk, self._who).curves, sides_with_band(walk)
 
     def _say_error(self, told: Sequence[Difference], *, is_borrowed: bool) -> None:
         """What the error contains, and what of it is not to be relied on."""

@@ -396,7 +396,7 @@ class ResultPage(QWidget):
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
         calibrated, is_simulated = self._analysis.calibrated_for(recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
-        self.cycles.show_walk(recording, is_simulated, self._who, sides_with_band(self._analysis, recording))
+        self.cycles.show_walk(recording, is_simulated, self._who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
         self.facts.show_joints(calibrated)
         self._on_method_chosen()

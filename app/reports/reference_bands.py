@@ -15,7 +15,7 @@ from core.norms import (
     read_curves,
     read_time_distance,
 )
-from core.results import Analysis, RecordingAnalysis
+from core.results import RecordingAnalysis
 from core.samples import Session
 from core.verdicts.quantities import both_sides
 
@@ -56,13 +56,9 @@ def bands_of(recording: RecordingAnalysis, who: AgeAndHeight) -> Bands:
     return choose_bands(reference_curves(), time_distance_classes(), both_sides(recording).speed_m_s, who)
 
 
-def sides_with_band(analysis: Analysis, recording: RecordingAnalysis) -> frozenset[Side]:
-    """Legs that may be compared with other people's: neither a prosthesis nor a foot that rolls on over its toe-off."""
-    return frozenset(
-        side
-        for side, gait in recording.gait.items()
-        if side not in analysis.prosthetic_sides and not gait.is_toe_off_biased
-    )
+def sides_with_band(recording: RecordingAnalysis) -> frozenset[Side]:
+    """Legs that may be compared with other people's: none with a prosthesis, whose foot rolls on over its toe-off."""
+    return frozenset(side for side, gait in recording.gait.items() if not gait.is_toe_off_biased)
 
 
 def _text(name: str) -> str:

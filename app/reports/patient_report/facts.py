@@ -102,7 +102,7 @@ class Facts:
     @cached_property
     def sides_with_band(self) -> frozenset[Side]:
         """Legs that may be compared with other people's."""
-        return sides_with_band(self.visit.analysis, self.walk)
+        return sides_with_band(self.walk)
 
     @cached_property
     def time_distance(self) -> dict[str, Figure]:

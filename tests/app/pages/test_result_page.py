@@ -64,6 +64,11 @@ def at_speed(analysis: Analysis, speed_m_s: float) -> Analysis:
     return changed(analysis, gait=gait)
 
 
+def with_prostheses(analysis: Analysis, *sides: Side) -> Analysis:
+    gait = {side: replace(found, is_toe_off_biased=side in sides) for side, found in walk_of(analysis).gait.items()}
+    return changed(analysis, gait=gait)
+
+
 def rows_of(page: ResultPage) -> dict[str, list[str]]:
     rows = [line.split("\t") for line in page.cycles.peaks.table.as_text().split("\n")]
     rows += [line.split("\t") for line in page.cycles.time_distance.table.as_text().split("\n")]
@@ -237,9 +242,9 @@ def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> N
 
 def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> None:
     walk = at_speed(analysis, 1.2)
-    page.show_analysis(replace(walk, prosthetic_sides=frozenset({Side.RIGHT})), who=GROWN)
+    page.show_analysis(with_prostheses(walk, Side.RIGHT), who=GROWN)
     assert "The band is for the left leg alone." in page.cycles.peaks_note.text
-    page.show_analysis(replace(walk, prosthetic_sides=frozenset(Side)), who=GROWN)
+    page.show_analysis(with_prostheses(walk, *Side), who=GROWN)
     assert NO_SIDE in page.cycles.peaks_note.text
     assert page.cycles.charts.knee.chart.band is None
     page.show_analysis(walk, who=GROWN)
