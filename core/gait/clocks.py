@@ -32,14 +32,6 @@ class ClockTie(StrEnum):
     UNKNOWN = "unknown"
 
 
-class ClockTrust(StrEnum):
-    """Whether what compares instants of both legs may be read. The values are those of a verdict."""
-
-    READ = "read"
-    CARE = "care"
-    WITHHELD = "withheld"
-
-
 class ClockGate(StrEnum):
     """What decided."""
 
@@ -82,14 +74,6 @@ class LegClocks:
     stance_difference_percent: float
 
     @property
-    def trust(self) -> ClockTrust:
-        if self.gate is not ClockGate.RESIDUAL:
-            return ClockTrust.WITHHELD
-        if self.residual_s <= READ_S:
-            return ClockTrust.READ
-        return ClockTrust.CARE if self.residual_s <= CARE_S else ClockTrust.WITHHELD
-
-    @property
     def gate(self) -> ClockGate:
         if self.lag_s >= MAX_LAG_S:
             return ClockGate.LAG
@@ -108,7 +92,7 @@ class LegClocks:
     def limit(self) -> float:
         """What `value` was held against: seconds, for `STEP_SHARE` the points off 50 %."""
         by_gate = {ClockGate.LAG: MAX_LAG_S, ClockGate.STEP_SHARE: MAX_SHARE_OFF_PERCENT}
-        return by_gate.get(self.gate, CARE_S if self.trust is ClockTrust.WITHHELD else READ_S)
+        return by_gate.get(self.gate, READ_S if self.residual_s <= CARE_S else CARE_S)
 
 
 def leg_clocks(

@@ -8,9 +8,11 @@ import pytest
 
 from core.analysis import analyse
 from core.body import Joint, Side, Site
-from core.gait.clocks import ClockGate, ClockTie, ClockTrust, LegClocks, LegSteps, leg_clocks, stamps_residual_s
+from core.gait.clocks import ClockGate, ClockTie, LegClocks, LegSteps, leg_clocks, stamps_residual_s
 from core.results import RecordingAnalysis
 from core.samples import FloatArray, SensorInfo, Session
+from core.verdicts.gates import clocks_verdict
+from core.verdicts.model import Verdict
 from devices.walker import Standing, Walk, WalkerSettings, simulate
 
 FEET = (Site.LEFT_FOOT, Site.RIGHT_FOOT)
@@ -49,7 +51,7 @@ def clocks_of(
 
 def test_sensors_of_one_clock_are_read(walked: Walked) -> None:
     found = clocks_of(walked, ("receiver 1", "receiver 1"))
-    assert (found.tie, found.gate, found.trust) == (ClockTie.ONE_CLOCK, ClockGate.RESIDUAL, ClockTrust.READ)
+    assert (found.tie, found.gate, clocks_verdict(found)) == (ClockTie.ONE_CLOCK, ClockGate.RESIDUAL, Verdict.READ)
     assert (found.value, found.limit) == (0.0, 0.005)
     assert found.step_share_percent == pytest.approx(50.0, abs=2.0)
     assert found.stance_difference_percent == pytest.approx(0.0, abs=2.0)
@@ -58,36 +60,36 @@ def test_sensors_of_one_clock_are_read(walked: Walked) -> None:
 @pytest.mark.parametrize("clocks", [("", ""), ("receiver 1", ""), ("receiver 1", "receiver 2")])
 def test_clocks_that_nothing_ties_are_withheld(walked: Walked, clocks: tuple[str, str]) -> None:
     found = clocks_of(walked, clocks)
-    assert (found.tie, found.gate, found.trust) == (ClockTie.UNKNOWN, ClockGate.UNKNOWN, ClockTrust.WITHHELD)
+    assert (found.tie, found.gate, clocks_verdict(found)) == (ClockTie.UNKNOWN, ClockGate.UNKNOWN, Verdict.WITHHELD)
     assert np.isnan(found.value)
 
 
 @pytest.mark.parametrize(
-    ("lag_s", "trust"), [(0.0049, ClockTrust.READ), (0.005, ClockTrust.WITHHELD), (-0.012, ClockTrust.WITHHELD)]
+    ("lag_s", "verdict"), [(0.0049, Verdict.READ), (0.005, Verdict.WITHHELD), (-0.012, Verdict.WITHHELD)]
 )
-def test_a_lag_inside_a_leg_speaks_against_any_clock(walked: Walked, lag_s: float, trust: ClockTrust) -> None:
+def test_a_lag_inside_a_leg_speaks_against_any_clock(walked: Walked, lag_s: float, verdict: Verdict) -> None:
     found = clocks_of(walked, ("a", "a"), {Joint.LEFT_KNEE: 0.001, Joint.RIGHT_ANKLE: lag_s})
-    assert found.trust is trust
-    if trust is ClockTrust.WITHHELD:
+    assert clocks_verdict(found) is verdict
+    if verdict is Verdict.WITHHELD:
         assert (found.gate, found.value, found.limit) == (ClockGate.LAG, abs(lag_s), 0.005)
 
 
 def test_uneven_steps_of_even_stances_are_two_clocks(walked: Walked) -> None:
     found = clocks_of(walked, ("a", "a"), late_s=-0.06)
-    assert (found.gate, found.trust, found.limit) == (ClockGate.STEP_SHARE, ClockTrust.WITHHELD, 5.0)
+    assert (found.gate, clocks_verdict(found), found.limit) == (ClockGate.STEP_SHARE, Verdict.WITHHELD, 5.0)
     assert found.value == found.step_share_percent > 55.0
-    assert clocks_of(walked, ("a", "a"), late_s=-0.03).trust is ClockTrust.READ
+    assert clocks_verdict(clocks_of(walked, ("a", "a"), late_s=-0.03)) is Verdict.READ
     limping = LegClocks(ClockTie.ONE_CLOCK, 0.0, 0.0, 60.0, -4.0)
-    assert limping.trust is ClockTrust.READ
+    assert clocks_verdict(limping) is Verdict.READ
 
 
 @pytest.mark.parametrize(
-    ("residual_s", "trust", "limit_s"),
-    [(0.004, ClockTrust.READ, 0.005), (0.006, ClockTrust.CARE, 0.005), (0.021, ClockTrust.WITHHELD, 0.020)],
+    ("residual_s", "verdict", "limit_s"),
+    [(0.004, Verdict.READ, 0.005), (0.006, Verdict.CARE, 0.005), (0.021, Verdict.WITHHELD, 0.020)],
 )
-def test_the_residual_decides(residual_s: float, trust: ClockTrust, limit_s: float) -> None:
+def test_the_residual_decides(residual_s: float, verdict: Verdict, limit_s: float) -> None:
     found = LegClocks(ClockTie.HOST_CLOCK, residual_s, 0.0, float("nan"), float("nan"))
-    assert (found.trust, found.value, found.limit) == (trust, residual_s, limit_s)
+    assert (clocks_verdict(found), found.value, found.limit) == (verdict, residual_s, limit_s)
 
 
 def even(step_s: float, n: int = 6000, start_s: float = 0.0) -> FloatArray:
