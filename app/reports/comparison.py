@@ -5,7 +5,7 @@ Screen, report and files take their figures from here, so that no number is draw
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 from itertools import accumulate
@@ -28,7 +28,6 @@ from core.verdicts.measurement_error import (
     ComparisonKind,
     Difference,
     ErrorSource,
-    Judgement,
     MeanOfStrides,
     compare,
     mean_of_strides,
@@ -378,10 +377,7 @@ def compare_legs(part: Part, column: str, sides: tuple[Side, Side]) -> Differenc
     """A column of the first leg less that of the second."""
     one, other = (part.mean(side, column, ComparisonKind.LEGS) for side in sides)
     assessments = tuple(part.assessment(side, column) for side in sides)
-    found = compare(column, ComparisonKind.LEGS, one, other, assessments)
-    if column in ("stance_percent", "swing_percent") and any(map(part.is_toe_off_biased, sides)):
-        return replace(found, error=math.nan, judgement=Judgement.NO_PUBLISHED_FIGURE, is_worth_a_sentence=False)
-    return found
+    return compare(column, ComparisonKind.LEGS, one, other, assessments)
 
 
 def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> tuple[Part, ...]:

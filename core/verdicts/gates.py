@@ -10,7 +10,7 @@ import numpy as np
 
 from core.body import Joint, Segment, Side, Site, ankle_of
 from core.calibration.clinical_sign import MIN_MARGIN
-from core.gait.clocks import ClockGate
+from core.gait.clocks import CARE_S, READ_S, ClockGate, LegClocks
 from core.gait.cycles import mean_cycle, range_of_cycles
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.results import Analysis, JointCalibration, RecordingAnalysis, SideGait, ZeroKind
@@ -18,6 +18,7 @@ from core.samples import FloatArray, RecordingKind
 from core.verdicts.model import (
     NOT_MEASURED,
     READ,
+    TOE_OFF_GATE,
     Assessment,
     GateReason,
     JointVerdicts,
@@ -123,7 +124,7 @@ def _leg_verdicts(
     foot = Site(f"{side}_{Segment.FOOT}")
     timing = [*shared, *_steady_times(gait), *_drifting(recording, Verdict.CARE, foot)]
     if gait.is_toe_off_biased:
-        timing.append(GateReason("toe_off", Verdict.CARE))
+        timing.append(GateReason(TOE_OFF_GATE, Verdict.CARE))
     distance = [*shared, *_lost(recording, foot), *_equal_lengths(recording), *_speed(gait)]
     has_length = bool(np.isfinite(strides.length_m[used]).any())
     return LegVerdicts(assess(timing), assess(distance) if has_length or not used.any() else NOT_MEASURED)
@@ -286,7 +287,7 @@ def _between(recording: RecordingAnalysis) -> Assessment:
         return NOT_MEASURED
     if recording.drifting_percent:
         return assess(_drifting(recording, Verdict.WITHHELD, *recording.drifting_percent))
-    verdict = Verdict(clocks.trust)
+    verdict = clocks_verdict(clocks)
     if verdict is Verdict.READ:
         return READ
     if clocks.gate is ClockGate.STEP_SHARE:
@@ -295,6 +296,13 @@ def _between(recording: RecordingAnalysis) -> Assessment:
     known = _known(clocks.value)
     value_ms = None if known is None or clocks.gate is ClockGate.UNKNOWN else 1000.0 * known
     return assess([GateReason("clocks", verdict, value_ms, 1000.0 * clocks.limit, "ms")])
+
+
+def clocks_verdict(clocks: LegClocks) -> Verdict:
+    """What the clocks of both legs leave of what compares their instants."""
+    if clocks.gate is not ClockGate.RESIDUAL or clocks.residual_s > CARE_S:
+        return Verdict.WITHHELD
+    return Verdict.READ if clocks.residual_s <= READ_S else Verdict.CARE
 
 
 # the course of a walk

@@ -125,6 +125,20 @@ _POSTURE = "with 3 deg of posture in each zero"
 _BIAS = "events 10 ms early or late, alike in every stride of one leg"
 _GUESS = "an estimate"
 
+_STRAPS: Mapping[QuantityKind, Sigma] = {  # where each mean has a strapping of its own
+    QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
+    QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
+    QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
+    QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+}
+_STRAPPED_ANEW: Mapping[QuantityKind, Sigma] = {
+    **_STRAPS,
+    QuantityKind.STANCE: Sigma(3.0, _GUESS),
+    QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
+    QuantityKind.SPEED: Sigma(4.0, _GUESS, is_relative=True),
+    QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
+}
+
 SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
     ComparisonKind.HALVES: dict.fromkeys(QuantityKind, _NOTHING),
     ComparisonKind.ATTACHED: {
@@ -138,34 +152,13 @@ SIGMAS: Mapping[ComparisonKind, Mapping[QuantityKind, Sigma]] = {
         QuantityKind.LENGTH: Sigma(2.5, _WALKS, is_relative=True, is_verified=True),
     },
     ComparisonKind.LEGS: {
-        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
-        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
-        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
-        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
+        **_STRAPS,
         QuantityKind.STANCE: _of_error(2.5, _BIAS, is_published=False),
         QuantityKind.TIME: _of_error(0.05, _BIAS, is_published=False),
         QuantityKind.LENGTH: _of_error(0.03, _GUESS, is_published=False),
     },
-    ComparisonKind.STRAPPINGS: {
-        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
-        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
-        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
-        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
-        QuantityKind.STANCE: Sigma(3.0, _GUESS),
-        QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
-        QuantityKind.SPEED: Sigma(4.0, _GUESS, is_relative=True),
-        QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
-    },
-    ComparisonKind.VISITS: {
-        QuantityKind.KNEE_SHAPE: _of_error(9.2, _VOLUNTEERS),
-        QuantityKind.ANKLE_SHAPE: _of_error(9.2, _BORROWED, is_borrowed=True),
-        QuantityKind.KNEE_HEIGHT: _of_error(12.4, f"{_VOLUNTEERS}, {_POSTURE}"),
-        QuantityKind.ANKLE_HEIGHT: _of_error(12.4, f"{_BORROWED}, {_POSTURE}", is_borrowed=True),
-        QuantityKind.STANCE: Sigma(3.0, _GUESS),
-        QuantityKind.TIME: Sigma(4.0, _GUESS, is_relative=True),
-        QuantityKind.SPEED: _of_error(0.20, _GUESS, is_published=False),
-        QuantityKind.LENGTH: Sigma(5.0, _GUESS, is_relative=True),
-    },
+    ComparisonKind.STRAPPINGS: _STRAPPED_ANEW,
+    ComparisonKind.VISITS: {**_STRAPPED_ANEW, QuantityKind.SPEED: _of_error(0.20, _GUESS, is_published=False)},
 }
 
 _BETWEEN: Mapping[ComparisonKind, tuple[ErrorSource, ...]] = {
@@ -324,7 +317,9 @@ def compare(
     difference = one.mean - other.mean
     if min(one.n, other.n) < MIN_STRIDES_FOR_SD:
         return Difference(difference, nothing, Judgement.TOO_FEW_STRIDES)
-    sigma = sigma_of(name, kind)
+    is_stance_of_legs = kind is ComparisonKind.LEGS and KINDS.get(name) is QuantityKind.STANCE
+    is_biased = is_stance_of_legs and any(found.is_toe_off_biased for found in assessments)
+    sigma = None if is_biased else sigma_of(name, kind)
     if sigma is None:
         return Difference(difference, nothing, Judgement.NO_PUBLISHED_FIGURE)
     between = sigma.value * (0.01 * 0.5 * abs(one.mean + other.mean) if sigma.is_relative else 1.0)

@@ -16,6 +16,7 @@ class Verdict(StrEnum):
     NOT_MEASURED = "not_measured"
 
 
+TOE_OFF_GATE = "toe_off"
 _ORDER = (Verdict.READ, Verdict.CARE, Verdict.WITHHELD, Verdict.NOT_MEASURED)
 
 
@@ -50,6 +51,11 @@ class Assessment:
     def is_told(self) -> bool:
         """Whether a figure may be printed at all."""
         return self.verdict in (Verdict.READ, Verdict.CARE)
+
+    @property
+    def is_toe_off_biased(self) -> bool:
+        """Whether what rests on the toe-off is off by as much in every stride of this leg."""
+        return any(reason.gate == TOE_OFF_GATE for reason in self.reasons)
 
 
 READ = Assessment(Verdict.READ)

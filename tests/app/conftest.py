@@ -1,10 +1,13 @@
-"""What tests of the screen get: a watchdog over its thread, and a language as long as German."""
+"""What tests of the screen get: a watchdog over its thread, a language as long as German, the results."""
 
 from collections.abc import Iterator
 
 import pytest
 from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
 
+from app.pages.result_page import ResultPage
+from app.theme import Look, load_fonts
 from app.wording import use_language
 from tests.app.watchdog import Watchdog
 
@@ -25,3 +28,15 @@ def pseudo_language() -> Iterator[None]:
     use_language("pseudo")
     yield
     use_language("en")
+
+
+@pytest.fixture
+def result_page(qtbot: QtBot, qapp: QApplication) -> Iterator[ResultPage]:
+    """The results by themselves, in the light theme."""
+    load_fonts()
+    look = Look()
+    look.set_dark(False)
+    page = ResultPage(look)
+    qtbot.addWidget(page)
+    yield page
+    qapp.setStyleSheet("")

@@ -1,18 +1,14 @@
 """Do report and screen withhold the same, and what the verdicts withhold? Read from their words alone."""
 
-from collections.abc import Iterator
 from datetime import UTC, datetime
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication
-from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import ResultPage
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.reference_bands import age_and_height
-from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -33,23 +29,12 @@ def analysis(session: Session) -> Analysis:
     return analyse(session)
 
 
-@pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication) -> Iterator[ResultPage]:
-    load_fonts()
-    look = Look()
-    look.set_dark(False)
-    page = ResultPage(look)
-    qtbot.addWidget(page)
-    yield page
-    qapp.setStyleSheet("")
-
-
-def read(session: Session, analysis: Analysis, page: ResultPage) -> tuple[Doubts, Doubts]:
+def read(session: Session, analysis: Analysis, result_page: ResultPage) -> tuple[Doubts, Doubts]:
     """What the report says, and what the screen says."""
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
     report = make_report(ReportRequest(Visit(session, analysis), ("walk 1",), made_at, "1.2.3"))
-    page.show_analysis(analysis, session.recordings, who=age_and_height(session))
-    return said_in_report(report), said_on_screen(page)
+    result_page.show_analysis(analysis, session.recordings, who=age_and_height(session))
+    return said_in_report(report), said_on_screen(result_page)
 
 
 def assert_both(found: tuple[Doubts, Doubts], expected: dict[tuple[Side, str], Said]) -> None:
@@ -71,20 +56,20 @@ def columns(kind: str, *classes: QuantityClass) -> list[str]:
     ]
 
 
-def test_of_a_sound_recording_everything_is_told(session: Session, analysis: Analysis, page: ResultPage) -> None:
-    assert_both(read(session, analysis, page), {})
+def test_of_a_sound_recording_everything_is_told(session: Session, analysis: Analysis, result_page: ResultPage) -> None:
+    assert_both(read(session, analysis, result_page), {})
 
 
 def test_without_a_zero_all_heights_are_withheld_and_no_range(
-    session: Session, analysis: Analysis, page: ResultPage
+    session: Session, analysis: Analysis, result_page: ResultPage
 ) -> None:
     heights = [*columns("knee", QuantityClass.HEIGHT), *columns("ankle", QuantityClass.HEIGHT)]
     expected = {(side, name): Said.WITHHELD for side in Side for name in heights}
-    assert_both(read(session, recalibrated(analysis, zero=ZeroKind.NONE), page), expected)
+    assert_both(read(session, recalibrated(analysis, zero=ZeroKind.NONE), result_page), expected)
 
 
 def test_of_sensors_that_are_no_neighbours_their_joint_is_withheld_and_the_foot_read_with_care(
-    session: Session, analysis: Analysis, page: ResultPage
+    session: Session, analysis: Analysis, result_page: ResultPage
 ) -> None:
     changed = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     ankle = columns("ankle", QuantityClass.HEIGHT, QuantityClass.SHAPE)
@@ -93,11 +78,13 @@ def test_of_sensors_that_are_no_neighbours_their_joint_is_withheld_and_the_foot_
     expected |= {(Side.RIGHT, name): Said.CARE for name in times}
     expected |= {(side, name): Said.CARE for side in Side for name in ("speed_m_s", "cadence_steps_min")}
     expected |= {(side, "double_support_percent"): Said.WITHHELD for side in Side}
-    assert_both(read(session, changed, page), expected)
+    assert_both(read(session, changed, result_page), expected)
 
 
-def test_of_one_leg_with_two_strides_the_other_is_told(session: Session, analysis: Analysis, page: ResultPage) -> None:
-    found = read(session, with_few_strides(analysis, left=2), page)
+def test_of_one_leg_with_two_strides_the_other_is_told(
+    session: Session, analysis: Analysis, result_page: ResultPage
+) -> None:
+    found = read(session, with_few_strides(analysis, left=2), result_page)
     of_both = {"speed_m_s", "cadence_steps_min", "double_support_percent"}
     for doubts in found:
         for (side, name), said in doubts.items():
@@ -105,20 +92,22 @@ def test_of_one_leg_with_two_strides_the_other_is_told(session: Session, analysi
             assert said is (Said.WITHHELD if is_withheld else Said.TOLD), (side, name)
 
 
-def test_an_unsure_sign_leaves_the_range(session: Session, analysis: Analysis, page: ResultPage) -> None:
+def test_an_unsure_sign_leaves_the_range(session: Session, analysis: Analysis, result_page: ResultPage) -> None:
     changed = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False)
     expected = {(Side.LEFT, name): Said.WITHHELD for name in columns("knee", QuantityClass.HEIGHT)}
-    assert_both(read(session, changed, page), expected)
+    assert_both(read(session, changed, result_page), expected)
 
 
-def test_care_is_read_as_care(session: Session, analysis: Analysis, page: ResultPage) -> None:
+def test_care_is_read_as_care(session: Session, analysis: Analysis, result_page: ResultPage) -> None:
     changed = recalibrated(analysis, [Joint.RIGHT_KNEE], axis_sd_rad=np.deg2rad(8.0))
     names = columns("knee", QuantityClass.HEIGHT, QuantityClass.SHAPE)
-    assert_both(read(session, changed, page), {(Side.RIGHT, name): Said.CARE for name in names})
+    assert_both(read(session, changed, result_page), {(Side.RIGHT, name): Said.CARE for name in names})
 
 
-def test_a_report_that_withholds_nothing_is_not_misread(session: Session, analysis: Analysis, page: ResultPage) -> None:
+def test_a_report_that_withholds_nothing_is_not_misread(
+    session: Session, analysis: Analysis, result_page: ResultPage
+) -> None:
     """The reader must be able to fail: another analysis is told apart."""
-    unset = read(session, recalibrated(analysis, zero=ZeroKind.NONE), page)
+    unset = read(session, recalibrated(analysis, zero=ZeroKind.NONE), result_page)
     with pytest.raises(AssertionError):
         assert_both(unset, {})

@@ -6,7 +6,7 @@ gives what it says of the quantities that it tells of; `OUTPUTS` lists them. Rep
 
 import csv
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatch
@@ -17,8 +17,6 @@ import ezc3d
 import openpyxl
 import pytest
 from fhir.resources.R4B.bundle import Bundle
-from PySide6.QtWidgets import QApplication
-from pytestqt.qtbot import QtBot
 from rerun.chunk import RrdReader
 
 from app.exports.exports import Format, export_from_folder
@@ -27,7 +25,6 @@ from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.reference_bands import age_and_height
 from app.reports.result_folder import write_results
-from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
@@ -371,26 +368,17 @@ def test_every_output_says_the_same(case: Case, out: Path, output: str) -> None:
     assert read(out) == {name: case.expected[name] for name in tells_of}
 
 
-@pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication) -> Iterator[ResultPage]:
-    load_fonts()
-    look = Look()
-    look.set_dark(False)
-    page = ResultPage(look)
-    qtbot.addWidget(page)
-    yield page
-    qapp.setStyleSheet("")
-
-
 SPOKEN = {READ: Said.TOLD, CARE: Said.CARE, WITHHELD: Said.WITHHELD}
 
 
-def test_report_and_screen_say_the_same(case: Case, analysed: tuple[Session, Analysis], page: ResultPage) -> None:
+def test_report_and_screen_say_the_same(
+    case: Case, analysed: tuple[Session, Analysis], result_page: ResultPage
+) -> None:
     session, analysis = analysed
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
     report = said_in_report(make_report(ReportRequest(Visit(session, analysis), (WALK,), made_at, "1.2.3")))
-    page.show_analysis(analysis, session.recordings, who=age_and_height(session))
-    screen = said_on_screen(page)
+    result_page.show_analysis(analysis, session.recordings, who=age_and_height(session))
+    screen = said_on_screen(result_page)
     places = {name: (Side(side), column) for name, (side, column) in OF_SIDES.items()}
     places |= {name: (Side.LEFT, column) for name, column in BOTH.items()}
     for found in (report, screen):

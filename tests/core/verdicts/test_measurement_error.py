@@ -15,7 +15,7 @@ from core.verdicts.measurement_error import (
     sigma_of,
     whisker,
 )
-from core.verdicts.model import NOT_MEASURED, READ, Assessment, Verdict
+from core.verdicts.model import NOT_MEASURED, READ, Assessment, GateReason, Verdict, assess
 
 ATTACHED, LEGS = ComparisonKind.ATTACHED, ComparisonKind.LEGS
 STRAPPINGS, VISITS = ComparisonKind.STRAPPINGS, ComparisonKind.VISITS
@@ -68,6 +68,19 @@ def test_a_walk_that_drifts_there_and_back_is_told_by_its_thirds() -> None:
     assert mean_of_strides(np.repeat([60.0, 63.0, 60.0], 4)).drift == pytest.approx(1.16787, abs=1e-4)
     # six of 60 and of 62: r = 9/12, SE^2 = 0.09091 x 1.75/0.25 = 0.63636; 1 - sqrt(0.09091 x 0.63636) = 0.75948
     assert mean_of_strides(np.repeat([60.0, 62.0], 6)).drift == pytest.approx(0.87148, abs=1e-4)
+
+
+def test_stance_is_not_judged_between_legs_of_which_one_rolls_over_its_toe_off() -> None:
+    rolls_on = assess([GateReason("toe_off", Verdict.CARE)])
+    for name, kind, expected in (
+        ("stance_percent", LEGS, Judgement.NO_PUBLISHED_FIGURE),
+        ("swing_percent", LEGS, Judgement.NO_PUBLISHED_FIGURE),
+        ("stance_percent", ATTACHED, Judgement.EXCEEDS_ERROR),  # as late in both walks
+        ("step_time_s", LEGS, Judgement.EXCEEDS_ERROR),
+    ):
+        for assessments in ((rolls_on, READ), (READ, rolls_on)):
+            assert compare(name, kind, sure(70.0), sure(50.0), assessments).judgement is expected, name
+        assert compare(name, kind, sure(70.0), sure(50.0), TOLD).judgement is Judgement.EXCEEDS_ERROR, name
 
 
 def test_strides_that_are_not_known_do_not_count_and_one_has_no_spread() -> None:
