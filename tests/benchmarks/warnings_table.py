@@ -118,6 +118,9 @@ def _true_of(settings: WalkerSettings, walk: Walk, manner: Manner) -> Iterator[s
         yield "axis_from_walking"
     if settings.clock_late_s:
         yield "lag_corrected"
+    if settings.tissue is not Tissue.REAL or settings.prosthetic_side:
+        # nothing rings on a rigid foot, and hardly anything on the tissue that only follows the muscles
+        yield "ankle_axis_from_rates"
     if settings.loss_fraction:
         # an angle has a gap in a stride or two
         yield from ("bridged", "gaps")
