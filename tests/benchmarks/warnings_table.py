@@ -122,8 +122,8 @@ def _true_of(settings: WalkerSettings, walk: Walk, manner: Manner) -> Iterator[s
         # nothing rings on a rigid foot, and hardly anything on the tissue that only follows the muscles
         yield "ankle_axis_from_rates"
     if settings.loss_fraction:
-        # an angle has a gap in a stride or two
-        yield from ("bridged", "gaps")
+        # an angle has a gap in a stride or two, which are not used
+        yield from ("bridged", "gaps", "no_spread", "no_spread_of_side")
     if settings.prosthetic_side:
         yield "prosthetic_toe_off"
     if not {site for site in settings.sites if site.segment is Segment.THIGH}:
