@@ -194,7 +194,8 @@ class _Work:
 
 def _copy_database(library: Path, folder: Path, data_key: bytes | None, work: _Work) -> None:
     """Copy page by page, as the library is at this moment, while others go on writing to it."""
-    source, target = (sqlite_engine(place / FILE_NAME, data_key) for place in (library, folder))
+    source = sqlite_engine(library / FILE_NAME, data_key, creates=False)
+    target = sqlite_engine(folder / FILE_NAME, data_key)
     try:
         with closing(source.raw_connection()) as reading, closing(target.raw_connection()) as writing:
             connection, copy = reading.driver_connection, writing.driver_connection
@@ -253,7 +254,7 @@ def _check(
             raise LibraryError(
                 tr("{file} was not copied as it is").format(file=name), "Try again, or choose another disk"
             )
-    database = Database(sqlite_engine(folder / FILE_NAME, data_key))
+    database = Database(sqlite_engine(folder / FILE_NAME, data_key, creates=False))
     try:
         if database.faults():
             raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
@@ -296,7 +297,7 @@ def _sha256(path: Path, work: _Work) -> str:
 
 
 def _end_of_audit(folder: Path, data_key: bytes | None) -> Checkpoint:
-    database = Database(sqlite_engine(folder / FILE_NAME, data_key))
+    database = Database(sqlite_engine(folder / FILE_NAME, data_key, creates=False))
     try:
         with database.reading() as session:
             last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).one()

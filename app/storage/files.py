@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+BEYOND_ALL_BYTES = 1 << 40
+
 
 def replace_file(path: Path, content: bytes) -> None:
     """Write `content` beside `path`, sync it and rename it over `path`: a crash leaves the old file or the new one.
@@ -54,17 +56,33 @@ def held(path: Path) -> Iterator[None]:
     """
     descriptor = os.open(path, os.O_RDWR | os.O_CREAT, 0o600)
     try:
-        try:
-            if sys.platform == "win32":
-                import msvcrt
-
-                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
-            else:
-                import fcntl
-
-                fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError as error:
-            raise BlockingIOError(error.errno, "another program holds this", str(path)) from error
+        hold(descriptor)
         yield
     finally:
         os.close(descriptor)  # and unlocks it
+
+
+def hold(descriptor: int) -> None:
+    """Be the one who holds an open file, until it is closed; others can read it all the same.
+
+    Raises
+    ------
+    BlockingIOError
+        Somebody else holds it, be it in this program.
+    """
+    try:
+        if sys.platform == "win32":
+            import msvcrt
+
+            place = os.lseek(descriptor, 0, os.SEEK_CUR)
+            os.lseek(descriptor, BEYOND_ALL_BYTES, os.SEEK_SET)  # what is locked there nobody can read
+            try:
+                msvcrt.locking(descriptor, msvcrt.LK_NBLCK, 1)
+            finally:
+                os.lseek(descriptor, place, os.SEEK_SET)
+        else:
+            import fcntl
+
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        raise BlockingIOError(error.errno, "somebody else holds this file") from error

@@ -18,6 +18,7 @@ from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, 
 
 if TYPE_CHECKING:
     from app.storage.database.engine import Database
+    from app.storage.root import LibraryRoot
 
 FILE_NAME = "library.db"
 DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
@@ -52,6 +53,7 @@ class Library:
         from app.storage.sessions import Sessions
 
         self.is_end_lost = is_end_lost
+        self.root: LibraryRoot | None = None  # of a library in a folder
         bring_up_to_date(database)
         self._database = database
         self._desk = Desk(database, audit_key(data_key), now, is_demonstration=data_key is None)
@@ -85,8 +87,9 @@ class Library:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         except OSError as error:
             raise LibraryError("This folder cannot be written", "Choose another folder") from error
-        library = cls(_database(folder, data_key), data_key, now)
+        library = cls(_database(folder, data_key, creates=True), data_key, now)
         try:
+            library._take_root(folder)
             library.begin(operator)
         except BaseException:
             library.close()
@@ -110,9 +113,11 @@ class Library:
             is_lost = is_end_lost(folder / f"{FILE_NAME}-wal")
         except OSError as error:
             raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
-        database = _database(folder, data_key)
+        database = _database(folder, data_key, creates=False)
         try:
-            return cls(database, data_key, now, is_lost)
+            library = cls(database, data_key, now, is_lost)
+            library._take_root(folder)
+            return library
         except BaseException:
             database.close()
             raise
@@ -188,6 +193,34 @@ class Library:
         """Read every page of the database and check it; what is wrong, for a report. Nothing: it is whole."""
         return self._database.faults()
 
+    def take_back(self) -> None:
+        """Go on with the library in the folder that is there now, which is another than was opened, and its copy.
+
+        Raises
+        ------
+        OSError
+            The folder cannot be read.
+        """
+        if self.root is not None:
+            self.root.take()
+            self._database.reconnect()
+
+    def _take_root(self, folder: Path) -> None:
+        """Know the folder again, and from now on write nowhere else.
+
+        Raises
+        ------
+        LibraryError
+            It cannot be written.
+        """
+        from app.storage.root import root_of
+
+        try:
+            self.root = root_of(folder, self._database)
+        except OSError as error:
+            raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
+        self._database.guard = self.root.refuse_gone
+
     def close(self) -> None:
         self.log_out()
         self._database.close()
@@ -201,7 +234,7 @@ class Library:
         self.close()
 
 
-def _database(folder: Path, data_key: bytes | None) -> "Database":
+def _database(folder: Path, data_key: bytes | None, creates: bool) -> "Database":
     from app.storage.database.engine import Database, sqlite_engine
 
-    return Database(sqlite_engine(folder / FILE_NAME, data_key))
+    return Database(sqlite_engine(folder / FILE_NAME, data_key, creates=creates))

@@ -3,7 +3,11 @@
 keys.json                          who may open it
 library.db                         the encrypted database
 recordings/ID.SEGMENT.journal      the samples
+library-id                         which library it is, for whoever has no key
 in-use                             locked by the program that records here
+
+All of this is in the library's own folder, which `create_library` alone makes. A folder that is gone is never made anew:
+recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
 """
 
 import shutil
@@ -16,6 +20,7 @@ from types import TracebackType
 from typing import Self
 
 from app.storage.files import held, sync_folder
+from app.storage.journal.shelter import Shelter
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator
@@ -41,6 +46,17 @@ class OpenedLibrary:
     def recordings(self) -> Path:
         """The folder of the journals; it is there once something was recorded."""
         return self.folder / RECORDINGS
+
+    @property
+    def shelter(self) -> Shelter | None:
+        """Where its recordings go while it is gone; None for a demonstration, which ends with the program."""
+        root = self.library.root
+        return Shelter(root.shelter, root.is_there) if root is not None and self.data_key is not None else None
+
+    @property
+    def is_there(self) -> bool:
+        """Whether its folder is where it was opened. May wait for the disk."""
+        return self.library.root is None or self.library.root.is_there()
 
     def __enter__(self) -> Self:
         return self

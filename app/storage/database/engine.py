@@ -2,7 +2,7 @@
 
 import logging
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -28,11 +28,20 @@ AS_BUILDER = {"takes_write_lock": True, "leaves_references": True}
 _log = logging.getLogger(__name__)
 
 
+def _nothing() -> None:
+    """Guards nothing: a server, and what is not yet known where it is, are always there."""
+
+
 class Database:
-    """One library's database. Sessions of any thread; what `writing` yields holds the one write lock."""
+    """One library's database. Sessions of any thread; what `writing` yields holds the one write lock.
+
+    `guard` raises a LibraryError where the library's folder is gone: connections that are open may still reach its
+    file, under another name or as one that is deleted already, and what they wrote would be lost from sight.
+    """
 
     def __init__(self, engine: Engine, busy_s: float = BUSY_S) -> None:
         self.engine, self._busy_s = engine, busy_s
+        self.guard: Callable[[], None] = _nothing
         self._write_engine = engine.execution_options(**AS_WRITER)
         self._build_engine = engine.execution_options(**AS_BUILDER)
 
@@ -45,8 +54,12 @@ class Database:
         LibraryError
             The database cannot be read.
         """
-        with _told(), OrmSession(self.engine) as session:
-            yield session
+        try:
+            with _told(), OrmSession(self.engine) as session:
+                yield session
+        except LibraryFaultError:
+            self.guard()  # this is then why
+            raise
 
     @contextmanager
     def writing(self) -> Iterator[OrmSession]:
@@ -59,8 +72,9 @@ class Database:
         ChangedMeanwhileError
             A row was changed since it was read.
         LibraryError
-            The database cannot be written.
+            The database cannot be written, or the library is gone.
         """
+        self.guard()
         with _told(), self._locked_session(self._write_engine) as session:
             yield session
             session.commit()
@@ -107,9 +121,15 @@ class Database:
     def close(self) -> None:
         self.engine.dispose()
 
+    def reconnect(self) -> None:
+        """Let go of all connections: what is asked next opens the file that is there now."""
+        self.engine.dispose()
 
-def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> Engine:
-    """An engine on `path`, which is made if it is missing, readable by its owner only. No `data_key`: not encrypted.
+
+def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S, *, creates: bool = True) -> Engine:
+    """An engine on `path`, readable by its owner only. No `data_key`: not encrypted.
+
+    Not `creates`: where the file is missing nothing is made in its place.
 
     Raises
     ------
@@ -119,8 +139,10 @@ def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S) -> E
     refuse_old_sqlite(sqlite.sqlite_version_info)
 
     def connect() -> sqlite.Connection:
-        path.touch(mode=0o600)  # the log beside it takes its mode
-        connection = sqlite.connect(str(path), timeout=try_s, isolation_level=None, check_same_thread=False)
+        if creates:
+            path.touch(mode=0o600)  # the log beside it takes its mode
+        existing = f"{path.absolute().as_uri()}?mode=rw"
+        connection = sqlite.connect(existing, timeout=try_s, isolation_level=None, check_same_thread=False, uri=True)
         try:
             _prepare(connection, data_key)
         except BaseException:

@@ -1,7 +1,8 @@
 """Which samples does a journal hold? The same way from a journal to a Recording at every stop and after every crash.
 
 What is missing stays a gap. Times are seconds since the recording's first segment was opened; a later segment's are
-moved by how long after it that segment was opened.
+moved by how long after it that segment was opened. A segment that says it was opened when the one before was is that
+one's continuation, in another file: the writer went on in it, and so does the decoder.
 """
 
 import json
@@ -84,7 +85,11 @@ def decode(
     parts, offset_s = [], 0.0
     before: _Segment | None = None
     for path, wrapped_key in zip(segments, wrapped_keys or [None] * len(segments), strict=True):
-        segment = _Segment(JournalReader(path, data_key, wrapped_key), decoders)
+        reader = JournalReader(path, data_key, wrapped_key)
+        if before is not None and reader.header.continues(before.header):
+            before.go_on(reader)
+            continue
+        segment = _Segment(reader, decoders)
         segment.read()
         if before is not None:
             offset_s += _opened_later_s(before, segment.header)
@@ -101,31 +106,40 @@ def decode(
         sources=tuple(entry.info for segment in every for entry in segment.sources.values()),
         undecoded=tuple(name for segment in every for name in segment.undecoded),
         dropped_records=sum(segment.dropped_records for segment in every),
-        reports=tuple(segment.reader.report for segment in every),
+        reports=tuple(reader.report for segment in every for reader in segment.readers),
     )
 
 
 class _Segment:
-    """What one journal's records come to."""
+    """What the records of one journal come to, and of those that continue it."""
 
     def __init__(self, reader: JournalReader, decoders: Decoders) -> None:
-        self.reader, self.header = reader, reader.header
+        self.readers, self.header = [reader], reader.header
         self._known = decoders
         self.sources: dict[int, SourceEntry] = {}
         self.marks: list[Mark] = []
         self.undecoded: list[str] = []
         self.last_ns = self.header.opened_ns
-        self._told_dropped = 0
+        self._told_dropped = self._dropped_before = 0
+        self._is_told_again: set[int] = set()  # sources that a continuation tells of as they were: nothing was cut
         self._decoders: dict[int, StreamDecoder] = {}
         self._samples: dict[str, list[_SampleRows]] = {}
 
     @property
     def dropped_records(self) -> int:
-        footer = self.reader.report.footer
-        return footer.dropped_records if footer else self._told_dropped
+        footer = self.readers[-1].report.footer
+        return self._dropped_before + (footer.dropped_records if footer else self._told_dropped)
+
+    def go_on(self, reader: JournalReader) -> None:
+        """Read a continuation, too; where all of the file before is there, bytes join across the two."""
+        is_joined = self.readers[-1].report.is_whole
+        self._is_told_again = set(self.sources) if is_joined else set()
+        self._dropped_before, self._told_dropped = self.dropped_records, 0
+        self.readers.append(reader)
+        self.read()
 
     def read(self) -> None:
-        for record in self.reader.records():
+        for record in self.readers[-1].records():
             if isinstance(record, Damage):
                 for number, decoder in self._decoders.items():
                     decoder.begin(self.sources[number].info)  # some of its bytes may be missing here
@@ -148,6 +162,9 @@ class _Segment:
     def _begin(self, entry: SourceEntry) -> None:
         driver = entry.info.driver
         self._told_dropped += entry.dropped_records
+        if entry.number in self._is_told_again:
+            self._is_told_again.remove(entry.number)
+            return
         self.sources[entry.number] = entry
         if entry.layout is None and driver in self._known:
             if entry.number not in self._decoders:

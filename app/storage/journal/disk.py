@@ -8,7 +8,7 @@ from enum import StrEnum
 from errno import EEXIST
 from pathlib import Path
 
-from app.storage.files import replace_file
+from app.storage.files import hold, replace_file
 from app.storage.journal.header import JournalRefusedError
 from app.wording import later, tr
 
@@ -16,12 +16,13 @@ FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magn
 
 
 class Trouble(StrEnum):
-    """What went wrong while recording. `TOLD` has the words."""
+    """What went wrong while recording. `TOLD` has the words; those of `MOVED` name the shelter."""
 
     LITTLE_ROOM = "little_room"
     NO_ROOM = "no_room"
     DISK_FULL = "disk_full"
     DISK_GONE = "disk_gone"
+    MOVED = "moved"
     DISK_SLOW = "disk_slow"
     DROPPED = "dropped"
 
@@ -42,6 +43,13 @@ TOLD = {
     Trouble.DISK_GONE: (
         later("The recording can no longer be written, so it was stopped"),
         later("What was recorded until then is kept. Check the disk, then record again"),
+    ),
+    Trouble.MOVED: (
+        later("The library can no longer be written where it was, and the recording goes on"),
+        later(
+            "It is kept on this computer in {shelter}, encrypted as always, and added to the library by itself once it "
+            "is back. Put the folder back, or connect its disk"
+        ),
     ),
     Trouble.DISK_SLOW: (
         later("The disk answers late"),
@@ -100,19 +108,23 @@ ROOM = Room()
 class JournalFile:
     """A journal's file: made whole with its header, then only appended to; `sha256` of all that was.
 
+    `is_held`: as long as it is open, nobody brings it home (`app.storage.bringing_home`).
+
     Raises
     ------
     FileExistsError
         Another program has begun the same segment.
     """
 
-    def __init__(self, path: Path, header: bytes) -> None:
+    def __init__(self, path: Path, header: bytes, *, is_held: bool = False) -> None:
         if path.exists():
             raise FileExistsError(EEXIST, "another program writes this segment", str(path))
         replace_file(path, header)  # so a journal that exists has its header, and a name that lasts
         self._folder = path.parent
         self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0))
         self._is_open = True
+        if is_held:
+            hold(self._descriptor)
         self._sha256 = hashlib.sha256(header)
         self.size = len(header)
 
@@ -133,7 +145,8 @@ class JournalFile:
         sync(self._descriptor)
 
     def free_bytes(self) -> int:
-        return shutil.disk_usage(self._folder).free
+        # by the open file, where the system can: its folder may be called otherwise by now
+        return shutil.disk_usage(self._folder if os.name == "nt" else self._descriptor).free
 
     def sha256(self) -> str:
         return self._sha256.hexdigest()

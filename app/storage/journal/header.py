@@ -3,7 +3,8 @@
     magic 8 | format 2 | flags 2 | recording 16 | segment 4 | opened, wall clock 8 | opened, monotonic 8
     | wrapped key 60 (nonce 12, key 32, tag 16) | CRC32C 4
 
-Little-endian, times in nanoseconds. The wrapping is bound to everything before it.
+Little-endian, times in nanoseconds. The wrapping is bound to everything before it. A segment that was begun because the
+file before could not be gone on with (`JournalWriter`) has that one's two times, so that its records' times go on.
 """
 
 import os
@@ -72,6 +73,10 @@ class JournalHeader:
             self.opened_wall_ns,
             self.opened_ns,
         )
+
+    def continues(self, before: "JournalHeader") -> bool:
+        """Whether this segment is the one before gone on with in another file, on the same clock."""
+        return (self.opened_wall_ns, self.opened_ns) == (before.opened_wall_ns, before.opened_ns)
 
     def packed(self) -> bytes:
         content = self.identity + (self.wrapped_key or NO_KEY)

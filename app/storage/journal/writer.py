@@ -3,6 +3,9 @@
 Whoever reads a port only puts into a bounded queue; one thread seals, writes and syncs. A disk that stalls fills the
 queue, never a port; what no longer fits is dropped, counted and told. A kill costs what was not yet written, a power
 cut what was not yet synced.
+
+Where the library's folder is gone, or can no longer be written, the recording goes on in its shelter, in a segment of
+its own that continues the one before. A disk that was pulled out costs what a power cut does, a renamed folder nothing.
 """
 
 import contextlib
@@ -10,8 +13,8 @@ import json
 import logging
 import threading
 import time
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from errno import EDQUOT, EFBIG, ENOSPC
 from pathlib import Path
@@ -20,10 +23,11 @@ from typing import Self
 from uuid import UUID
 
 from app.storage.journal.disk import FULL_RATE_BYTES_S, ROOM, JournalFile, Room, Trouble
-from app.storage.journal.header import JournalHeader, find_segments, segment_path
-from app.storage.journal.inlet import Inlet
-from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, rows_of
+from app.storage.journal.header import JournalHeader, find_segments
+from app.storage.journal.inlet import Inlet, Waiting
+from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, SourceEntry, rows_of
 from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, Kind, Record, Seal
+from app.storage.journal.shelter import DrawnSegment, Shelter
 from core.samples import ImuBlock
 from devices.host_clock import host_time_ns
 from devices.source import SourceInfo
@@ -60,7 +64,10 @@ class JournalStatus:
 
 @dataclass(frozen=True, slots=True)
 class JournalSummary:
-    """What is kept once all is written. `sha256` of the file, for its row; empty where it has no footer."""
+    """What is kept once all is written. `sha256` of the file, for its row; empty where it has no footer.
+
+    Where it `is_away`, the last segment is in the shelter, and `path`, `sha256` and `bytes` are that one's.
+    """
 
     path: Path
     state: State
@@ -70,10 +77,15 @@ class JournalSummary:
     bytes: int
     dropped_records: int
     dropped_bytes: int
+    is_away: bool = False
+
+
+class _LibraryGoneError(Exception):
+    """The library's folder is not where it was; the file that is open may still take what it is given."""
 
 
 class JournalWriter:
-    """One segment of one recording. Every method may be called from any thread and, `stop` aside, waits for no disk.
+    """One segment of one recording, and its continuation where its library goes away. Every method may be called from any thread and, `stop` aside, waits for no disk.
 
     `received`, `sent`, `samples` and `mark` return whether the record was taken. `on_trouble` is called once for each
     kind of trouble, from whichever thread meets it, within a second of it; it must not call `stop`.
@@ -82,16 +94,20 @@ class JournalWriter:
     def __init__(
         self,
         file: JournalFile,
-        path: Path,
-        header: JournalHeader,
-        key: bytes | None,
+        segment: DrawnSegment,
         bytes_per_s: float,
         room: Room,
         on_trouble: Callable[[Trouble], None] | None,
         inlet: Inlet,
+        shelter: Shelter | None = None,
+        next_segment: DrawnSegment | None = None,
     ) -> None:
-        self.path, self.header = path, header
-        self._file, self._seal, self._room = file, Seal(header, key), room
+        self.path, self.header = segment.path, segment.header
+        self._file, self._seal, self._room = file, Seal(segment.header, segment.key), room
+        self._shelter, self._next = shelter, next_segment
+        self._sources: dict[int, SourceEntry] = {}  # as the file tells of them
+        self._last_ns = segment.header.opened_ns
+        self._dropped_before = self._dropped_bytes_before = 0  # told of by the segment before
         self._expected_bytes_s, self._on_trouble = bytes_per_s, on_trouble
         self._inlet = inlet
         self._troubles: set[Trouble] = set()
@@ -119,32 +135,54 @@ class JournalWriter:
         now_ns: Callable[[], int] = host_time_ns,
         wall_ns: Callable[[], int] = time.time_ns,
         queue_bytes: int = QUEUE_BYTES,
+        shelter: Shelter | None = None,
     ) -> Self:
         """Open the next segment of a recording, under a key of its own.
 
         Parameters
         ----------
+        folder
+            It may be missing, but the folder that it is in may not: a library that is gone is not made anew.
         data_key
             The library's, to wrap the journal's key with; None for the demonstration's library: nothing is sealed.
         bytes_per_s
             What the sources are expected to send, for the question whether there is room.
+        shelter
+            None: where `folder` cannot be written any more, the recording ends.
 
         Raises
         ------
         JournalRefusedError
             There is too little room.
         OSError
-            The folder cannot be written.
+            The folder cannot be written, nor the shelter.
         """
-        folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-        room.check(folder, bytes_per_s)
-        segment = 1 + max(find_segments(folder).get(recording_id, {}), default=0)
-        header, key = JournalHeader(recording_id, segment, wall_ns(), now_ns()), None
-        if data_key is not None:
-            header, key = header.with_new_key(data_key)
-        path = segment_path(folder, recording_id, segment)
-        inlet = Inlet(queue_bytes, now_ns, header.opened_ns)
-        return cls(JournalFile(path, header.packed()), path, header, key, bytes_per_s, room, on_trouble, inlet)
+        opened_wall_ns, opened_ns = wall_ns(), now_ns()
+
+        def drawn(place: Path, number: int) -> DrawnSegment:
+            return DrawnSegment.of(place, JournalHeader(recording_id, number, opened_wall_ns, opened_ns), data_key)
+
+        def begun(place: Path, is_held: bool = False) -> tuple[DrawnSegment, JournalFile]:
+            room.check(place, bytes_per_s)
+            segment = drawn(place, 1 + max(find_segments(place).get(recording_id, {}), default=0))
+            return segment, segment.begun(is_held)
+
+        following = None
+        if shelter is not None and not shelter.is_home():
+            segment, file = begun(shelter.made(), is_held=True)
+        else:
+            try:
+                folder.mkdir(mode=0o700, exist_ok=True)
+                segment, file = begun(folder)
+                # drawn now, so that the library's key need not be kept until then
+                following = drawn(shelter.folder, segment.header.segment + 1) if shelter is not None else None
+            except OSError as error:
+                if shelter is None or error.errno in OUT_OF_SPACE:
+                    raise
+                _log.warning("the library's folder cannot be written: the recording is begun in the shelter")
+                segment, file = begun(shelter.made(), is_held=True)
+        inlet = Inlet(queue_bytes, now_ns, opened_ns)
+        return cls(file, segment, bytes_per_s, room, on_trouble, inlet, shelter, following)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
         """Tell of a source before its first byte; returns its number. `layout` for one that gives samples.
@@ -202,7 +240,13 @@ class JournalWriter:
             bytes=self._file.size,
             dropped_records=self._inlet.dropped_records,
             dropped_bytes=self._inlet.dropped_bytes,
+            is_away=self.is_away,
         )
+
+    @property
+    def is_away(self) -> bool:
+        """Whether it writes in the shelter."""
+        return self._shelter is not None and self._next is None
 
     @property
     def status(self) -> JournalStatus:
@@ -260,13 +304,30 @@ class JournalWriter:
 
     def _run(self) -> None:
         try:
-            self._write_until_stopped()
-            self._close(self._reason)
+            while not self._is_written():
+                self._go_into_shelter()
         except OSError as error:
             self._give_up(Trouble.DISK_FULL if error.errno in OUT_OF_SPACE else Trouble.DISK_GONE)
         except Exception:  # the thread's edge: whatever it is, it is told
             _log.exception("the journal's thread failed")
             self._give_up(Trouble.DISK_GONE)
+
+    def _is_written(self) -> bool:
+        """Write until it is stopped, and close; False: what follows belongs into the shelter."""
+        try:
+            self._write_until_stopped()
+            self._close(self._reason)
+        except _LibraryGoneError:
+            self._end_segment()
+            return False
+        except OSError as error:
+            if error.errno in OUT_OF_SPACE or self._next is None:
+                raise
+            _log.warning("the journal cannot be written any more: it goes on in the shelter", exc_info=error)
+            with contextlib.suppress(OSError):
+                self._file.close()  # no footer: what was not yet synced may be missing
+            return False
+        return True
 
     def _write_until_stopped(self) -> None:
         while not self._is_stopping and self._has_room():
@@ -276,6 +337,8 @@ class JournalWriter:
             if time.monotonic() - self._synced_s >= SYNC_EVERY_S:
                 self._file.sync()
                 self._synced_s = time.monotonic()
+                if self._next is not None and self._shelter is not None and not self._shelter.is_home():
+                    raise _LibraryGoneError
         self._inlet.close()
         while not self._inlet.is_empty:
             self._write_batch()
@@ -288,12 +351,44 @@ class JournalWriter:
         if out:
             self._file.append(out)
             self._records += len(batch)
+            self._last_ns = batch[-1][1]
             self._inlet.written(len(batch))
+            self._note_sources(batch)
 
     def _sealed(self, kind: Kind, time_ns: int, payload: bytes) -> bytes:
         # a number is spent when it is used, not when it is written: its nonce must not come again
         number, self._number = self._number, self._number + 1
         return self._seal.closed(Record(number, kind, time_ns, payload))
+
+    def _note_sources(self, batch: Sequence[Waiting]) -> None:
+        for kind, _, payload in batch:
+            if kind is Kind.SOURCE:
+                entry = SourceEntry.parsed(payload)
+                self._sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
+
+    def _end_segment(self) -> None:
+        """Close a file whose folder is gone from its place: under another name it most often is whole all the same."""
+        try:
+            self._append_footer(Trouble.MOVED)
+        except OSError as error:
+            _log.warning("the journal of a library that is gone has no footer", exc_info=error)
+        with contextlib.suppress(OSError):
+            self._file.close()
+
+    def _go_into_shelter(self) -> None:
+        """Go on in the shelter, in the next segment, which is told of the sources as the one before was."""
+        assert self._shelter is not None  # without one nothing else was drawn
+        assert self._next is not None
+        self._shelter.made()
+        segment, self._next = self._next, None
+        self._file = segment.begun(is_held=True)
+        self.path, self.header, self._seal = segment.path, segment.header, Seal(segment.header, segment.key)
+        self._number = FIRST_NUMBER
+        self._began_s, self._looked_s, self._looked_size = time.monotonic(), 0.0, 0
+        told = (self._sealed(Kind.SOURCE, self._last_ns, entry.packed()) for entry in self._sources.values())
+        if out := b"".join(told):
+            self._file.append(out)
+        self._tell(Trouble.MOVED)
 
     def _has_room(self) -> bool:
         """Whether the recording may go on; looked at twice a second, and sooner where much was written since."""
@@ -313,11 +408,18 @@ class JournalWriter:
         return spare > 0
 
     def _close(self, reason: str) -> None:
-        footer = Footer(reason, self._inlet.dropped_records, self._inlet.dropped_bytes)
-        self._file.append(self._sealed(Kind.FOOTER, self._inlet.last_ns(), footer.packed()))
-        self._file.sync()
+        self._append_footer(reason)
         self._file.close()
         self._state = State.CLOSED
+
+    def _append_footer(self, reason: str) -> None:
+        records, size = self._inlet.dropped_records, self._inlet.dropped_bytes
+        footer = Footer(reason, records - self._dropped_before, size - self._dropped_bytes_before)
+        # of a segment that is gone on with: what still waits is the next one's, and as old as it is
+        now_ns = self._last_ns if reason == Trouble.MOVED else self._inlet.last_ns()
+        self._file.append(self._sealed(Kind.FOOTER, now_ns, footer.packed()))
+        self._file.sync()
+        self._dropped_before, self._dropped_bytes_before = records, size
 
     def _give_up(self, trouble: Trouble) -> None:
         """End on a disk that fails: nothing more is taken, what was not written is counted, the file is let go."""

@@ -1,0 +1,123 @@
+"""Is the library's folder still where it was opened, and still that library's?
+
+A folder is renamed, or its disk taken out, while the program runs: at its path there is then nothing, an empty mount
+point, or another library. So a library has an id, in its database and, for whoever has no key, in a file of its own
+beside it; and as long as it is open, the folder has to be the very one that was opened.
+"""
+
+import secrets
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import platformdirs
+
+from app.storage.files import replace_file
+from app.storage.stored import LibraryFaultError
+from app.wording import later, tr
+
+if TYPE_CHECKING:
+    from app.storage.database.engine import Database
+
+ID_FILE = "library-id"
+ID_BYTES = 16
+ID_SETTING = "library id"
+SHELTERS = "sheltered recordings"
+GONE = later("The library is gone from {folder}")
+BRING_BACK = later("Put its folder back, or connect its disk")
+
+
+class LibraryGoneError(LibraryFaultError):
+    """The folder is not there, or it is another library's: nothing was written."""
+
+
+class LibraryRoot:
+    """The folder of an open library. Every method may be called from any thread, and may wait for the disk.
+
+    Raises
+    ------
+    OSError
+        The folder cannot be read.
+    """
+
+    def __init__(self, folder: Path, library_id: str) -> None:
+        self.folder, self.id = folder.absolute(), library_id
+        self._identity = _identity(self.folder)
+
+    @property
+    def shelter(self) -> Path:
+        """Where its recordings are kept while it is gone, on this computer."""
+        return platformdirs.user_data_path("gaitwright", appauthor=False) / SHELTERS / self.id
+
+    def is_there(self) -> bool:
+        """Whether it is the folder that was opened, where it was opened."""
+        try:
+            return _identity(self.folder) == self._identity and read_id(self.folder) == self.id
+        except OSError:
+            return False
+
+    def is_another(self) -> bool:
+        """Whether the same library is there again, but not in the folder that was opened: mounted anew, or copied."""
+        try:
+            return _identity(self.folder) != self._identity and read_id(self.folder) == self.id
+        except OSError:
+            return False
+
+    def take(self) -> None:
+        """From now on the folder that is there is the one."""
+        self._identity = _identity(self.folder)
+
+    def refuse_gone(self) -> None:
+        """See that it is there.
+
+        Raises
+        ------
+        LibraryGoneError
+            It is not.
+        """
+        if not self.is_there():
+            raise LibraryGoneError(tr(GONE).format(folder=self.folder), BRING_BACK)
+
+
+def read_id(folder: Path) -> str:
+    """What the folder says which library it is; empty where it does not.
+
+    Raises
+    ------
+    OSError
+        The file cannot be read, for another reason than that there is none.
+    """
+    try:
+        return (folder / ID_FILE).read_text(encoding="ascii", errors="replace").strip()
+    except FileNotFoundError:
+        return ""
+
+
+def root_of(folder: Path, database: "Database") -> LibraryRoot:
+    """The root of a library whose database is open; one that was made by an earlier version is given its id.
+
+    Raises
+    ------
+    LibraryError
+        The database cannot be read or written.
+    OSError
+        The folder cannot be read or written.
+    """
+    from app.storage.database.models import SettingRow
+
+    with database.reading() as session:
+        row = session.get(SettingRow, ID_SETTING)
+        library_id = "" if row is None else str(row.value)
+    if not library_id:
+        with database.writing() as session:
+            row = session.get(SettingRow, ID_SETTING)  # another program may have been quicker
+            library_id = secrets.token_hex(ID_BYTES) if row is None else str(row.value)
+            if row is None:
+                session.add(SettingRow(name=ID_SETTING, value=library_id))
+    if read_id(folder) != library_id:
+        replace_file(folder / ID_FILE, library_id.encode())
+    return LibraryRoot(folder, library_id)
+
+
+def _identity(folder: Path) -> tuple[int, int]:
+    found = folder.stat()
+    return found.st_dev, found.st_ino
