@@ -158,10 +158,12 @@ def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:
     FileRefusedError
         The library does not open, or another program is using it.
     """
+    from app.storage.bringing_home import bring_home
     from app.storage.opened import held_alone
     from app.storage.recovery import find_interrupted
 
     with opened_library(wanted) as opened, held_alone(opened.folder):
+        bring_home(opened)
         interrupted = find_interrupted(opened)
         if not interrupted:
             yield "Every recording was stopped. Nothing had to be recovered."

@@ -197,6 +197,8 @@ class MainWindow(QWidget):
         self.entry.first_start.demonstration_wished.connect(self.open_demonstration)
         self.entry.log_in.demonstration_wished.connect(self.open_demonstration)
         self.desk.refused.connect(self._on_told)
+        self.desk.gone.connect(self._on_library_gone)
+        self.desk.back.connect(self._on_library_back)
         self._poll.timeout.connect(self._on_poll)
         app = QApplication.instance()
         if isinstance(app, QApplication):
@@ -340,6 +342,18 @@ class MainWindow(QWidget):
         elif self.entry is not None:
             self.entry.tell(what, remedy)
 
+    def _on_library_gone(self, what: str, then: str) -> None:
+        """Say it at home and on the cover; a visit says it itself."""
+        if self._home is not None:
+            self._home.banner.tell(what, then)
+        if self.entry is not None and self.is_covered:
+            self.entry.tell(what, then)
+
+    def _on_library_back(self, what: str, then: str) -> None:
+        self._on_library_gone(what, then)
+        if self._home is not None and (self._wizard is None or self._wizard.visit is None):
+            self._home.recovering.look_again()  # else the visit reads its own recordings back
+
     # nobody is there
 
     def _on_focus_window_changed(self, window: QWindow | None) -> None:
@@ -350,8 +364,10 @@ class MainWindow(QWidget):
 
     def _on_poll(self) -> None:
         self.idle.poll()
-        if self.entry is not None and self.is_covered:
-            self.entry.show_recording(self._is_recording)
+        if self.entry is not None:
+            if self.is_covered:
+                self.entry.show_recording(self._is_recording)
+            self.entry.look_again()
 
     def _lock(self) -> None:
         """Cover what the library shows; a recording goes on under it."""

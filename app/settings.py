@@ -71,6 +71,15 @@ class Settings(QObject):
     def latest_operator(self, code: str) -> None:
         self._put("latest_operator", code)
 
+    @property
+    def latest_library(self) -> str:
+        """The folder of the library that was opened last; where it is not there any more, it is missing."""
+        return str(self._kept.value("latest_library", ""))
+
+    @latest_library.setter
+    def latest_library(self, folder: str) -> None:
+        self._put("latest_library", folder)
+
     def _put(self, name: str, value: str) -> None:
         if self._kept.value(name, None) != value:
             self._kept.setValue(name, value)

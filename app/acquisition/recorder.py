@@ -3,6 +3,8 @@
 Its row comes first, where the database answers within a second. Where it does not, whatever is the matter with it, the
 journal is begun all the same and says itself which session it is of: the row follows, at the latest on stop; if the
 program ends before that, the journal is found at the next start and put into its session.
+
+Where the library's folder itself is gone, the journal is in its shelter; on stop it is brought home first.
 """
 
 import logging
@@ -14,6 +16,7 @@ from uuid import UUID
 
 from app.acquisition.acquisition import Acquisition
 from app.library_commands import DECODERS
+from app.storage.bringing_home import bring_home
 from app.storage.exchange import recording_with_samples
 from app.storage.journal.disk import ROOM, Room, Trouble
 from app.storage.journal.payloads import Belonging
@@ -44,6 +47,11 @@ class Recorder:
         self._stopping = threading.Lock()
 
     @property
+    def is_away(self) -> bool:
+        """Whether it is being recorded in the library's shelter, because the library is gone."""
+        return self._writer.is_away
+
+    @property
     def has_row(self) -> bool:
         """Whether the library knows of it. Where it does not, the journal is all there is, and enough."""
         return self._entry.has_row
@@ -62,7 +70,8 @@ class Recorder:
     ) -> "Recorder":
         """Record from now on, worn as the session's latest placement says.
 
-        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words. The row waits for `turn`:
+        `on_trouble` is called from any thread; `app.storage.journal.disk.TOLD` has the words. One that begins in the
+        shelter already does not call it: `is_away` tells. The row waits for `turn`:
         until then the session's placement may not be there. The recording waits a second for both, and no longer.
 
         Raises
@@ -72,7 +81,7 @@ class Recorder:
         LibraryError
             There is no such session, it has a recording of this name, or one of the two is simulated.
         OSError
-            The folder of the recordings cannot be written.
+            The folder of the recordings cannot be written, nor the shelter.
         """
         entry = _Entry(opened, session_id, told, acquisition.is_simulated)
         entry.start(turn)
@@ -84,6 +93,7 @@ class Recorder:
                 room=room,
                 on_trouble=on_trouble,
                 now_ns=acquisition.now_ns,
+                shelter=opened.shelter,
             )
         except BaseException:
             entry.withdraw()
@@ -111,12 +121,15 @@ class Recorder:
         Raises
         ------
         LibraryError
-            The database does not answer, or refuses the recording. Its journal is kept, and found at the next start.
+            The database does not answer, refuses the recording, or the library is gone. Its journal is kept, and found
+            at the next start.
         JournalRefusedError, OSError
             The journal cannot be read.
         """
         self.halt()
         assert self.summary is not None  # halted
+        if self.summary.is_away:
+            bring_home(opened)
         stored = self._entry.close(opened, self.summary, self._writer.header.segment)
         recording, _ = recording_with_samples(opened, stored, DECODERS)
         return stored, recording
@@ -180,10 +193,13 @@ class _Entry:
         """Close the row; where it or the journal is not as it should be, in the way that interrupted ones are."""
         self._thread.shutdown()
         is_entered = all(step.exception() is None for step in self._steps)
-        if is_entered and summary.state is State.CLOSED:
+        if is_entered and summary.state is State.CLOSED and not summary.is_away:
             return opened.library.recordings.close(self.id, RecordingState.CLOSED, {segment: summary.sha256})
         interrupted = self._find(opened)
         if interrupted is None:
+            stored = self._recordings.find(self.id)
+            if stored is not None and stored.state is not RecordingState.OPEN:
+                return stored  # an earlier try came as far
             raise LibraryError("This recording is not in the library any more", "Reload the session")
         if interrupted.is_orphan:
             return adopt(opened, interrupted, self._session_id, self._told, _nobody).stored

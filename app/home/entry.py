@@ -59,15 +59,26 @@ class Entry(QObject):
         return self._new is not None
 
     def begin(self) -> None:
-        """Show the page that comes first: where there is no library yet, how to make one."""
+        """Show the page that comes first: where there is no library yet, how to make one.
+
+        One that was opened here before is missing, rather than to be made: its disk may not be connected.
+        """
         self._new, self._cover_of, self._tried = None, "", ""
         if not (self._folder / KEYS).exists():
+            is_missing = self._settings.latest_library == str(self._folder)
+            self.first_start.show_missing(str(self._folder) if is_missing else "")
             self._show(self.first_start)
             return
         self.log_in.forget_typed()
         self.log_in.show_operators(())
         self._show(self.log_in)
         self._desk.look(self._folder, self._on_looked, self._on_look_failed, self)
+
+    def look_again(self) -> None:
+        """Go on where a library that was missing is there now."""
+        if self.first_start.is_missing and (self._folder / KEYS).exists():
+            self.first_start.show_missing("")
+            self.begin()
 
     def cover(self, code: str, is_recording: bool) -> None:
         """Show nothing but the way back, for the operator who is logged in."""
@@ -102,6 +113,7 @@ class Entry(QObject):
     def _connect(self) -> None:
         first, log_in, desk = self.first_start, self.log_in, self._desk
         first.made.connect(self._on_made)
+        first.look_wished.connect(self._on_look_wished)
         first.done.connect(self._on_key_kept)
         first.print_wished.connect(self._on_print_wished)
         first.save_wished.connect(self._on_save_wished)
@@ -121,6 +133,11 @@ class Entry(QObject):
     def _on_look_failed(self, what: str, remedy: str) -> None:
         self.log_in.refuse(f"{what} {remedy}")
 
+    def _on_look_wished(self) -> None:
+        self.look_again()
+        if self.first_start.is_missing:
+            self.tell(tr("The library is still missing."), tr("Connect its disk, or put its folder back."))
+
     def _on_made(self, code: str, name: str, passphrase: str) -> None:
         self.first_start.show_busy(True)
         self._desk.create(self._folder, code, name, passphrase)
@@ -136,6 +153,8 @@ class Entry(QObject):
             from app.storage.keys import KeySlots
             from app.storage.opened import KEYS as NAME
 
+            if opened.library.root is not None:
+                opened.library.root.refuse_gone()  # it says what to do, where the slots only miss their file
             KeySlots(opened.folder / NAME).open(code, passphrase)
 
         self._desk.run(check, self._on_checked, self._on_check_failed, self)
@@ -166,6 +185,7 @@ class Entry(QObject):
         if not state.is_demonstration:
             self._login_delay().forget(state.operator.code)
             self._settings.latest_operator = state.operator.code
+            self._settings.latest_library = str(self._folder)
         if state.recovery_key:
             self._new = state
             self.first_start.show_recovery_key(state.recovery_key)

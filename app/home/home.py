@@ -43,8 +43,16 @@ PATIENTS, DEMONSTRATION, IMPORT = range(3)
 
 
 @dataclass(frozen=True, slots=True)
+class _Patients:
+    """All patients, and which of them have a walk that was recovered and is not decided yet."""
+
+    every: "tuple[stored.StoredPatient, ...]"
+    undecided: frozenset[UUID]
+
+
+@dataclass(frozen=True, slots=True)
 class _Sessions:
-    """The sessions of a patient, and which of them hold a recording that was recovered."""
+    """The sessions of a patient, and which of them hold a walk that was recovered and is not decided yet."""
 
     patient_id: UUID
     lines: "tuple[stored.SessionLine, ...]"
@@ -64,8 +72,6 @@ class Home(QWidget):
         self._look, self._desk, self._settings = look, desk, settings
         self._state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
-        self._recovered: set[UUID] = set()  # patients
-        self._looked_at: set[UUID] = set()  # sessions
         self._to_import: Session | None = None
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
@@ -107,8 +113,6 @@ class Home(QWidget):
     def show_library(self, state: OpenedState) -> None:
         """Show a library that was just opened, and bring back what was being recorded when it was last in use."""
         self._state = state
-        self._recovered.clear()
-        self._looked_at.clear()
         self.banner.hide()
         self.page.search.clear()
         self.page.show_patients(())
@@ -138,7 +142,7 @@ class Home(QWidget):
     def refresh(self, chosen: UUID | None = None) -> None:
         """Read the patients anew, and choose one of them, else the one that was chosen."""
         self._chosen = chosen or self.page.patient_id
-        self._desk.run(lambda opened: opened.library.patients.search(), self._on_patients, self._on_refused, self)
+        self._desk.run(_patients_in, self._on_patients, self._on_refused, self)
 
     def show_settings(self) -> None:
         self.settings.read_deleted()
@@ -193,7 +197,7 @@ class Home(QWidget):
     def _connect(self) -> None:
         page = self.page
         page.patient_chosen.connect(self._on_patient_chosen)
-        page.session_opened.connect(self._on_session_opened)
+        page.session_opened.connect(self.session_opened)
         page.new_session_wished.connect(self._on_primary)
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
@@ -207,7 +211,7 @@ class Home(QWidget):
         self.import_page.code_changed.connect(self._on_import_code)
         self.import_page.code.line_edit.returnPressed.connect(self._on_primary)
         self.working.stop_pressed.connect(self._on_stop)
-        self.recovering.recovered.connect(self._on_recovered)
+        self.recovering.recovered.connect(self.refresh)
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
@@ -298,10 +302,10 @@ class Home(QWidget):
     def _patient(self) -> "stored.StoredPatient | None":
         return self._patients.get(self.page.patient_id) if self.page.patient_id is not None else None
 
-    def _on_patients(self, patients: "tuple[stored.StoredPatient, ...]") -> None:
-        self._patients = {patient.id: patient for patient in patients}
+    def _on_patients(self, patients: _Patients) -> None:
+        self._patients = {patient.id: patient for patient in patients.every}
         now = datetime.datetime.now().astimezone()
-        lines = [patient_line(patient, now, patient.id in self._recovered) for patient in patients]
+        lines = [patient_line(patient, now, patient.id in patients.undecided) for patient in patients.every]
         self.page.show_patients(lines, self._chosen)
         self._on_patient_chosen(self.page.patient_id)
 
@@ -326,12 +330,7 @@ class Home(QWidget):
         if sessions.patient_id != self.page.patient_id:
             return  # another was chosen meanwhile
         now = datetime.datetime.now().astimezone()
-        recovered = sessions.recovered - self._looked_at
-        self.page.show_sessions([session_line(line, now, recovered) for line in sessions.lines])
-
-    def _on_session_opened(self, session_id: UUID) -> None:
-        self._looked_at.add(session_id)
-        self.session_opened.emit(session_id)
+        self.page.show_sessions([session_line(line, now, sessions.recovered) for line in sessions.lines])
 
     def _on_new_patient(self) -> None:
         if self.current is self.page:
@@ -472,10 +471,6 @@ class Home(QWidget):
         self._go_to(self.page)
         self.banner.tell(what, remedy)
 
-    def _on_recovered(self, patients: frozenset[UUID]) -> None:
-        self._recovered |= patients
-        self.refresh()
-
     def _on_refused(self, what: str, remedy: str) -> None:
         self.banner.tell(what, remedy)
 
@@ -486,14 +481,15 @@ class Home(QWidget):
         self.update()
 
 
+def _patients_in(opened: "OpenedLibrary") -> _Patients:
+    undecided = opened.library.recordings.undecided()
+    return _Patients(opened.library.patients.search(), frozenset(walk.patient_id for walk in undecided))
+
+
 def _sessions_of(opened: "OpenedLibrary", patient_id: UUID) -> _Sessions:
-    lines = opened.library.sessions.list(patient_id)
-    recovered = {
-        line.id
-        for line in lines
-        if any(one.is_unjudged and one.told.is_kept for one in opened.library.sessions.get(line.id).recordings)
-    }
-    return _Sessions(patient_id, lines, frozenset(recovered))
+    undecided = opened.library.recordings.undecided()
+    recovered = frozenset(walk.recording.session_id for walk in undecided if walk.patient_id == patient_id)
+    return _Sessions(patient_id, opened.library.sessions.list(patient_id), recovered)
 
 
 def _named(name: str) -> str:

@@ -1,4 +1,7 @@
-"""What was being recorded when the library was last in use, or while it did not answer: brought back, and said."""
+"""What was being recorded when the library was last in use, or while it did not answer: brought back, and said.
+
+What was recovered earlier and is not decided yet is said, too, at every start: the library knows it.
+"""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -18,16 +21,20 @@ from app.workers.library_desk import LibraryDesk, OpenedState
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted, Recovered
+    from app.storage.stored import UndecidedWalk
 
 
 class _Outcome(NamedTuple):
-    """What was recovered, what was put into the session it says it is of, and what is left of either."""
+    """What was recovered, what was put into the session it says it is of, and what is left of either.
+
+    `undecided`: what was recovered at an earlier start, and nobody has said yet whether it is kept.
+    """
 
     recovered: "list[Recovered]"
     adopted: "list[Recovered]"
     refused: list[tuple[str, str]]
     lost: "list[Interrupted]"
-    patients: frozenset[UUID]
+    undecided: "list[UndecidedWalk]"
 
 
 class _Message(NamedTuple):
@@ -39,29 +46,43 @@ class _Message(NamedTuple):
 class Recovering(QObject):
     """Says one thing after the other, each until it is dismissed."""
 
-    recovered = Signal(object)  # the patients' ids
+    recovered = Signal()
 
     def __init__(self, desk: LibraryDesk, banner: Banner, parent: QWidget) -> None:
         super().__init__(parent)
         self._desk, self._banner, self._window = desk, banner, parent
         self._waiting: list[_Message] = []
         self._lost: list[Interrupted] = []
+        self._brought_home: frozenset[UUID] = frozenset()
         self._dialog: QFileDialog | None = None
         banner.dismissed.connect(self._say_next)
         banner.acted.connect(self._choose_folder)
 
     def begin(self, state: OpenedState) -> None:
-        """Bring back what `state` tells of; `recovered` follows where there was anything."""
-        self._waiting, self._lost = [], []
-        if state.interrupted:
-            interrupted = state.interrupted
-            self._desk.run_long(
-                lambda opened, report: _recover(opened, interrupted, report),
-                self._on_recovered,
-                self._on_refused,
-                None,
-                self,
-            )
+        """Bring back what `state` tells of, and say what is still to be decided; `recovered` follows where there was
+        anything to bring back."""
+        self._waiting, self._lost, self._brought_home = [], [], state.brought_home
+        interrupted = state.interrupted
+        if not interrupted:
+            self._desk.run(_still_undecided, self._say_outcome, self._on_refused, self)
+            return
+        self._desk.run_long(
+            lambda opened, report: _recover(opened, interrupted, report),
+            self._on_recovered,
+            self._on_refused,
+            None,
+            self,
+        )
+
+    def look_again(self) -> None:
+        """Bring back what came home only now, because the library was gone; `recovered` follows."""
+
+        def work(opened: "OpenedLibrary", report: Report) -> _Outcome:
+            from app.storage.recovery import find_interrupted
+
+            return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
+
+        self._desk.run_long(work, self._on_recovered, self._on_refused, None, self)
 
     def export(self, folder: Path) -> None:
         """Write what belongs to no session into `folder`, each recording into a folder of its own."""
@@ -96,10 +117,19 @@ class Recovering(QObject):
         self.export(Path(folder))
 
     def _on_recovered(self, outcome: _Outcome) -> None:
+        self.recovered.emit()
+        self._say_outcome(outcome)
+
+    def _say_outcome(self, outcome: _Outcome) -> None:
         self._lost = outcome.lost
-        self.recovered.emit(outcome.patients)
         heard = [one for one in outcome.recovered if one.recorded_s > 0]
-        messages = [*_heard_messages(heard), *_adopted_messages(outcome.adopted)]
+        home = [one for one in [*heard, *outcome.adopted] if self._is_home_and_whole(one)]
+        messages = [
+            *_heard_messages([one for one in heard if one not in home]),
+            *_adopted_messages([one for one in outcome.adopted if one not in home]),
+            *_home_messages(home),
+            *_undecided_messages(outcome.undecided),
+        ]
         for what, remedy in dict.fromkeys(outcome.refused):
             messages.append(_Message(f"{capitalised(tr(what))}.", f"{tr(remedy)}."))
         if self._lost:
@@ -111,6 +141,12 @@ class Recovering(QObject):
             then = tr("Export the samples as files, to import them where they belong. Nothing is taken away here.")
             messages.append(_Message(what, then, tr("Export")))
         self._say(messages)
+
+    def _is_home_and_whole(self, one: "Recovered") -> bool:
+        """Whether it was stopped, and only recorded elsewhere because the library was gone."""
+        from app.storage.stored import RecordingState
+
+        return one.stored.id in self._brought_home and one.stored.state is RecordingState.CLOSED
 
     def _on_exported(self, folder: str) -> None:
         what = tr_n("{count} recording was exported.", "{count} recordings were exported.", len(self._lost))
@@ -127,7 +163,8 @@ def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", repo
     from app.storage.recovery import adopt_home, recover
     from app.storage.stored import LibraryError, LibraryFaultError
 
-    outcome = _Outcome([], [], [], [], frozenset())
+    outcome = _Outcome([], [], [], [], [])
+    undecided = opened.library.recordings.undecided()  # before others join them
     for one in interrupted:
         if one.problem:
             outcome.refused.append((one.problem, one.remedy))
@@ -144,9 +181,11 @@ def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", repo
             except LibraryError:  # its session is gone, or it does not say which that is
                 if not was_exported(opened, one):
                     outcome.lost.append(one)
-    sessions = {one.stored.session_id for one in [*outcome.recovered, *outcome.adopted]}
-    patients = frozenset(opened.library.sessions.get(session_id).patient_id for session_id in sessions)
-    return outcome._replace(patients=patients)
+    return outcome._replace(undecided=list(undecided))
+
+
+def _still_undecided(opened: "OpenedLibrary") -> _Outcome:
+    return _Outcome([], [], [], [], list(opened.library.recordings.undecided()))
 
 
 def _heard_messages(heard: "Sequence[Recovered]") -> list[_Message]:
@@ -171,3 +210,26 @@ def _adopted_messages(adopted: "Sequence[Recovered]") -> list[_Message]:
         return [_Message(what, tr("It is in its session now."))]
     what = tr("{count} recordings were made while the library did not answer.").format(count=len(adopted))
     return [_Message(what, tr("They are in their sessions now."))]
+
+
+def _home_messages(home: "Sequence[Recovered]") -> list[_Message]:
+    if not home:
+        return []
+    what = tr_n(
+        "{count} recording was made while the library was gone. It is in its session now.",
+        "{count} recordings were made while the library was gone. They are in their sessions now.",
+        len(home),
+    ).format(count=len(home))
+    return [_Message(what, tr("What was kept on this computer meanwhile was removed there."))]
+
+
+def _undecided_messages(walks: "Sequence[UndecidedWalk]") -> list[_Message]:
+    if not walks:
+        return []
+    if len(walks) == 1:
+        what = tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept.").format(
+            name=walks[0].recording.told.name, code=walks[0].patient_code
+        )
+        return [_Message(what, tr("Look at it, then keep or discard."))]
+    what = tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept.")
+    return [_Message(what.format(count=len(walks)), tr("Look at them, then keep or discard."))]

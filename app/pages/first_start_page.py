@@ -1,6 +1,7 @@
 """The first start: whose library is it, what opens it, and what opens it when that is forgotten?
 
 All on one page. The recovery key is shown once; the way on opens when it has been typed back from the paper or file.
+Where a library was opened here before and is missing, the page says so, and makes a new one only if that is asked for.
 """
 
 from collections.abc import Callable
@@ -30,10 +31,16 @@ class FirstStartPage(EntryPage):
     save_wished = Signal(str)
     done = Signal()  # the recovery key was typed back
     demonstration_wished = Signal()
+    look_wished = Signal()  # whether the library that is missing is there now
 
     def __init__(self, look: Look, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
         self._shortest, self._is_same_key, self._key = shortest, is_same_key, ""
+        self._missing = ""
+        self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
+        self._missing_lead = Text(look, tone="ink2", wraps=True)
+        self.look_again = Button(look, tr("Look again"), Kind.PRIMARY, None, tr("Enter"))
+        self.make_another = Button(look, tr("Make a new, empty library instead"), Kind.QUIET, height=44)
         self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
             look,
@@ -72,7 +79,22 @@ class FirstStartPage(EntryPage):
     def tab_order(self) -> list[QWidget]:
         fields = [self.code, self.name, self.passphrase, self.again]
         first = [*(field.line_edit for field in fields), self.make, self.demonstration]
-        return [*first, self.print, self.save, self.typed.line_edit, self.go]
+        return [self.look_again, self.make_another, *first, self.print, self.save, self.typed.line_edit, self.go]
+
+    @property
+    def is_missing(self) -> bool:
+        """Whether the page says that a library is missing."""
+        return bool(self._missing)
+
+    def show_missing(self, folder: str) -> None:
+        """Say that the library which was in this folder is missing; none: how to make one."""
+        self._missing = folder
+        lead = tr(
+            "It was in {folder}, and is not there now. Connect its disk, or put its folder back: it then opens by "
+            "itself. Nothing in it was changed, and what was recorded without it is added when it is back."
+        )
+        self._missing_lead.setText(lead.format(folder=folder))
+        self._show()
 
     def show_recovery_key(self, key: str) -> None:
         """Show the key, once, and forget the passphrase."""
@@ -98,7 +120,7 @@ class FirstStartPage(EntryPage):
         self.code.setFocus()
 
     def focus(self) -> None:
-        (self.print if self._key else self.code).setFocus()
+        (self.print if self._key else self.look_again if self._missing else self.code).setFocus()
 
     def _build(self) -> None:
         self._first = Card(self._look, padding=24, spacing=16)
@@ -115,6 +137,11 @@ class FirstStartPage(EntryPage):
         self._second.column.addLayout(self._keep_row)
         self._second.column.addWidget(self.typed)
         self._second.column.addWidget(self.go)
+        self._missing_card = Card(self._look, padding=24, spacing=16)
+        self._missing_card.column.addWidget(self.look_again)
+        self._missing_card.column.addWidget(self.make_another)
+        for part in (self._missing_title, self._missing_lead, self._missing_card):
+            self.column.addWidget(part)
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
         self.column.addWidget(self._first)
@@ -124,6 +151,8 @@ class FirstStartPage(EntryPage):
         self.column.addWidget(self._second)
 
     def _connect(self) -> None:
+        self.look_again.clicked.connect(self.look_wished)
+        self.make_another.clicked.connect(self._on_make_another)
         self.make.clicked.connect(self._on_make)
         self.demonstration.clicked.connect(self.demonstration_wished)
         self.print.clicked.connect(self._on_print)
@@ -137,12 +166,19 @@ class FirstStartPage(EntryPage):
         self._look.changed.connect(self._on_look_changed)
 
     def _show(self) -> None:
-        has_key = bool(self._key)
-        for part in (self._title, self._lead, self._first, self.demonstration):
-            part.setVisible(not has_key)
+        has_key, is_missing = bool(self._key), self.is_missing
+        for part in (self._missing_title, self._missing_lead, self._missing_card):
+            part.setVisible(is_missing and not has_key)
+        for part in (self._title, self._lead, self._first):
+            part.setVisible(not has_key and not is_missing)
+        self.demonstration.setVisible(not has_key)
         for part in (self._key_title, self._key_lead, self._second):
             part.setVisible(has_key)
         self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+
+    def _on_make_another(self) -> None:
+        self.show_missing("")
+        self.focus()
 
     def _on_edited(self, _text: str) -> None:
         for field in (self.code, self.name, self.passphrase, self.again):

@@ -78,12 +78,15 @@ def back_up(
     Raises
     ------
     LibraryError
-        There is too little room, the copy is not what the library is, or the library's database is damaged.
+        There is no such folder, there is too little room, the copy is not what the library is, or the library's
+        database is damaged.
     """
     made_at = now().astimezone(datetime.UTC)
     folder = into.resolve() / f"{NAME}{made_at:%Y-%m-%dT%H-%M-%SZ}"
     if folder.is_relative_to(opened.folder.resolve()):
         raise LibraryError("A backup cannot be kept inside of its library", "Choose another folder, on another disk")
+    if not into.is_dir():  # a disk that is not connected is not made up for by a folder of its name
+        raise LibraryError("The folder of the backups is not there", "Connect its disk, or choose another folder")
     opened.library.audit.note(Action.BACKUP, "library")
     with made_beside(folder) as beside:
         # the database first: what it knows of is then there, and what came later is found as left over

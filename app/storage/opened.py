@@ -6,7 +6,7 @@ recordings/ID.SEGMENT.journal      the samples
 library-id                         which library it is, for whoever has no key
 in-use                             locked by the program that records here
 
-All of this is in the library's own folder, which `create_library` alone makes. A folder that is gone is never made anew:
+All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made anew:
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
 """
 

@@ -11,7 +11,7 @@ from app.storage.audit import about, note
 from app.storage.corrections import apply, differences
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
-from app.storage.database.models import JournalRow, RecordingRow, SessionRow
+from app.storage.database.models import JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
 from app.storage.desk import Desk
 from app.storage.stored import (
@@ -21,8 +21,9 @@ from app.storage.stored import (
     Role,
     StoredJournal,
     StoredRecording,
+    UndecidedWalk,
 )
-from core.samples import Recording
+from core.samples import Recording, RecordingKind
 
 CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
 
@@ -204,10 +205,33 @@ class Recordings:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
 
-    def known(self) -> frozenset[UUID]:
-        """All that have a row: a journal of any other is an orphan."""
+    def known(self) -> Mapping[UUID, frozenset[int]]:
+        """All that have a row, and which segments it knows of: a journal of any other recording is an orphan."""
         with self._desk.reading() as session:
-            return frozenset(session.scalars(select(RecordingRow.id)))
+            segments: dict[UUID, set[int]] = {one: set() for one in session.scalars(select(RecordingRow.id))}
+            for recording_id, segment in session.execute(select(JournalRow.recording_id, JournalRow.segment)):
+                segments[recording_id].add(segment)
+        return {recording_id: frozenset(own) for recording_id, own in segments.items()}
+
+    def undecided(self) -> tuple[UndecidedWalk, ...]:
+        """Walks that were recovered, and of which nobody has said since whether they are kept; of no deleted patient.
+
+        In order of time.
+        """
+        wanted = (
+            select(RecordingRow, PatientRow.id, PatientRow.code)
+            .join(SessionRow, RecordingRow.session_id == SessionRow.id)
+            .join(PatientRow, SessionRow.patient_id == PatientRow.id)
+            .where(RecordingRow.state == RecordingState.RECOVERED, RecordingRow.judged_by == "", RecordingRow.is_kept)
+            .where(RecordingRow.kind == RecordingKind.WALKING, RecordingRow.journals.any())
+            .where(SessionRow.deleted_at.is_(None), PatientRow.deleted_at.is_(None))
+            .order_by(RecordingRow.id)
+        )
+        with self._desk.reading() as session:
+            return tuple(
+                UndecidedWalk(stored_recording(row), patient_id, code)
+                for row, patient_id, code in session.execute(wanted)
+            )
 
     def still_open(self) -> tuple[StoredRecording, ...]:
         """Those that nobody stopped: they are to be recovered, unless they are being recorded now."""

@@ -4,6 +4,8 @@ Two kinds are found: rows that nobody closed, and orphans, journals that no row 
 answer when they were begun. An orphan says itself which session it is of, unless its beginning is damaged. Nothing is
 changed in a journal: whatever is proved in it is there, and is read in the same way as after a clean stop. Only the
 program that holds the library alone may ask (`opened.held_alone`), for what another program is recording is open, too.
+
+A third kind comes home late (`app.storage.bringing_home`): segments of a recording whose row was closed without them.
 """
 
 import datetime
@@ -14,7 +16,14 @@ from itertools import islice
 from pathlib import Path
 from uuid import UUID
 
-from app.storage.journal.header import HEADER_BYTES, RESTORE, JournalRefusedError, find_segments, read_header
+from app.storage.journal.header import (
+    HEADER_BYTES,
+    RESTORE,
+    JournalHeader,
+    JournalRefusedError,
+    find_segments,
+    read_header,
+)
 from app.storage.journal.payloads import Belonging, SourceEntry
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
 from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
@@ -87,9 +96,14 @@ def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
     OSError
         The folder of the recordings cannot be read.
     """
-    files = find_segments(opened.recordings)
-    known = opened.library.recordings.known()
-    rows = {recording.id: recording for recording in opened.library.recordings.still_open()}
+    files, recordings = find_segments(opened.recordings), opened.library.recordings
+    known = recordings.known()
+    rows = {recording.id: recording for recording in recordings.still_open()}
+    for recording_id, segments in files.items():
+        if recording_id in known and recording_id not in rows and not segments.keys() <= known[recording_id]:
+            late = recordings.find(recording_id)
+            if late is not None and late.state is not RecordingState.DISCARDED:
+                rows[recording_id] = late
     orphans = [recording_id for recording_id in files if recording_id not in known]
     wanted = [*rows, *orphans]
     return tuple(_look(opened, one, rows.get(one), files.get(one, {})) for one in sorted(wanted, key=str))
@@ -164,17 +178,35 @@ def _look(
     if missing := sorted(keys.keys() - segments.keys()):
         problem = tr("part {number} of this recording is missing").format(number=missing[0])
         return Interrupted(recording_id, stored, segments, None, 0.0, problem, RESTORE)
-    began_at, recorded_s = None, 0.0
+    began_at, length = None, _Length()
     try:
         for number, path in segments.items():
             header = read_header(path, keys.get(number))
             last = _last_record(path, Seal(header, header.key(opened.data_key, path.name)))
-            recorded_s += (last.time_ns - header.opened_ns) / 1e9 if last else 0.0
+            length.add(header, last.time_ns if last else header.opened_ns)
             began_at = began_at or datetime.datetime.fromtimestamp(header.opened_wall_ns / 1e9, datetime.UTC)
     except JournalRefusedError as refusal:
-        return Interrupted(recording_id, stored, segments, began_at, recorded_s, refusal.what, refusal.remedy)
+        return Interrupted(recording_id, stored, segments, began_at, length.seconds, refusal.what, refusal.remedy)
     belonging = None if stored else _belonging(opened, segments)
-    return Interrupted(recording_id, stored, segments, began_at, recorded_s, belonging=belonging)
+    return Interrupted(recording_id, stored, segments, began_at, length.seconds, belonging=belonging)
+
+
+class _Length:
+    """How long a recording is, by its segments in order: those that continue one have its beginning."""
+
+    def __init__(self) -> None:
+        self._done_s = self._present_s = 0.0
+        self.before: JournalHeader | None = None
+
+    def add(self, header: JournalHeader, last_ns: int) -> None:
+        if self.before is None or not header.continues(self.before):
+            self._done_s, self._present_s = self.seconds, 0.0
+        self._present_s = max(self._present_s, (last_ns - header.opened_ns) / 1e9)
+        self.before = header
+
+    @property
+    def seconds(self) -> float:
+        return self._done_s + self._present_s
 
 
 def _belonging(opened: OpenedLibrary, segments: Mapping[int, Path]) -> Belonging | None:
@@ -215,18 +247,35 @@ class _Contents:
     """What a whole reading of all segments says."""
 
     def __init__(self, opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> None:
-        self.recorded_s, self.is_simulated = 0.0, False
+        self.is_simulated, self._length = False, _Length()
         self.reports: list[ReadReport] = []
+        self._are_whole: list[bool] = []
         self.journals: list[StoredJournal] = []
         keys = _row_keys(interrupted.stored)
         self._total = max(sum(path.stat().st_size for path in interrupted.segments.values()), 1)
         self._read = self._told = 0
         for number, path in interrupted.segments.items():
             reader = JournalReader(path, opened.data_key, keys.get(number))
+            self._note_continued(reader.header)
             self._read_segment(reader, report)
             self.reports.append(reader.report)
+            self._are_whole.append(reader.report.is_whole)
             wrapped_key = reader.header.wrapped_key or None
             self.journals.append(StoredJournal(number, path.name, wrapped_key, reader.report.sha256))
+
+    @property
+    def recorded_s(self) -> float:
+        return self._length.seconds
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether it was stopped, and all is there but what a disk that was taken out had not yet written."""
+        return bool(self._are_whole) and all(self._are_whole)
+
+    def _note_continued(self, header: JournalHeader) -> None:
+        """A segment that was gone on with needs no footer: what its end lacks is a gap, and counted as one."""
+        if self._length.before is not None and header.continues(self._length.before):
+            self._are_whole[-1] = not self.reports[-1].missing_records
 
     def _read_segment(self, reader: JournalReader, report: Report) -> None:
         last_ns = reader.header.opened_ns
@@ -241,7 +290,7 @@ class _Contents:
             if self._read - self._told >= EVERY_BYTES:
                 self._told = self._read
                 report(min(self._read / self._total, 1.0), "recovering")
-        self.recorded_s += (last_ns - reader.header.opened_ns) / 1e9
+        self._length.add(reader.header, last_ns)
 
 
 def _close(opened: OpenedLibrary, stored: StoredRecording, contents: _Contents) -> Recovered:
@@ -249,8 +298,8 @@ def _close(opened: OpenedLibrary, stored: StoredRecording, contents: _Contents) 
     for journal in contents.journals:
         if journal.segment not in told:
             opened.library.recordings.add_journal(stored.id, journal)
-    is_whole = bool(contents.reports) and all(report.is_whole for report in contents.reports)
-    state = RecordingState.CLOSED if is_whole else RecordingState.RECOVERED  # only its row was left over
+    # whole: only its row was left over
+    state = RecordingState.CLOSED if contents.is_whole else RecordingState.RECOVERED
     hashes = {journal.segment: journal.sha256 for journal in contents.journals}
     closed = opened.library.recordings.close(stored.id, state, hashes)
     return Recovered(closed, contents.recorded_s, tuple(contents.reports))

@@ -156,6 +156,15 @@ class StoredRecording:
 
 
 @dataclass(frozen=True, slots=True)
+class UndecidedWalk:
+    """A walk that was recovered, of which nobody has said yet whether it is kept, and whose it is."""
+
+    recording: StoredRecording
+    patient_id: UUID
+    patient_code: str
+
+
+@dataclass(frozen=True, slots=True)
 class Limits:
     """What the patient's body does not allow on this visit: it has no key in a session folder, so it stays here.
 

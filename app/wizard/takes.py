@@ -76,7 +76,7 @@ class Takes(QObject):
     begun = Signal()
     ended = Signal(object)  # Take
     refused = Signal(str, str)
-    troubled = Signal(str, str)  # of the disk, while recording: what happened, and what to do
+    troubled = Signal(str, str)  # of the disk, or of the library's folder: what happened, and what to do
     _met = Signal(str)  # Trouble; emitted by whichever thread meets it
 
     def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
@@ -102,6 +102,8 @@ class Takes(QObject):
         self._waited.setInterval(WAITED_MS)
         self._waited.timeout.connect(self._on_waited)
         self._met.connect(self._on_met)
+        desk.gone.connect(self.troubled)
+        desk.back.connect(self.troubled)
 
     @property
     def is_recording(self) -> bool:
@@ -308,7 +310,10 @@ class Takes(QObject):
     @Slot(str)
     def _on_met(self, met: str) -> None:
         what, remedy = TOLD[trouble := Trouble(met)]
-        self.troubled.emit(f"{tr(what)}.", f"{tr(remedy)}.")
+        if trouble is Trouble.MOVED:
+            self.troubled.emit(*self._moved())
+        else:
+            self.troubled.emit(f"{tr(what)}.", f"{tr(remedy)}.")
         if trouble in ENDS:
             self.stop()
 
@@ -316,13 +321,22 @@ class Takes(QObject):
         self._recorder = recorder
         self._is_restrapped = False
         self.begun.emit()
-        if not recorder.has_row:
+        if recorder.is_away:
+            self.troubled.emit(*self._moved())
+        elif not recorder.has_row:
             self.troubled.emit(
                 tr("The library does not answer."),
                 tr("The recording goes on, safe on the disk; it is added as soon as the library answers."),
             )
         if self._must_stop:
             self.stop(self._strides, is_kept=self._must_keep)
+
+    def _moved(self) -> tuple[str, str]:
+        """Say where the recording is kept while its library is gone, or cannot be written."""
+        what, remedy = TOLD[Trouble.MOVED]
+        shelter = self._desk.state.library.shelter if self._desk.state is not None else None
+        place = shelter.folder if shelter is not None else ""
+        return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
 
     def _on_read_back(self, result: tuple[StoredRecording, Recording]) -> None:
         stored, recording = result
@@ -363,7 +377,7 @@ class Takes(QObject):
         is_first = self._is_stopping or self._readings == 1
         self._is_reading = False
         self._go_on()
-        if self._desk.state is not None and self._readings < MOST_READINGS:
+        if self._desk.state is not None and (self._desk.is_gone or self._readings < MOST_READINGS):
             self._again.start()
             self.changed.emit()
             if is_first:

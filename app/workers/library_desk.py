@@ -17,14 +17,16 @@ from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Lock
 from typing import TYPE_CHECKING, NamedTuple, ParamSpec, TypeVar
+from uuid import UUID
 from weakref import WeakMethod, ref
 
 from PySide6.QtCore import QObject, QThread, Signal
 from shiboken6 import isValid
 
-from app.wording import tr
+from app.wording import tr, tr_n
 from app.workers.background import Background, Report
 from app.workers.library_opening import demonstration, let_keyring_remember, logged_in, slots_of, tidy
+from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
@@ -51,6 +53,8 @@ class OpenedState:
         Recordings that nobody stopped, to be looked at.
     is_end_lost
         The library was not closed well, and what was saved last is damaged.
+    brought_home
+        Recordings that were made while the library was gone, and are in it again.
     recovery_key
         Of a library that was just made, to be shown once; else empty.
     """
@@ -59,6 +63,7 @@ class OpenedState:
     operator: "Operator"
     interrupted: tuple["Interrupted", ...] = ()
     is_end_lost: bool = False
+    brought_home: frozenset[UUID] = frozenset()
     recovery_key: str = field(default="", repr=False)
 
     @property
@@ -84,6 +89,8 @@ class LibraryDesk(QObject):
     not_opened = Signal(str, str, bool)  # what, remedy, whether it was the key that did not open
     closed = Signal()
     refused = Signal(str, str)  # of a call whose asker does not listen to refusals
+    gone = Signal(str, str)  # the library's folder, while it is open: what happened, and what to do
+    back = Signal(str, str)  # it is there again: and what was recorded meanwhile
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -93,6 +100,8 @@ class LibraryDesk(QObject):
         for lane in (self._calls, self._recordings):
             lane.told.connect(self._on_told)
         self._state: OpenedState | None = None
+        self._watch: LibraryWatch | None = None
+        self._is_gone = False
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
@@ -104,6 +113,11 @@ class LibraryDesk(QObject):
     def state(self) -> OpenedState | None:
         """The library that is open, as it was when it was opened; None while there is none."""
         return self._state
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether the folder of the library that is open is gone from its place."""
+        return self._is_gone
 
     def run(
         self,
@@ -245,6 +259,7 @@ class LibraryDesk(QObject):
     def _end_library(self) -> None:
         """What is asked next closes the library: not before the last recording has ended."""
         self.stop_long()
+        self._end_watch()
         if self._state is not None:
             self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
         self._state = None
@@ -254,6 +269,7 @@ class LibraryDesk(QObject):
             self._tell_refusal(job, outcome.what, outcome.remedy)
         elif isinstance(outcome, OpenedState):
             self._state = outcome
+            self._begin_watch(outcome)
             self.opened.emit(outcome)
         elif isinstance(outcome, _NotOpened):
             self.not_opened.emit(outcome.what, outcome.remedy, outcome.is_key)
@@ -261,6 +277,44 @@ class LibraryDesk(QObject):
             self.closed.emit()
         elif done := job.listening(job.done):
             done(outcome)
+
+    def _begin_watch(self, state: OpenedState) -> None:
+        self._end_watch()
+        self._watch = LibraryWatch(state.library, self)
+        self._watch.went.connect(self._on_gone)
+        self._watch.came_back.connect(self._on_back)
+        self._watch.left_away.connect(self._on_left_away)
+        self._watch.start()
+
+    def _end_watch(self) -> None:
+        watch, self._watch, self._is_gone = self._watch, None, False
+        if watch is not None:
+            watch.finish()
+            watch.deleteLater()
+
+    def _on_gone(self) -> None:
+        if self._state is None or self.sender() is not self._watch:
+            return
+        self._is_gone = True
+        self.gone.emit(*_gone_words(self._state.library))
+
+    def _on_back(self, brought: int) -> None:
+        if self._state is None or self.sender() is not self._watch:
+            return
+        self._is_gone = False
+        then = tr("Nothing had to be added to it.")
+        if brought:
+            one = "{count} recording that was made meanwhile is in it now."
+            then = tr_n(one, "{count} recordings that were made meanwhile are in it now.", brought)
+        self.back.emit(tr("The library is back."), then.format(count=brought))
+
+    def _on_left_away(self, why: str) -> None:
+        shelter = self._state.library.shelter if self._state is not None else None
+        if shelter is None or self.sender() is not self._watch:
+            return
+        what = tr("What was recorded while the library was gone could not be added to it yet ({why}).")
+        then = tr("It is kept in {shelter}, and is tried again by itself. See to the library's disk.")
+        self.refused.emit(what.format(why=why), then.format(shelter=shelter.folder))
 
     def _tell_refusal(self, job: "_Job", what: str, remedy: str) -> None:
         if job.failed is None:
@@ -419,14 +473,35 @@ class _Holder:
             _log.warning("what is overdue was not removed", exc_info=error)
 
 
+def _gone_words(library: "OpenedLibrary") -> Refusal:
+    """What is said of a library whose folder is gone, whether something is being recorded or not."""
+    from app.storage.root import GONE
+
+    what = tr(GONE).format(folder=library.folder) + "."
+    if library.shelter is None:
+        return Refusal(what, tr("The demonstration ends here. Open it again."))
+    then = tr(
+        "Put its folder back, or connect its disk. Until then recordings are kept on this computer in {shelter}, "
+        "encrypted as always, and added to the library by themselves once it is back."
+    )
+    return Refusal(what, then.format(shelter=library.shelter.folder))
+
+
 def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
+    from app.storage.bringing_home import bring_home
     from app.storage.opened import held_alone
     from app.storage.recovery import find_interrupted
 
     ends.enter_context(held_alone(library.folder))
     operator = library.library.operator
     assert operator is not None  # whoever opens a library is logged in
-    return OpenedState(library, operator, find_interrupted(library), library.library.is_end_lost)
+    brought: frozenset[UUID] = frozenset()
+    try:
+        brought = bring_home(library)
+    except OSError as error:  # the watch tries again, and says so
+        _log.warning("what is in the shelter cannot be brought home", exc_info=error)
+    found = find_interrupted(library)
+    return OpenedState(library, operator, found, library.library.is_end_lost, brought)
 
 
 def _look(folder: Path) -> LibraryPlace:

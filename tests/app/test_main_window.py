@@ -441,3 +441,56 @@ def test_the_window_waits_for_no_slow_import() -> None:
     check = f"import sys, app.main_window; print([m for m in {slow} if m in sys.modules])"
     said = subprocess.run([sys.executable, "-c", check], capture_output=True, text=True, check=True)
     assert said.stdout.strip() == "[]"
+
+
+def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
+    qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
+) -> None:
+    """It opens by itself when it is back; a new one is made only by whoever asks for that."""
+    settings.latest_library = str(folder)
+    elsewhere = folder.with_name("renamed")
+    folder.rename(elsewhere)
+    window = open_window(folder)
+    entry = window.entry
+    assert entry is not None
+    page = entry.first_start
+    assert window.screens.currentWidget() is page
+    assert str(folder) in page._missing_lead.text()
+    assert page.look_again.isVisible()
+    assert not page.make.isVisible()
+    assert page.look_again.hasFocus()
+    page.look_again.click()
+    assert page.banner.text == "The library is still missing. Connect its disk, or put its folder back."
+    assert not folder.exists()
+    page.make_another.click()
+    assert page.make.isVisible()
+    entry.begin()
+    assert not page.make.isVisible()
+    elsewhere.rename(folder)
+    qtbot.waitUntil(lambda: window.screens.currentWidget() is entry.log_in, timeout=WAIT_MS)
+
+
+def test_where_no_library_was_the_first_start_offers_one(open_window: Open, folder: Path, tmp_path: Path) -> None:
+    window = open_window(tmp_path / "none")
+    assert window.entry is not None
+    assert window.entry.first_start.make.isVisible()
+    assert not window.entry.first_start.look_again.isVisible()
+
+
+def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
+    qtbot: QtBot, open_window: Open, settings: Settings, folder: Path
+) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert settings.latest_library == str(folder)
+    home = window.home
+    assert home is not None
+    elsewhere = folder.with_name("renamed")
+    folder.rename(elsewhere)
+    qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is gone from {folder}."), timeout=WAIT_MS)
+    window._lock()
+    entry = window.entry
+    assert entry is not None
+    elsewhere.rename(folder)
+    qtbot.waitUntil(lambda: home.banner.text.startswith("The library is back."), timeout=WAIT_MS)
+    assert entry.log_in.banner.text.startswith("The library is back.")

@@ -85,10 +85,11 @@ class _LibraryGoneError(Exception):
 
 
 class JournalWriter:
-    """One segment of one recording, and its continuation where its library goes away. Every method may be called from any thread and, `stop` aside, waits for no disk.
+    """One segment of one recording, and its continuation where its library goes away.
 
-    `received`, `sent`, `samples` and `mark` return whether the record was taken. `on_trouble` is called once for each
-    kind of trouble, from whichever thread meets it, within a second of it; it must not call `stop`.
+    Every method may be called from any thread and, `stop` aside, waits for no disk. `received`, `sent`, `samples` and
+    `mark` return whether the record was taken. `on_trouble` is called once for each kind of trouble, from whichever
+    thread meets it, within a second of it; it must not call `stop`.
     """
 
     def __init__(

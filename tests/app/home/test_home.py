@@ -23,6 +23,7 @@ from app.storage.journal.writer import JournalWriter
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.stored import Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
 from app.widgets.button import Button
@@ -271,9 +272,67 @@ def test_what_was_being_recorded_is_recovered_and_marked(
     (marked,) = (line for line in sessions(home) if line.needs_look)
     assert (marked.id, marked.state) == (session_id, "recovered, look at it")
     qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
-    home._on_session_opened(session_id)
+
+
+def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+) -> None:
+    """The library knows it, so a new program does: nothing of this is remembered in a window."""
+    session_id = leave_open(folder)
+    recover_all(folder)
+    home = new_home(qtbot, desk, settings)
+    open_library(qtbot, desk, home, folder)
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    asked = "walk 3 of P-0163 was recovered earlier, and nobody has said yet whether it is kept."
+    assert home.banner.text == f"{asked} Look at it, then keep or discard."
+    qtbot.waitUntil(lambda: [one.needs_look for one in lines(home)] == [True, False], timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: [one.id for one in sessions(home) if one.needs_look] == [session_id], timeout=WAIT_MS)
+    home.session_opened.emit(session_id)  # looking is not deciding
     home.refresh()
-    qtbot.waitUntil(lambda: not any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: any(one.needs_look for one in sessions(home)), timeout=WAIT_MS)
+    with Library.open(folder, KeySlots(folder / KEYS).open("hk", PASSPHRASE)) as library:
+        library.log_in("hk")
+        (walk,) = library.recordings.undecided()
+        library.recordings.decide(walk.recording, is_kept=True)
+    home.refresh()
+    qtbot.waitUntil(lambda: not any(line.needs_look for line in [*sessions(home), *lines(home)]), timeout=WAIT_MS)
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
+        desk.close()
+    later = new_home(qtbot, desk, settings)
+    open_library(qtbot, desk, later, folder)
+    qtbot.waitUntil(lambda: len(sessions(later)) == 3, timeout=WAIT_MS)
+    assert later.banner.isHidden()
+    assert not any(line.needs_look for line in [*sessions(later), *lines(later)])
+
+
+def test_several_recovered_walks_are_asked_for_together(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+) -> None:
+    leave_open(folder)
+    leave_open(folder, has_row=False, says_session=True)
+    recover_all(folder)
+    home = new_home(qtbot, desk, settings)
+    open_library(qtbot, desk, home, folder)
+    qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
+    assert home.banner.text.startswith("2 walks were recovered earlier, and nobody has said yet whether they are kept.")
+
+
+def new_home(qtbot: QtBot, desk: LibraryDesk, settings: Settings) -> Home:
+    load_fonts()
+    home = Home(Look(), desk, settings)
+    qtbot.addWidget(home)
+    home.show()
+    return home
+
+
+def recover_all(folder: Path) -> None:
+    """As another program has done before: the command line, or this one when it was last started."""
+    data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    with Library.open(folder, data_key) as library:
+        library.log_in("hk")
+        opened = OpenedLibrary(library, folder, data_key)
+        for one in find_interrupted(opened):
+            (recover if one.stored is not None else adopt_home)(opened, one, lambda _share, _what: None)
 
 
 def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
@@ -302,11 +361,13 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     left = list(desk.state.library.recordings.iterdir())
     home.banner._dismiss.click()
     looked_through: list[object] = []
-    home.recovering.recovered.connect(looked_through.append)
+    home.recovering.recovered.connect(lambda: looked_through.append(None))
     open_library(qtbot, desk, home, folder)
     qtbot.waitUntil(lambda: bool(looked_through), timeout=WAIT_MS)
     assert desk.state is not None
     assert len(desk.state.interrupted) == 2  # they are kept, but told of no more
+    assert home.banner.text.startswith("walk 3 of P-0163 was recovered earlier")
+    home.banner._dismiss.click()
     assert home.banner.isHidden()
     assert set(left) <= set(desk.state.library.recordings.iterdir())
 

@@ -29,6 +29,12 @@ class StoppedError(Exception):
     """What a report raises when nobody waits any more."""
 
 
+@pytest.fixture(autouse=True)
+def _backups(tmp_path: Path) -> None:
+    """A backup makes no folder for itself: where there is none, a disk is not connected."""
+    (tmp_path / "backups").mkdir()
+
+
 def test_a_restored_library_opens_with_the_same_passphrase_and_holds_the_same(
     opened: OpenedLibrary, session_id: UUID, record: Record, tmp_path: Path
 ) -> None:

@@ -1,0 +1,115 @@
+"""What was recorded while the library was gone comes home from the shelter, each segment once.
+
+A journal is copied beside its place, synced and renamed, and only then is the shelter's made unreadable and removed.
+Killed anywhere in between, the next time goes on: a copy that is not whole has no journal's name, and what is whole in
+the library already is not taken again. What is being recorded in the shelter stays there until it is stopped.
+"""
+
+import filecmp
+import logging
+import os
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from threading import Lock
+from uuid import UUID
+
+from app.storage.files import hold, sync_folder
+from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments, read_header
+from app.storage.opened import OpenedLibrary
+
+BESIDE = ".new"
+_one_at_a_time = Lock()
+_log = logging.getLogger(__name__)
+
+
+def bring_home(opened: OpenedLibrary) -> frozenset[UUID]:
+    """Bring all segments home that nobody is writing; the recordings that something was brought of.
+
+    Raises
+    ------
+    LibraryGoneError
+        The library is not there.
+    OSError
+        A file cannot be read or written: it stays in the shelter, and those that were brought are in the library.
+    """
+    shelter = opened.shelter
+    if shelter is None or opened.library.root is None or not shelter.folder.is_dir():
+        return frozenset()
+    brought = set()
+    with _one_at_a_time:
+        opened.library.root.refuse_gone()
+        for recording_id, segments in sorted(find_segments(shelter.folder).items()):
+            for path in segments.values():
+                if _bring(path, opened.recordings):
+                    brought.add(recording_id)
+        if not any(shelter.folder.iterdir()):
+            shelter.folder.rmdir()
+    return frozenset(brought)
+
+
+def _bring(path: Path, recordings: Path) -> bool:
+    """Bring one segment home, which is then in the library and nowhere else; whether it was not there before."""
+    with _held_by_nobody(path) as is_free:
+        if not is_free:
+            return False
+        if _is_done_with(path):
+            path.unlink()  # this is all that was left to do
+            return False
+        target = recordings / path.name
+        is_new = not target.exists()
+        if is_new:
+            recordings.mkdir(mode=0o700, exist_ok=True)
+            _copy(path, target)
+        elif not filecmp.cmp(path, target, shallow=False):
+            _log.error("%s is in the library with another content: the one in the shelter stays there", path.name)
+            return False
+        _destroy(path)
+    return is_new
+
+
+def _copy(source: Path, target: Path) -> None:
+    beside = target.with_name(target.name + BESIDE)
+    with (
+        source.open("rb") as file,
+        os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to,
+    ):
+        shutil.copyfileobj(file, to)
+        to.flush()
+        os.fsync(to.fileno())
+    beside.replace(target)
+    sync_folder(target.parent)
+
+
+def _is_done_with(path: Path) -> bool:
+    """Whether it is at home already: only what is, is made unreadable."""
+    try:
+        return read_header(path).is_key_destroyed
+    except JournalRefusedError:  # damaged: it comes home as it is, where recovery says so
+        return False
+
+
+def _destroy(path: Path) -> None:
+    """Remove a segment that is at home: what is destroyed there later shall not be on this disk still."""
+    try:
+        destroy_key(path)
+    except JournalRefusedError as refusal:  # its beginning is damaged
+        _log.warning("a journal in the shelter is removed as it is: %s", refusal.what)
+    path.unlink()
+    sync_folder(path.parent)
+
+
+@contextmanager
+def _held_by_nobody(path: Path) -> Iterator[bool]:
+    """Whether nobody writes the file; if so, nobody else brings it home meanwhile."""
+    descriptor = os.open(path, os.O_RDWR)
+    try:
+        try:
+            hold(descriptor)
+        except BlockingIOError:
+            yield False
+            return
+        yield True
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,164 @@
+"""A library that goes away while it is open is missed within a second, and welcomed back with what was recorded."""
+
+import shutil
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from uuid import UUID
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.storage.bringing_home import bring_home
+from app.storage.database.ids import uuid7
+from app.storage.journal.disk import Room
+from app.storage.journal.payloads import Belonging
+from app.storage.journal.writer import JournalWriter
+from app.storage.keys import Cost, KeySlots
+from app.storage.library import Library
+from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.stored import Operator, Role
+from app.workers.library_desk import LibraryDesk
+from core.samples import Patient, Recording, RecordingKind, Session
+
+PASSPHRASE = "four short words here"
+WAIT_MS = 20_000  # on a busy machine
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
+
+
+@pytest.fixture(autouse=True)
+def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("watched")
+    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)).close()
+    return folder
+
+
+@pytest.fixture
+def folder(untouched: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(untouched, tmp_path / "library"))
+
+
+@pytest.fixture
+def desk(qtbot: QtBot, folder: Path) -> Iterator[LibraryDesk]:
+    desk = LibraryDesk()
+    open_at(qtbot, desk, folder)
+    yield desk
+    desk.finish()
+
+
+def open_at(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
+        desk.open(folder, PASSPHRASE)
+
+
+def opened_of(desk: LibraryDesk) -> OpenedLibrary:
+    assert desk.state is not None
+    return desk.state.library
+
+
+def visit_of(opened: OpenedLibrary) -> UUID:
+    patient = opened.library.patients.create(Patient(code="P-001"))
+    return opened.library.sessions.create(patient.id, Session(())).id
+
+
+def record_away(opened: OpenedLibrary, session_id: UUID, name: str = "walk 1") -> UUID:
+    """A recording that was made while the library was gone."""
+    recording_id, told = uuid7(), Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+    writer = JournalWriter.create(
+        opened.recordings, recording_id, opened.data_key, room=ANY_ROOM, shelter=opened.shelter
+    )
+    writer.mark(Belonging(session_id, told).text())
+    assert writer.stop().is_away
+    return recording_id
+
+
+def test_it_is_missed_within_a_second_and_said_where_recordings_go(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    opened = opened_of(desk)
+    elsewhere = folder.with_name("renamed")
+    assert not desk.is_gone
+    began_s = time.monotonic()
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS) as said:
+        folder.rename(elsewhere)
+    assert time.monotonic() - began_s < 1.5
+    what, then = said.args or ["", ""]
+    assert what == f"The library is gone from {folder}."
+    assert opened.shelter is not None
+    assert str(opened.shelter.folder) in then
+    assert "connect its disk" in then
+    assert desk.is_gone
+    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+        elsewhere.rename(folder)
+    assert said.args == ["The library is back.", "Nothing had to be added to it."]
+    assert not desk.is_gone
+    assert not opened.shelter.folder.exists()
+
+
+def test_what_was_recorded_meanwhile_is_home_once_it_is_back(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    opened = opened_of(desk)
+    session_id = visit_of(opened)
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    recording_id = record_away(opened, session_id)
+    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+        elsewhere.rename(folder)
+    assert said.args is not None
+    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
+
+
+def test_what_was_recorded_meanwhile_is_home_at_the_next_start(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    """Of this library: of another one nothing is taken."""
+    opened = opened_of(desk)
+    session_id = visit_of(opened)
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    recording_id = record_away(opened, session_id)
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
+        desk.close()
+    elsewhere.rename(folder)
+    open_at(qtbot, desk, folder)
+    assert desk.state is not None
+    assert desk.state.brought_home == {recording_id}
+    assert [(one.recording_id, one.problem) for one in desk.state.interrupted] == [(recording_id, "")]
+    open_at(qtbot, desk, folder)
+    assert desk.state.brought_home == frozenset()
+
+
+def test_a_library_that_stays_is_not_missed(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    with qtbot.assertNotEmitted(desk.gone, wait=1200):
+        opened_of(desk).library.patients.create(Patient(code="P-002"))
+
+
+def test_what_cannot_be_brought_home_is_said_once_and_kept(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened = opened_of(desk)
+    session_id = visit_of(opened)
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    recording_id = record_away(opened, session_id)
+
+    def full(_source: Path, _target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("app.storage.bringing_home._copy", full)
+    with qtbot.waitSignal(desk.refused, timeout=WAIT_MS) as said:
+        elsewhere.rename(folder)
+    assert said.args is not None
+    assert "could not be added to it yet (No space left on device)" in said.args[0]
+    assert opened.shelter is not None
+    assert str(opened.shelter.folder) in said.args[1]
+    monkeypatch.undo()
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: folder.parent / "data")
+    assert bring_home(opened) == {recording_id}
