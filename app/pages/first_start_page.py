@@ -140,8 +140,8 @@ class FirstStartPage(EntryPage):
         self._missing_card = Card(self._look, padding=24, spacing=16)
         self._missing_card.column.addWidget(self.look_again)
         self._missing_card.column.addWidget(self.make_another)
-        for part in (self._missing_title, self._missing_lead, self._missing_card):
-            self.column.addWidget(part)
+        for one in (self._missing_title, self._missing_lead, self._missing_card):
+            self.column.addWidget(one)
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
         self.column.addWidget(self._first)

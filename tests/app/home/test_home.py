@@ -295,14 +295,14 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
         (walk,) = library.recordings.undecided()
         library.recordings.decide(walk.recording, is_kept=True)
     home.refresh()
-    qtbot.waitUntil(lambda: not any(line.needs_look for line in [*sessions(home), *lines(home)]), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not any_needs_look(home), timeout=WAIT_MS)
     with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
         desk.close()
     later = new_home(qtbot, desk, settings)
     open_library(qtbot, desk, later, folder)
     qtbot.waitUntil(lambda: len(sessions(later)) == 3, timeout=WAIT_MS)
     assert later.banner.isHidden()
-    assert not any(line.needs_look for line in [*sessions(later), *lines(later)])
+    assert not any_needs_look(later)
 
 
 def test_several_recovered_walks_are_asked_for_together(
@@ -315,6 +315,10 @@ def test_several_recovered_walks_are_asked_for_together(
     open_library(qtbot, desk, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert home.banner.text.startswith("2 walks were recovered earlier, and nobody has said yet whether they are kept.")
+
+
+def any_needs_look(home: Home) -> bool:
+    return any(line.needs_look for line in sessions(home)) or any(line.needs_look for line in lines(home))
 
 
 def new_home(qtbot: QtBot, desk: LibraryDesk, settings: Settings) -> Home:

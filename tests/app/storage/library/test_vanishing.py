@@ -21,7 +21,7 @@ from app.storage.database.ids import uuid7
 from app.storage.exchange import import_session
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.disk import JournalFile, Trouble
-from app.storage.journal.header import find_segments
+from app.storage.journal.header import destroy_key, find_segments
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter, State
 from app.storage.library import FILE_NAME, Library
@@ -238,18 +238,17 @@ def test_another_library_at_the_same_path_is_not_mistaken_for_it(
     assert bring_home(opened) == {lines.id}
 
 
-def test_a_folder_whose_content_is_another_library_is_not_mistaken_either(
-    opened: OpenedLibrary, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_whose_content_is_another_library_is_not_mistaken_either(opened: OpenedLibrary) -> None:
     """The same folder, by its number on the disk: emptied, or filled from elsewhere."""
-    assert opened.is_there
-    own = (opened.folder / ID_FILE).read_text()
-    (opened.folder / ID_FILE).write_text("0" * 32)
-    assert not opened.is_there
-    (opened.folder / ID_FILE).unlink()
-    assert not opened.is_there
-    (opened.folder / ID_FILE).write_text(own)
-    assert opened.is_there
+    file = opened.folder / ID_FILE
+    own, seen = file.read_text(), [opened.is_there]
+    file.write_text("0" * 32)
+    seen.append(opened.is_there)
+    file.unlink()
+    seen.append(opened.is_there)
+    file.write_text(own)
+    seen.append(opened.is_there)
+    assert seen == [True, False, False, True]
 
 
 def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None:
@@ -328,7 +327,7 @@ def killed_at(step: str) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(shutil, "copyfileobj", copying)
         patch.setattr(Path, "replace", ends(renaming, "after the rename"))
-        patch.setattr(bringing_home, "destroy_key", ends(bringing_home.destroy_key, "key gone"))
+        patch.setattr(bringing_home, "destroy_key", ends(destroy_key, "key gone"))
         patch.setattr(Path, "unlink", ends(Path.unlink, "file gone"))
         yield
 

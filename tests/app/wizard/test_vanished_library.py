@@ -1,0 +1,221 @@
+"""The library's folder is renamed amid a visit: what is recorded is kept, said where, and in its session in the end."""
+
+import shutil
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QSettings, Qt
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.acquisition.acquisition import Acquisition
+from app.main_window import MainWindow
+from app.settings import Settings
+from app.storage.stored import RecordingState
+from app.theme import Look, load_fonts
+from app.wizard import wizard as wizard_module
+from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.takes import Take
+from app.wizard.visit import Visit
+from app.wizard.wizard import WALKING, Wizard
+from app.wizard.worn_sensors import SourceChoice
+from app.workers.library_desk import LibraryDesk
+from core.body import Site
+from core.samples import RecordingKind
+from devices.replay import ReplaySource
+from tests.app.wizard.conftest import PASSPHRASE, SPEED
+from tests.app.wizard.test_visit import begin, record
+
+WAIT_MS = 30_000
+
+
+@pytest.fixture(autouse=True)
+def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
+
+
+@pytest.fixture
+def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
+    """A visit with sensors on, whose recordings nobody evaluates."""
+    monkeypatch.setattr(visit, "evaluate", lambda: None)
+    visit.takes._again.setInterval(50)
+    begin(qtbot, visit, worn)
+    return visit
+
+
+def start_walk(qtbot: QtBot, visit: Visit) -> None:
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    acquisition.ask(RecordingKind.WALKING)
+    with qtbot.waitSignal(visit.takes.begun, timeout=WAIT_MS):
+        visit.takes.begin(acquisition, RecordingKind.WALKING)
+
+
+def is_whole(take: Take, seconds: float) -> bool:
+    """Whether each sensor has that much without a gap longer than two samples."""
+    assert take.recording is not None
+    blocks = take.recording.imu.values()
+    steps_s = [float((block.time_s[1:] - block.time_s[:-1]).max()) for block in blocks]
+    return len(steps_s) == len(Site) and max(steps_s) < 0.05 and all(block.time_s[-1] >= seconds for block in blocks)
+
+
+def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
+    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
+) -> None:
+    takes, folder, elsewhere = looked_at.takes, tmp_path / "library", tmp_path / "renamed"
+    start_walk(qtbot, looked_at)
+    qtbot.wait(200)
+    said: list[tuple[str, str]] = []
+    takes.troubled.connect(lambda *words: said.append(words))
+    with qtbot.waitSignals([takes.troubled, desk.gone], timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    assert takes.is_recording
+    qtbot.waitUntil(lambda: len(said) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
+    assert desk.state is not None
+    assert desk.state.library.shelter is not None
+    assert all(str(desk.state.library.shelter.folder) in then for _, then in said)
+    qtbot.wait(200)
+    refused: list[tuple[str, str]] = []
+    takes.refused.connect(lambda *words: refused.append(words))
+    takes.stop()
+    qtbot.waitUntil(lambda: bool(refused), timeout=WAIT_MS)
+    assert refused[0][0] == f"The library is gone from {folder}."
+    qtbot.wait(100)
+    assert not takes.is_idle
+    assert not folder.exists()
+    with qtbot.waitSignals([takes.ended, desk.back], timeout=WAIT_MS):
+        elsewhere.rename(folder)
+    (walk,) = takes.walks
+    assert (walk.stored.state, len(walk.stored.journals)) == (RecordingState.CLOSED, 2)
+    assert is_whole(walk, 0.4 * SPEED)
+    assert not list((tmp_path / "data").rglob("*.journal"))
+    assert record(qtbot, looked_at, RecordingKind.WALKING, 2.0).stored.state is RecordingState.CLOSED
+
+
+def test_renamed_between_two_walks_the_next_begins_all_the_same(
+    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
+) -> None:
+    takes, folder, elsewhere = looked_at.takes, tmp_path / "library", tmp_path / "renamed"
+    record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as said:
+        start_walk(qtbot, looked_at)
+    assert said.args is not None
+    assert said.args[0] == "The library can no longer be written where it was, and the recording goes on."
+    qtbot.wait(200)
+    takes.stop()
+    qtbot.waitUntil(lambda: takes._readings > 16, timeout=WAIT_MS)  # more than it is patient with a busy library
+    assert not takes.is_idle
+    with qtbot.waitSignals([takes.ended, desk.back], timeout=WAIT_MS):
+        elsewhere.rename(folder)
+    assert [(take.told.name, take.stored.state) for take in takes.walks] == [
+        ("walk 1", RecordingState.CLOSED),
+        ("walk 2", RecordingState.CLOSED),
+    ]
+    assert is_whole(takes.walks[1], 0.2 * SPEED)
+    files = sorted(path.name for path in (folder / "recordings").iterdir())
+    assert files == sorted(journal.file for take in takes.walks for journal in take.stored.journals)
+
+
+Opened = Callable[[], MainWindow]
+
+
+@pytest.fixture
+def open_window(
+    qtbot: QtBot,
+    qapp: QApplication,
+    source: ReplaySource,
+    untouched_library: Path,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> Iterator[Opened]:
+    """Open the program on the library that is in a folder of its own, and log in where it asks for that."""
+    choice = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
+    monkeypatch.setattr(wizard_module, "choices", lambda: (choice,))
+    shutil.copytree(untouched_library, tmp_path / "library")
+    load_fonts()
+
+    def end(window: MainWindow) -> None:
+        window.close()
+        window.finish()
+
+    def open_it() -> MainWindow:
+        settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+        window = MainWindow(Look(), settings, tmp_path / "library")
+        qtbot.addWidget(window, before_close_func=end)
+        window.resize(1280, 800)
+        window.show()
+        return window
+
+    yield open_it
+    qapp.setStyleSheet("")
+
+
+def log_in(qtbot: QtBot, window: MainWindow) -> None:
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.isVisible() and page.operator.count() == 1, timeout=WAIT_MS)
+    page.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: window.desk.state is not None and window.home is not None, timeout=WAIT_MS)
+
+
+def notice_of(wizard: Wizard) -> str:
+    step = wizard.current
+    assert isinstance(step, WalkingStep)
+    return step.page.notice.text
+
+
+@pytest.mark.endurance
+def test_a_whole_day_on_which_the_disk_comes_and_goes(
+    qtbot: QtBot, open_window: Opened, worn: dict[str, Site], tmp_path: Path
+) -> None:
+    """Gone amid a walk, closed while it is gone, started without it, back: both walks are in their session, once."""
+    folder, elsewhere = tmp_path / "library", tmp_path / "renamed"
+    window = open_window()
+    log_in(qtbot, window)
+    window._on_session_wished(None)
+    wizard = window._wizard
+    assert wizard is not None
+    visit = wizard.visit
+    assert visit is not None
+    visit.takes._again.setInterval(100)
+    begin(qtbot, visit, worn)
+    wizard._go_to(WALKING)
+    start_walk(qtbot, visit)
+    qtbot.wait(300)
+    began_s = time.monotonic()
+    folder.rename(elsewhere)
+    qtbot.waitUntil(lambda: "encrypted as always" in notice_of(wizard), timeout=WAIT_MS)
+    assert time.monotonic() - began_s < 2.0
+    qtbot.wait(300)
+    visit.takes.stop()
+    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=WAIT_MS)
+    start_walk(qtbot, visit)
+    qtbot.wait(300)
+    window.close()  # amid the second walk, with the library gone
+    window.finish()
+
+    again = open_window()
+    assert again.entry is not None
+    assert again.entry.first_start.look_again.isVisible()
+    assert not folder.exists()
+    elsewhere.rename(folder)
+    log_in(qtbot, again)
+    home = again.home
+    assert home is not None
+    qtbot.waitUntil(lambda: "while the library was gone" in home.banner.text, timeout=WAIT_MS)
+    assert again.desk.state is not None
+    library = again.desk.state.library.library
+    (line,) = library.sessions.list()
+    recordings = library.sessions.get(line.id).recordings
+    assert [(one.told.name, one.state) for one in recordings] == [
+        ("walk 1", RecordingState.CLOSED),
+        ("walk 2", RecordingState.CLOSED),
+    ]
+    assert not list((tmp_path / "data").rglob("*.journal"))
+    assert "backup" not in home.banner.text
