@@ -377,6 +377,8 @@ class MainWindow(QWidget):
             return
         self._covered = self.screens.currentWidget()
         self.entry.cover(state.operator.code, self._is_recording)
+        if self.desk.gone_words is not None:
+            self.entry.tell(*self.desk.gone_words)
 
     def _on_uncovered(self) -> None:
         covered, self._covered = self._covered, None

@@ -65,8 +65,12 @@ class Entry(QObject):
         """
         self._new, self._cover_of, self._tried = None, "", ""
         if not (self._folder / KEYS).exists():
-            is_missing = self._settings.latest_library == str(self._folder)
-            self.first_start.show_missing(str(self._folder) if is_missing else "")
+            if self._settings.latest_library == str(self._folder):
+                from app.storage.root import count_sheltered  # rarely needed
+
+                self.first_start.show_missing(str(self._folder), count_sheltered())
+            else:
+                self.first_start.show_missing("")
             self._show(self.first_start)
             return
         self.log_in.forget_typed()

@@ -17,7 +17,7 @@ from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
-from app.wording import tr
+from app.wording import tr, tr_n
 
 LONGEST_CODE = 12
 GROUPS = 3  # of the recovery key in a line
@@ -86,14 +86,22 @@ class FirstStartPage(EntryPage):
         """Whether the page says that a library is missing."""
         return bool(self._missing)
 
-    def show_missing(self, folder: str) -> None:
-        """Say that the library which was in this folder is missing; none: how to make one."""
+    def show_missing(self, folder: str, waiting: int = 0) -> None:
+        """Say that the library which was in this folder is missing; none: how to make one.
+
+        `waiting` recordings are on this computer until their library is back.
+        """
         self._missing = folder
-        lead = tr(
-            "It was in {folder}, and is not there now. Connect its disk, or put its folder back: it then opens by "
-            "itself. Nothing in it was changed, and what was recorded without it is added when it is back."
-        )
-        self._missing_lead.setText(lead.format(folder=folder))
+        told = [tr("It was in {folder}, and is not there now.").format(folder=folder)]
+        if waiting:
+            kept = tr_n(
+                "{count} recording is kept on this computer until its library is back.",
+                "{count} recordings are kept on this computer until their library is back.",
+                waiting,
+            )
+            told.append(kept.format(count=waiting))
+        told.append(tr("Connect its disk, or put its folder back: it then opens by itself."))
+        self._missing_lead.setText(" ".join(told))
         self._show()
 
     def show_recovery_key(self, key: str) -> None:

@@ -16,6 +16,7 @@ from threading import Lock
 from uuid import UUID
 
 from app.storage.files import hold, sync_folder
+from app.storage.journal.disk import PIECE_BYTES
 from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments, read_header
 from app.storage.opened import OpenedLibrary
 
@@ -58,7 +59,7 @@ def _bring(path: Path, recordings: Path) -> bool:
             path.unlink()  # this is all that was left to do
             return False
         target = recordings / path.name
-        is_new = not target.exists()
+        is_new = not target.exists() or _goes_on(path, target)
         if is_new:
             recordings.mkdir(mode=0o700, exist_ok=True)
             _copy(path, target)
@@ -80,6 +81,20 @@ def _copy(source: Path, target: Path) -> None:
         os.fsync(to.fileno())
     beside.replace(target)
     sync_folder(target.parent)
+
+
+def _goes_on(path: Path, target: Path) -> bool:
+    """Whether a journal is the longer one of two that begin alike: the library was copied while it was recorded."""
+    left = target.stat().st_size
+    if path.stat().st_size <= left:
+        return False
+    with path.open("rb") as file, target.open("rb") as known:
+        while left:
+            piece = known.read(min(PIECE_BYTES, left))
+            if not piece or file.read(len(piece)) != piece:
+                return False
+            left -= len(piece)
+    return True
 
 
 def _is_done_with(path: Path) -> bool:

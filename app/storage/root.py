@@ -46,7 +46,7 @@ class LibraryRoot:
     @property
     def shelter(self) -> Path:
         """Where its recordings are kept while it is gone, on this computer."""
-        return platformdirs.user_data_path("gaitwright", appauthor=False) / SHELTERS / self.id
+        return shelters() / self.id
 
     def is_there(self) -> bool:
         """Whether it is the folder that was opened, where it was opened."""
@@ -76,6 +76,16 @@ class LibraryRoot:
         """
         if not self.is_there():
             raise LibraryGoneError(tr(GONE).format(folder=self.folder), BRING_BACK)
+
+
+def shelters() -> Path:
+    """The folder of all shelters on this computer, of whichever libraries."""
+    return platformdirs.user_data_path("gaitwright", appauthor=False) / SHELTERS
+
+
+def count_sheltered() -> int:
+    """How many recordings wait on this computer for their libraries, by the names of their files."""
+    return len({path.name.partition(".")[0] for path in shelters().glob("*/*.journal")})
 
 
 def read_id(folder: Path) -> str:

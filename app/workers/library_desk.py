@@ -101,7 +101,7 @@ class LibraryDesk(QObject):
             lane.told.connect(self._on_told)
         self._state: OpenedState | None = None
         self._watch: LibraryWatch | None = None
-        self._is_gone = False
+        self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
@@ -117,7 +117,7 @@ class LibraryDesk(QObject):
     @property
     def is_gone(self) -> bool:
         """Whether the folder of the library that is open is gone from its place."""
-        return self._is_gone
+        return self.gone_words is not None
 
     def run(
         self,
@@ -287,7 +287,7 @@ class LibraryDesk(QObject):
         self._watch.start()
 
     def _end_watch(self) -> None:
-        watch, self._watch, self._is_gone = self._watch, None, False
+        watch, self._watch, self.gone_words = self._watch, None, None
         if watch is not None:
             watch.finish()
             watch.deleteLater()
@@ -295,13 +295,13 @@ class LibraryDesk(QObject):
     def _on_gone(self) -> None:
         if self._state is None or self.sender() is not self._watch:
             return
-        self._is_gone = True
-        self.gone.emit(*_gone_words(self._state.library))
+        self.gone_words = _gone_words(self._state.library)
+        self.gone.emit(*self.gone_words)
 
     def _on_back(self, brought: int) -> None:
         if self._state is None or self.sender() is not self._watch:
             return
-        self._is_gone = False
+        self.gone_words = None
         then = tr("Nothing had to be added to it.")
         if brought:
             one = "{count} recording that was made meanwhile is in it now."

@@ -455,7 +455,12 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     assert entry is not None
     page = entry.first_start
     assert window.screens.currentWidget() is page
-    assert str(folder) in page._missing_lead.text()
+    said = (
+        f"It was in {folder}, and is not there now. Connect its disk, or put its folder back: it then opens by itself."
+    )
+    assert page._missing_lead.text() == said
+    page.show_missing(str(folder), 2)
+    assert "2 recordings are kept on this computer until their library is back." in page._missing_lead.text()
     assert page.look_again.isVisible()
     assert not page.make.isVisible()
     assert page.look_again.hasFocus()
@@ -491,6 +496,7 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     window._lock()
     entry = window.entry
     assert entry is not None
+    assert entry.log_in.banner.text == home.banner.text
     elsewhere.rename(folder)
     qtbot.waitUntil(lambda: home.banner.text.startswith("The library is back."), timeout=WAIT_MS)
     assert entry.log_in.banner.text.startswith("The library is back.")

@@ -8,10 +8,11 @@ from enum import StrEnum
 from errno import EEXIST
 from pathlib import Path
 
-from app.storage.files import hold, replace_file
+from app.storage.files import hold, replace_file, sync_folder
 from app.storage.journal.header import JournalRefusedError
 from app.wording import later, tr
 
+PIECE_BYTES = 1 << 20
 FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magnetic field, sealed
 
 
@@ -121,7 +122,7 @@ class JournalFile:
             raise FileExistsError(EEXIST, "another program writes this segment", str(path))
         replace_file(path, header)  # so a journal that exists has its header, and a name that lasts
         self._folder = path.parent
-        self._descriptor = os.open(path, os.O_WRONLY | os.O_APPEND | getattr(os, "O_BINARY", 0))
+        self._descriptor = os.open(path, os.O_RDWR | os.O_APPEND | getattr(os, "O_BINARY", 0))
         self._is_open = True
         if is_held:
             hold(self._descriptor)
@@ -147,6 +148,23 @@ class JournalFile:
     def free_bytes(self) -> int:
         # by the open file, where the system can: its folder may be called otherwise by now
         return shutil.disk_usage(self._folder if os.name == "nt" else self._descriptor).free
+
+    @property
+    def is_deleted(self) -> bool:
+        """Whether the file has no name any more: who moves a folder to another disk copies it, then deletes it."""
+        return os.fstat(self._descriptor).st_nlink == 0
+
+    def copy_to(self, path: Path) -> None:
+        """Write all that the open file holds to `path`, which is then whole, or not there."""
+        beside = path.with_name(path.name + ".new")
+        os.lseek(self._descriptor, 0, os.SEEK_SET)  # it appends all the same
+        with os.fdopen(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), "wb") as to:
+            while piece := os.read(self._descriptor, PIECE_BYTES):
+                to.write(piece)
+            to.flush()
+            os.fsync(to.fileno())
+        beside.replace(path)
+        sync_folder(path.parent)
 
     def sha256(self) -> str:
         return self._sha256.hexdigest()

@@ -368,9 +368,15 @@ class JournalWriter:
                 self._sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
 
     def _end_segment(self) -> None:
-        """Close a file whose folder is gone from its place: under another name it most often is whole all the same."""
+        """Close a file whose folder is gone from its place: under another name it most often is whole all the same.
+
+        One that was deleted is copied: a copy of the library, made before, lacks what was written since.
+        """
+        assert self._shelter is not None  # else nobody looks where the library is
         try:
             self._append_footer(Trouble.MOVED)
+            if self._file.is_deleted:
+                self._file.copy_to(self._shelter.made() / self.path.name)
         except OSError as error:
             _log.warning("the journal of a library that is gone has no footer", exc_info=error)
         with contextlib.suppress(OSError):

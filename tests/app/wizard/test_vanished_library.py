@@ -203,6 +203,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     again = open_window()
     assert again.entry is not None
     assert again.entry.first_start.look_again.isVisible()
+    assert "2 recordings are kept on this computer" in again.entry.first_start._missing_lead.text()
     assert not folder.exists()
     elsewhere.rename(folder)
     log_in(qtbot, again)

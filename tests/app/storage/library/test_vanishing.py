@@ -288,6 +288,29 @@ def test_a_copy_in_its_place_is_the_library_once_it_is_taken(opened: OpenedLibra
         assert {one.told.code for one in again.patients.search()} == {"P-002", "P-004"}
 
 
+def test_moved_to_another_disk_amid_a_recording_nothing_is_lost(
+    opened: OpenedLibrary, session_id: UUID, tmp_path: Path
+) -> None:
+    """Copied, and deleted a while later: the copy lacks what was recorded in between, and its end is torn."""
+    lines = Lines(opened, session_id)
+    lines.send(50)
+    lines.written()
+    shutil.copytree(opened.folder, tmp_path / "copy")
+    lines.send(50)
+    lines.written()
+    shutil.rmtree(opened.folder)
+    lines.moved()
+    lines.send(50)
+    lines.writer.stop()
+    assert lines.sheltered == [f"{lines.id}.1.journal", f"{lines.id}.2.journal"]
+    (tmp_path / "copy").rename(opened.folder)
+    opened.library.take_back()
+    assert bring_home(opened) == {lines.id}
+    (found,) = find_interrupted(opened)
+    assert adopt_home(opened, found, silent).stored.state is RecordingState.CLOSED
+    assert lines.numbers() == list(range(lines.number - 1))
+
+
 class KilledError(BaseException):
     """The program ends here."""
 
