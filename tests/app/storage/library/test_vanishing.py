@@ -31,6 +31,7 @@ from app.storage.root import ID_FILE, LibraryGoneError
 from app.storage.stored import LibraryError, Operator, RecordingState, Role, StoredJournal
 from core.samples import Patient, Recording, RecordingKind, Session
 from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE
+from tests.safety.homecoming_kills import bring_home_killed
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line
 
 PATIENCE_S = 20.0
@@ -385,6 +386,14 @@ def test_killed_while_bringing_home_it_comes_home_once(opened: OpenedLibrary, se
     assert lines.numbers() == list(range(lines.number - 1))
     assert find_interrupted(opened) == ()
     assert len(opened.library.sessions.get(session_id).recordings) == 1
+
+
+@pytest.mark.endurance
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGKILL and fork are POSIX's")
+def test_killed_in_earnest_while_bringing_home(tmp_path: Path) -> None:
+    found = bring_home_killed(tmp_path, 50, seed=3)
+    assert found.faults == []
+    assert found.amid > 5
 
 
 def test_what_is_being_recorded_in_the_shelter_stays_there_until_it_is_stopped(
