@@ -157,8 +157,7 @@ class Entry(QObject):
             from app.storage.keys import KeySlots
             from app.storage.opened import KEYS as NAME
 
-            if opened.library.root is not None:
-                opened.library.root.refuse_gone()  # it says what to do, where the slots only miss their file
+            opened.refuse_gone()  # it says what to do, where the slots only miss their file
             KeySlots(opened.folder / NAME).open(code, passphrase)
 
         self._desk.run(check, self._on_checked, self._on_check_failed, self)

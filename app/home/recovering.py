@@ -82,7 +82,7 @@ class Recovering(QObject):
 
             return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
 
-        self._desk.run_long(work, self._on_recovered, self._on_refused, None, self)
+        self._desk.run_long(work, self._on_come_home, self._on_refused, None, self)
 
     def export(self, folder: Path) -> None:
         """Write what belongs to no session into `folder`, each recording into a folder of its own."""
@@ -119,6 +119,13 @@ class Recovering(QObject):
     def _on_recovered(self, outcome: _Outcome) -> None:
         self.recovered.emit()
         self._say_outcome(outcome)
+
+    def _on_come_home(self, outcome: _Outcome) -> None:
+        """Of what is whole nothing more is to be said than that the library is back, and what is in it now."""
+        self._brought_home |= {one.stored.id for one in [*outcome.recovered, *outcome.adopted]}
+        recovered = [one for one in outcome.recovered if not self._is_home_and_whole(one)]
+        adopted = [one for one in outcome.adopted if not self._is_home_and_whole(one)]
+        self._on_recovered(outcome._replace(recovered=recovered, adopted=adopted))
 
     def _say_outcome(self, outcome: _Outcome) -> None:
         self._lost = outcome.lost

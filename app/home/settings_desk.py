@@ -296,6 +296,7 @@ def _slots(opened: "OpenedLibrary") -> "KeySlots":
     from app.storage.keys import KeySlots
     from app.storage.opened import KEYS
 
+    opened.refuse_gone()  # another library's keys may be in its place
     return KeySlots(opened.folder / KEYS)
 
 

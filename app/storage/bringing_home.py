@@ -36,11 +36,11 @@ def bring_home(opened: OpenedLibrary) -> frozenset[UUID]:
         A file cannot be read or written: it stays in the shelter, and those that were brought are in the library.
     """
     shelter = opened.shelter
-    if shelter is None or opened.library.root is None or not shelter.folder.is_dir():
+    if shelter is None or not shelter.folder.is_dir():
         return frozenset()
     brought = set()
     with _one_at_a_time:
-        opened.library.root.refuse_gone()
+        opened.refuse_gone()
         for recording_id, segments in sorted(find_segments(shelter.folder).items()):
             for path in segments.values():
                 if _bring(path, opened.recordings):

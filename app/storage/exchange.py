@@ -124,10 +124,14 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
 def recording_with_samples(
     opened: OpenedLibrary, recording: StoredRecording, decoders: Decoders
 ) -> tuple[Recording, tuple[Finding, ...]]:
-    """A recording with its samples, and what is odd about their files; errors as in `session_with_samples`."""
+    """A recording with its samples, and what is odd about their files; errors as in `session_with_samples`.
+
+    A LibraryError, too, where the library is gone, and with it the files.
+    """
     paths = [opened.recordings / journal.file for journal in recording.journals]
     for path in paths:
         if not path.exists():
+            opened.refuse_gone()
             raise JournalRefusedError(path.name, "this recording's file is missing", RESTORE)
     keys = [journal.wrapped_key for journal in recording.journals]
     decoded = decode(paths, opened.data_key, decoders, keys)

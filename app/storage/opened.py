@@ -58,6 +58,17 @@ class OpenedLibrary:
         """Whether its folder is where it was opened. May wait for the disk."""
         return self.library.root is None or self.library.root.is_there()
 
+    def refuse_gone(self) -> None:
+        """See that the folder is where it was opened, before what is missing in it is said to be missing.
+
+        Raises
+        ------
+        LibraryGoneError
+            It is not, or it is another library's.
+        """
+        if self.library.root is not None:
+            self.library.root.refuse_gone()
+
     def __enter__(self) -> Self:
         return self
 

@@ -92,10 +92,11 @@ def find_interrupted(opened: OpenedLibrary) -> tuple[Interrupted, ...]:
     Raises
     ------
     LibraryError
-        The database does not answer.
+        The database does not answer, or the library is gone.
     OSError
         The folder of the recordings cannot be read.
     """
+    opened.refuse_gone()  # else all its parts would seem to be missing
     files, recordings = find_segments(opened.recordings), opened.library.recordings
     known = recordings.known()
     rows = {recording.id: recording for recording in recordings.still_open()}

@@ -44,12 +44,11 @@ class LibraryWatch(QThread):
                 except Exception:  # the edge of the thread: it goes on looking
                     _log.exception("the library could not be looked for")
                     continue
-                if is_there is is_gone:
-                    is_gone = not is_there
-                    if is_gone:
-                        self.went.emit()
-                    else:
-                        self.came_back.emit(brought)
+                was_gone, is_gone = is_gone, not is_there
+                if is_gone and not was_gone:
+                    self.went.emit()
+                elif brought or (was_gone and not is_gone):  # what was still being recorded comes home later
+                    self.came_back.emit(brought)
 
     def _took_back(self, ends: ExitStack) -> bool:
         """Go on with the same library in another folder at its place: its disk was mounted anew, or it is a copy."""

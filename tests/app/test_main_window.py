@@ -19,17 +19,22 @@ from app.home.entry import KEYS, SHORTEST
 from app.main_window import MainWindow
 from app.settings import Scheme, Settings
 from app.storage import keys, opened
+from app.storage.database.ids import uuid7
+from app.storage.journal.disk import Room
+from app.storage.journal.payloads import Belonging
+from app.storage.journal.writer import JournalWriter
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.stored import Operator, Role
 from app.theme import DARK, LIGHT, Look, load_fonts
 from app.wording import use_language
 from app.workers.background import Report
-from core.samples import Patient
+from core.samples import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
 SECRET_CODE = "P-0147"
 WAIT_MS = 20_000  # on a busy machine
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 
 
 @pytest.fixture(scope="module")
@@ -500,3 +505,31 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     elsewhere.rename(folder)
     qtbot.waitUntil(lambda: home.banner.text.startswith("The library is back."), timeout=WAIT_MS)
     assert entry.log_in.banner.text.startswith("The library is back.")
+
+
+def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session(
+    qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    home, state = window.home, window.desk.state
+    assert home is not None
+    assert state is not None
+    library = state.library.library
+    session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(window.desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    writer = JournalWriter.create(
+        state.library.recordings, uuid7(), state.library.data_key, room=ANY_ROOM, shelter=state.library.shelter
+    )
+    writer.mark(Belonging(session_id, told).text())
+    writer.stop()
+    with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+        elsewhere.rename(folder)
+    assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+    home.banner._dismiss.click()
+    assert home.banner.isHidden()
+    assert [one.told.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]

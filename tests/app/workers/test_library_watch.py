@@ -9,6 +9,7 @@ from uuid import UUID
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.home.settings_desk import _slots
 from app.storage.bringing_home import bring_home
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
@@ -17,6 +18,7 @@ from app.storage.journal.writer import JournalWriter
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.root import LibraryGoneError
 from app.storage.stored import Operator, Role
 from app.workers.library_desk import LibraryDesk
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -162,3 +164,28 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
     monkeypatch.undo()
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: folder.parent / "data")
     assert bring_home(opened) == {recording_id}
+
+
+def test_keys_are_changed_of_the_library_that_is_open_only(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    """Another library in its place keeps its own."""
+    opened = opened_of(desk)
+    assert "hk" in _slots(opened).codes
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(folder.with_name("renamed"))
+    folder.mkdir()
+    KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    with pytest.raises(LibraryGoneError):
+        _slots(opened)
+
+
+def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, desk: LibraryDesk) -> None:
+    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
+        desk.open_demonstration()
+    opened = opened_of(desk)
+    assert opened.shelter is None
+    elsewhere = opened.folder.with_name(f"{opened.folder.name}-renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS) as said:
+        opened.folder.rename(elsewhere)
+    elsewhere.rename(opened.folder)  # to be removed
+    assert said.args is not None
+    assert said.args[1] == "The demonstration ends here. Open it again."

@@ -18,10 +18,10 @@ from app.storage import bringing_home
 from app.storage.backup import back_up
 from app.storage.bringing_home import bring_home
 from app.storage.database.ids import uuid7
-from app.storage.exchange import import_session
+from app.storage.exchange import import_session, recording_with_samples
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.disk import JournalFile, Trouble
-from app.storage.journal.header import destroy_key, find_segments
+from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter, State
 from app.storage.library import FILE_NAME, Library
@@ -30,7 +30,7 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.root import ID_FILE, LibraryGoneError
 from app.storage.stored import LibraryError, Operator, RecordingState, Role, StoredJournal
 from core.samples import Patient, Recording, RecordingKind, Session
-from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE
+from tests.app.storage.library.conftest import ANY_ROOM, PASSPHRASE, Record
 from tests.safety.homecoming_kills import bring_home_killed
 from tests.safety.journal_material import LINES, NO_ROOM_ASKED, LineDecoder, line
 
@@ -270,6 +270,25 @@ def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None
         assert list(opened.folder.iterdir()) == []
         opened.folder.rmdir()
     assert {one.told.code for one in opened.library.patients.search()} == {"P-002"}
+
+
+def test_what_is_gone_with_the_library_is_not_said_to_be_missing(opened: OpenedLibrary, record: Record) -> None:
+    """No backup is needed of a folder that somebody renamed."""
+    stored = record("walk 1")
+    record("walk 2", is_stopped=False)
+    with gone(opened.folder):
+        for ask in (
+            lambda: recording_with_samples(opened, stored, {}),
+            lambda: find_interrupted(opened),
+            lambda: back_up(opened, opened.folder.parent),
+        ):
+            with pytest.raises(LibraryGoneError):
+                ask()
+    recording_with_samples(opened, stored, {})
+    assert [one.problem for one in find_interrupted(opened)] == [""]
+    (opened.recordings / stored.journals[0].file).unlink()
+    with pytest.raises(JournalRefusedError, match="from a backup"):
+        recording_with_samples(opened, stored, {})
 
 
 def test_a_copy_in_its_place_is_the_library_once_it_is_taken(opened: OpenedLibrary, tmp_path: Path) -> None:
