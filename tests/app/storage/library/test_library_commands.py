@@ -8,14 +8,19 @@ from uuid import UUID, uuid4
 import pytest
 
 from app import cli
+from app.storage.database.ids import uuid7
 from app.storage.exchange import export_session, import_session
 from app.storage.journal.disk import Room
+from app.storage.journal.payloads import Belonging
+from app.storage.journal.writer import JournalWriter
 from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, StoredRecording
+from core.samples import Recording, RecordingKind
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 PASSPHRASE = "four short words here"
+ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 FILES = ("summary.json", "walk_1/angles.csv", "walk_1/strides.csv", "free_motion/angles.csv")
 
 Record = Callable[..., StoredRecording]
@@ -163,3 +168,24 @@ def test_an_audit_whose_entry_was_changed_or_whose_end_is_missing_is_refused(
     assert "a fault in the audit" in told.err
     assert cli.main(["audit", str(opened.folder), *key, "--since", "nonsense"]) == 2
     assert "is no line of an earlier audit" in capsys.readouterr().err
+
+
+def test_recover_brings_home_what_was_recorded_while_the_library_was_gone(
+    opened: OpenedLibrary,
+    session_id: UUID,
+    key: list[str],
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
+    opened.folder.rename(tmp_path / "renamed")
+    told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
+    with JournalWriter.create(
+        opened.recordings, uuid7(), opened.data_key, room=ANY_ROOM, shelter=opened.shelter
+    ) as writer:
+        writer.mark(Belonging(session_id, told).text())
+    (tmp_path / "renamed").rename(opened.folder)
+    assert cli.main(["recover", str(opened.folder), *key]) == 0
+    assert f"was recovered into library:{session_id}" in capsys.readouterr().out
+    assert not list((tmp_path / "data").rglob("*.journal"))
