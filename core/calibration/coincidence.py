@@ -45,14 +45,15 @@ def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float =
 
 
 def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
-    """What `solve_robustly` takes (c, n, 3, 13), of accelerations as they are, under rotations (c, n, 3, 3)."""
+    """What `solve_robustly` takes (c, 13, 3, n), of accelerations as they are, under rotations (c, n, 3, 3)."""
     c, n = rotation_12.shape[:2]
-    design = np.empty((c, n, 3, 13))
-    design[..., 0:3] = lever_matrix(data.g1, data.dg1)
-    design[..., 3:6] = -rotation_12 @ lever_matrix(data.g2, data.dg2)
-    design[..., 6:9] = np.eye(3)
-    design[..., 9:12] = -rotation_12
-    design[..., 12] = data.a1 - (rotation_12 @ data.a2[..., None])[..., 0]
+    design = np.empty((c, 13, 3, n))
+    rows = np.moveaxis(design, (3, 2, 1), (1, 2, 3))  # the same, sample by sample
+    rows[..., 0:3] = lever_matrix(data.g1, data.dg1)
+    rows[..., 3:6] = -rotation_12 @ lever_matrix(data.g2, data.dg2)
+    rows[..., 6:9] = np.eye(3)
+    rows[..., 9:12] = -rotation_12
+    rows[..., 12] = data.a1 - (rotation_12 @ data.a2[..., None])[..., 0]
     return design
 
 
@@ -60,7 +61,7 @@ def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
 class JointForces:
     """What both sensors of a joint feel of it, low-passed, at those samples of a data set where both were heard.
 
-    `chosen` (n,) are the samples' numbers, `terms_1` and `terms_2` (n, 3, 7) as in `JointForce`.
+    `chosen` (n,) are the samples' numbers, `terms_1` and `terms_2` (7, 3, n) as in `JointForce`.
     """
 
     chosen: IntArray
@@ -90,40 +91,47 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
     if np.count_nonzero(is_clear) < MIN_CLEAR:
         is_clear[:] = True
     chosen = np.flatnonzero(is_clear)
-    terms_1 = np.empty((len(chosen), 3, 7))
+    terms_1 = np.empty((7, 3, len(chosen)))
     for s, pair in enumerate(data.pairs):
         mine = data.stretch[chosen] == s
-        terms_1[mine] = pair.tracks[0].joint_force.at(data.time_s[chosen[mine]])
-    return JointForces(chosen, terms_1, distal_terms(data, chosen, 0.0))
+        terms_1[..., mine] = pair.tracks[0].joint_force.at(data.time_s[chosen[mine]]).T
+    return JointForces(chosen, terms_1, distal_terms(data, chosen, np.zeros(1))[0])
 
 
-def distal_terms(data: Datasets, chosen: IntArray, shift_s: float) -> FloatArray:
-    """Terms (n, 3, 7) of the distal sensor, its stamps moved by `shift_s` more."""
-    terms = np.empty((len(chosen), 3, 7))
+def distal_terms(data: Datasets, chosen: IntArray, shifts_s: FloatArray) -> FloatArray:
+    """Terms (c, 7, 3, n) of the distal sensor, its stamps moved by each of `shifts_s` (c,) more."""
+    terms = np.empty((len(shifts_s), 7, 3, len(chosen)))
     for s, pair in enumerate(data.pairs):
         mine = data.stretch[chosen] == s
-        terms[mine] = pair.tracks[1].joint_force.at(data.time_s[chosen[mine]] - pair.lag_s - shift_s)
+        time_s = data.time_s[chosen[mine]] - pair.lag_s - shifts_s[:, None]
+        found = pair.tracks[1].joint_force.at(time_s.ravel())
+        terms[..., mine] = found.reshape(*time_s.shape, 3, 7).transpose(0, 3, 2, 1)
     return terms
 
 
 def fit_forces(forces: JointForces, heading: FloatArray) -> Coincidence:
     """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples."""
-    turned = turned_about_vertical(heading, forces.terms_2)
-    c, n = heading.shape
-    design = np.empty((c, n, 3, 13))
-    design[..., 0:3], design[..., 6:9] = forces.terms_1[..., 0:3], forces.terms_1[..., 3:6]
-    design[..., 3:6], design[..., 9:12] = -turned[..., 0:3], -turned[..., 3:6]
-    design[..., 12] = forces.terms_1[..., 6] - turned[..., 6]
-    return solve_robustly(design, SCALE_M_S2)
+    return solve_robustly(force_design(forces.terms_1, forces.terms_2, heading), SCALE_M_S2)
+
+
+def force_design(terms_1: FloatArray, terms_2: FloatArray, heading: FloatArray) -> FloatArray:
+    """What `solve_robustly` takes (c, 13, 3, n), of terms (7, 3, n) or (c, 7, 3, n) under headings (c, n)."""
+    turned = turned_about_vertical(heading, terms_2)
+    design = np.empty((len(turned), 13, *turned.shape[2:]))
+    design[:, 0:3], design[:, 6:9] = terms_1[0:3], terms_1[3:6]
+    np.negative(turned[:, 0:3], out=design[:, 3:6])
+    np.negative(turned[:, 3:6], out=design[:, 9:12])
+    np.subtract(terms_1[6], turned[:, 6], out=design[:, 12])
+    return design
 
 
 def turned_about_vertical(heading: FloatArray, terms: FloatArray) -> FloatArray:
-    """Rz(heading) terms, (c, n, 3, 7) for headings (c, n)."""
-    c, s = np.cos(heading)[..., None], np.sin(heading)[..., None]
-    turned = np.empty((*heading.shape, 3, terms.shape[-1]))
-    turned[..., 0, :] = c * terms[:, 0] - s * terms[:, 1]
-    turned[..., 1, :] = s * terms[:, 0] + c * terms[:, 1]
-    turned[..., 2, :] = terms[:, 2]
+    """Rz(heading) terms, (c, t, 3, n) for headings (c, n) and terms (t, 3, n) or (c, t, 3, n)."""
+    c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
+    turned = np.empty((*np.broadcast_shapes(terms.shape[:-2], (len(heading), 1)), 3, heading.shape[1]))
+    turned[..., 0, :] = c * terms[..., 0, :] - s * terms[..., 1, :]
+    turned[..., 1, :] = s * terms[..., 0, :] + c * terms[..., 1, :]
+    turned[..., 2, :] = terms[..., 2, :]
     return turned
 
 
@@ -136,28 +144,32 @@ def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray)
     unknowns : (12,)
     """
     turned = turned_about_vertical(heading[None], forces.terms_2)[0]
-    one = forces.terms_1[..., 6] - forces.terms_1[..., :6] @ unknowns[[0, 1, 2, 6, 7, 8]]
-    two = turned[..., 6] - turned[..., :6] @ unknowns[[3, 4, 5, 9, 10, 11]]
-    felt = sum(_loss(terms[..., 6] - [0.0, 0.0, GRAVITY_M_S2]) for terms in (forces.terms_1, forces.terms_2))
+    one = forces.terms_1[6] - np.tensordot(unknowns[[0, 1, 2, 6, 7, 8]], forces.terms_1[:6], 1)
+    two = turned[6] - np.tensordot(unknowns[[3, 4, 5, 9, 10, 11]], turned[:6], 1)
+    gravity = np.array([[0.0], [0.0], [GRAVITY_M_S2]])
+    felt = sum(_loss(terms[6] - gravity) for terms in (forces.terms_1, forces.terms_2))
     return _loss(one - two) / max(felt, 1e-12)
 
 
 def _loss(error: FloatArray) -> float:
-    return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=1) / SCALE_M_S2**2) - 1))
+    """Mean robust loss of vectors (3, n)."""
+    return float(2 * np.mean(np.sqrt(1 + np.sum(error**2, axis=0) / SCALE_M_S2**2) - 1))
 
 
 def solve_robustly(design: FloatArray, scale_m_s2: float) -> Coincidence:
-    """Unknowns of each candidate, from design (c, n, 3, 13): the slopes by the unknowns, and what they have to give."""
-    c, n = design.shape[:2]
+    """Unknowns of each candidate, from design (c, 13, 3, n): the slopes by the unknowns, and what they have to give.
+
+    Samples come last, for along so long an axis arrays are several times as fast.
+    """
+    c, n = len(design), design.shape[3]
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6) * scale_m_s2**2
-    flat, root = design.reshape(c, 3 * n, 13), np.ones((c, n))
+    flat, root = design.reshape(c, 13, 3 * n), np.ones((c, n))
     for step in range(STEPS):
-        weighted = design * (1 / root)[..., None, None] if step else design
-        products = np.swapaxes(weighted.reshape(c, 3 * n, 13), 1, 2) @ flat
+        weighted = (design * (1 / root)[:, None, None]).reshape(c, 13, 3 * n) if step else flat
+        products = weighted @ np.swapaxes(flat, 1, 2)
         information = products[:, :12, :12] + prior
         unknowns = np.linalg.solve(information, products[:, :12, 12:])
-        error = flat @ np.concatenate([-unknowns, np.ones((c, 1, 1))], axis=1)
-        square = error[..., 0] ** 2 / scale_m_s2**2
-        root = np.sqrt(1 + square[:, 0::3] + square[:, 1::3] + square[:, 2::3])
+        error = (flat[:, 12:] - np.swapaxes(unknowns, 1, 2) @ flat[:, :12]).reshape(c, 3, n)
+        root = np.sqrt(1 + np.sum(error**2, axis=1) / scale_m_s2**2)
     cost = 2 * np.mean(root - 1, axis=1)
     return Coincidence(unknowns[..., 0], cost, np.linalg.inv(information) * scale_m_s2**2)

@@ -55,7 +55,7 @@ def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
     """The vector form of eq 7 under known relative orientation: best on a hinge."""
     design = coincidence_design(data, relative_rotation(data, data.heading(knots_rad)[None]))
     first = solve_robustly(design, SCALE_M_S2).unknowns[0]
-    left = design[0, ..., 12] - design[0, ..., :12] @ first
+    left = design[0, 12] - np.tensordot(first, design[0, :12], 1)
     fit = solve_robustly(design, max(MIN_SCALE_M_S2, robust_sd(left)))
     return JointCentre(fit.unknowns[0], fit.covariance[0])
 

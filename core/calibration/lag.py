@@ -8,7 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from core.calibration.coincidence import distal_terms, fit_coincidence, fit_forces, joint_forces, relative_rotation
+from core.calibration.coincidence import (
+    SCALE_M_S2,
+    distal_terms,
+    fit_coincidence,
+    force_design,
+    joint_forces,
+    relative_rotation,
+    solve_robustly,
+)
 from core.datasets import Datasets
 from core.samples import FloatArray, IntArray
 
@@ -43,7 +51,7 @@ class Lag:
 NO_LAG = Lag(0.0, 0.0, None, 1.0, False)
 
 
-def find_lag(data: Datasets, knots_rad: FloatArray, is_hinge: bool = False) -> Lag:
+def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     """The lag that both halves of the data agree on.
 
     A clock is late all the time; tissue and a motion that shows little look late in one half and not in the other.
@@ -52,15 +60,12 @@ def find_lag(data: Datasets, knots_rad: FloatArray, is_hinge: bool = False) -> L
     ----------
     knots_rad : (k,)
         Relative heading, decided before.
-    is_hinge
-        Nothing rings there, and the sharpest changes tell most: the accelerations are taken as they are.
     """
-    find = sharpest_lag if is_hinge else smoothest_lag
-    lag = find(data, knots_rad)
+    lag = smoothest_lag(data, knots_rad)
     if not lag.lag_s:
         return lag
     is_first = np.arange(len(data)) < len(data) // 2
-    halves = [find(data.only(half), knots_rad) for half in (is_first, ~is_first)]
+    halves = [smoothest_lag(data.only(half), knots_rad) for half in (is_first, ~is_first)]
     apart_s = max(abs(half.best_s - lag.best_s) for half in halves)
     if apart_s > max(MAX_DISAGREEMENT_S, MIN_SIGMAS * (lag.sd_s or 0.0)):
         return replace(lag, lag_s=0.0)
@@ -74,53 +79,66 @@ def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
         return NO_LAG
     heading = data.heading(knots_rad)[None, forces.chosen]
 
-    def cost(shift_s: float) -> float:
-        shifted = replace(forces, terms_2=distal_terms(data, forces.chosen, shift_s))
-        return float(fit_forces(shifted, heading).cost[0])
+    def costs(shifts_s: FloatArray) -> FloatArray:
+        shifted = distal_terms(data, forces.chosen, shifts_s)
+        return solve_robustly(force_design(forces.terms_1, shifted, heading), SCALE_M_S2).cost
 
-    return _lowest(
-        cost, FINE_S, len(forces) * _share_of_sample(data.only(np.isin(np.arange(len(data)), forces.chosen)))
-    )
+    return _lowest(costs, FINE_S, len(forces) * _share_of_sample(data.time_s[forces.chosen]))
 
 
 def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """Where the accelerations of a hinge coincide best, in whole samples."""
+    """Where the accelerations of a hinge coincide best, in whole samples.
+
+    Nothing rings there, and the sharpest changes tell most: the accelerations are taken as they are.
+    """
     step_s = data.pairs[0].step_s
     inner = _with_room(data, int(np.ceil(SEARCH_S / step_s)))
     if len(inner) < MIN_SAMPLES:
         return NO_LAG
 
-    def cost(shift_s: float) -> float:
-        shifted = _shifted(inner, round(shift_s / step_s))
-        rotation = relative_rotation(shifted, inner.heading(knots_rad)[None])
-        return float(fit_coincidence(shifted, rotation).cost[0])
+    heading = inner.heading(knots_rad)[None]
 
-    return _lowest(cost, step_s, len(inner) * _share_of_sample(inner))
+    def costs(shifts_s: FloatArray) -> FloatArray:
+        found = [_shifted(inner, shift) for shift in np.round(shifts_s / step_s).astype(np.int64).tolist()]
+        return np.concatenate([fit_coincidence(one, relative_rotation(one, heading)).cost for one in found])
+
+    return _lowest(costs, step_s, len(inner) * _share_of_sample(inner.time_s))
 
 
-def _lowest(cost_of: Callable[[float], float], step_s: float, independent: float) -> Lag:
-    """The lowest cost over all lags up to 80 ms: coarsely, then by steps of `step_s`, then by a parabola."""
-    costs: dict[int, float] = {}
+def _lowest(costs_of: Callable[[FloatArray], FloatArray], step_s: float, independent: float) -> Lag:
+    """The lowest cost over all lags up to 80 ms: coarsely, then by steps of `step_s`, then by a parabola.
 
-    def cost(shift: int) -> float:
-        if shift not in costs:
-            costs[shift] = cost_of(shift * step_s)
-        return costs[shift]
+    Parameters
+    ----------
+    costs_of
+        Costs (c,) of lags (c,), seconds.
+    """
+    known: dict[int, float] = {}
+
+    def costs(*shifts: int) -> list[float]:
+        new = [shift for shift in shifts if shift not in known]
+        if new:
+            known.update(zip(new, costs_of(step_s * np.array(new)).tolist(), strict=True))
+        return [known[shift] for shift in shifts]
+
+    def cheapest(*shifts: int) -> int:
+        return shifts[int(np.argmin(costs(*shifts)))]
 
     reach = int(np.ceil(SEARCH_S / step_s - 1e-9))
     width = max(1, round(COARSE_S / step_s))
-    best = min(range(-(reach // width) * width, reach + 1, width), key=cost)
+    best = cheapest(*range(-(reach // width) * width, reach + 1, width))
     while width > 1:  # a cost below the frequencies of tissue has one valley between two coarse steps
         width = max(1, width // 2)
-        best = min((best - width, best, best + width), key=cost)
+        best = cheapest(best - width, best, best + width)
+    unmoved, here = costs(0, best)
     if abs(best) >= reach:
-        return Lag(0.0, 0.0, None, cost(0) / cost(best), cost(0) / cost(best) > MIN_COST_RATIO)
-    before, here, after = cost(best - 1), cost(best), cost(best + 1)
+        return Lag(0.0, 0.0, None, unmoved / here, unmoved / here > MIN_COST_RATIO)
+    before, after = costs(best - 1, best + 1)
     bend = before - 2 * here + after
     offset = 0.5 * (before - after) / bend if bend > 0 else 0.0
     lowest = here - 0.125 * (before - after) ** 2 / bend if bend > 0 else here
     lag_s = (best + offset) * step_s
-    ratio = cost(0) / max(lowest, 1e-12)
+    ratio = unmoved / max(lowest, 1e-12)
     sd_s = float(step_s * np.sqrt(2 * max(lowest, 1e-12) / (bend * max(1.0, independent)))) if bend > 0 else None
     if abs(lag_s) > MAX_LAG_S:
         return Lag(0.0, 0.0, None, ratio, ratio > MIN_COST_RATIO)
@@ -132,9 +150,9 @@ def _lowest(cost_of: Callable[[float], float], step_s: float, independent: float
     return Lag(lag_s if is_found else 0.0, lag_s, sd_s, ratio, False)
 
 
-def _share_of_sample(data: Datasets) -> float:
-    """What each sample tells, where neighbours within a tenth of a second tell the same."""
-    return min(1.0, float(np.median(np.diff(data.time_s))) / CORRELATION_S)
+def _share_of_sample(time_s: FloatArray) -> float:
+    """What each of the samples at instants (n,) tells, where neighbours within a tenth of a second tell the same."""
+    return min(1.0, float(np.median(np.diff(time_s))) / CORRELATION_S)
 
 
 def _with_room(data: Datasets, reach: int) -> Datasets:

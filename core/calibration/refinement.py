@@ -8,7 +8,7 @@ but for a slow drift: with the drift among the unknowns nothing leans on the fil
 import numpy as np
 
 from core.angles.hinge_angle import DRIFT_WALK_RAD, hinge_angle
-from core.calibration.coincidence import CENTRE_PRIOR_M, turned_about_vertical
+from core.calibration.coincidence import CENTRE_PRIOR_M, force_design
 from core.calibration.joint_axis import knot_weights
 from core.calibration.joint_centre import MIN_SCALE_M_S2, JointCentre
 from core.datasets import Datasets
@@ -20,6 +20,7 @@ from core.samples import FloatArray
 BIAS_PRIOR_M_S2 = 0.1
 STEPS = 6
 MIN_STEP = 1e-5
+_OF_SENSOR_2 = [3, 4, 5, 9, 10, 11]  # which of the unknowns are
 MAX_CENTRE_STEP_M = 0.05  # a larger move means that the start was wrong, and the fit is not believed
 
 
@@ -34,28 +35,25 @@ def refine_on_hinge(data: Datasets, j1: FloatArray, j2: FloatArray, start: Joint
     )
     # in the axes of the hinge, where the turn is one about z
     terms_1, terms_2 = _terms(data.g1, data.dg1, data.a1, j1), _terms(data.g2, data.dg2, data.a2, j2)
-    shares = knot_weights(data)
+    shares, n = knot_weights(data), len(data)
     x, knots = start.unknowns.copy(), np.zeros(data.knots)
     prior = _prior(data)
     information = np.empty((12 + data.knots, 12 + data.knots))
-    design = np.empty((len(data), 3, 12))
-    design[..., 0:3], design[..., 6:9] = terms_1[..., 0:3], terms_1[..., 3:6]
     for _ in range(STEPS):
-        turned = turned_about_vertical((theta + shares @ knots)[None], terms_2)[0]
-        design[..., 3:6], design[..., 9:12] = -turned[..., 0:3], -turned[..., 3:6]
-        force_2 = turned[..., 6] - turned[..., 0:3] @ x[3:6] - turned[..., 3:6] @ x[9:12]
-        error = terms_1[..., 6] - terms_1[..., 0:3] @ x[0:3] - terms_1[..., 3:6] @ x[6:9] - force_2
+        design = force_design(terms_1, terms_2, (theta + shares @ knots)[None])[0]
+        error = design[12] - np.tensordot(x, design[:12], 1)
         scale = max(robust_sd(error), MIN_SCALE_M_S2)
-        weight = 1 / (scale**2 * np.sqrt(1 + np.sum(error**2, axis=1) / scale**2))
-        by_angle = np.stack([-force_2[:, 1], force_2[:, 0]], axis=1)
-        weighted = (design * weight[:, None, None]).reshape(-1, 12)
-        weighted_angle = by_angle * weight[:, None]
-        mixed = (weighted_angle[:, None] @ design[:, :2])[:, 0].T @ shares
-        information[:12, :12] = weighted.T @ design.reshape(-1, 12)
+        weight = 1 / (scale**2 * np.sqrt(1 + np.sum(error**2, axis=0) / scale**2))
+        force_2 = np.tensordot(x[_OF_SENSOR_2], design[_OF_SENSOR_2], 1) + terms_1[6] - design[12]
+        by_angle = np.stack([-force_2[1], force_2[0]])
+        weighted = (design[:12] * weight).reshape(12, 3 * n)
+        weighted_angle = by_angle * weight
+        mixed = np.sum(weighted_angle * design[:12, :2], axis=1) @ shares
+        information[:12, :12] = weighted @ design[:12].reshape(12, 3 * n).T
         information[:12, 12:], information[12:, :12] = mixed, mixed.T
-        information[12:, 12:] = shares.T @ (shares * np.sum(weighted_angle * by_angle, axis=1)[:, None])
+        information[12:, 12:] = shares.T @ (shares * np.sum(weighted_angle * by_angle, axis=0)[:, None])
         information += prior
-        push = [error.ravel() @ weighted, np.sum(weighted_angle * error[:, :2], axis=1) @ shares]
+        push = [weighted @ error.ravel(), np.sum(weighted_angle * error[:2], axis=0) @ shares]
         step = np.linalg.solve(information, np.concatenate(push) - prior @ np.concatenate([x, knots]))
         x, knots = x + step[:12], knots + step[12:]
         if np.max(np.abs(step)) < MIN_STEP:
@@ -66,11 +64,12 @@ def refine_on_hinge(data: Datasets, j1: FloatArray, j2: FloatArray, start: Joint
 
 
 def _terms(rate: FloatArray, angular_acceleration: FloatArray, force: FloatArray, axis: FloatArray) -> FloatArray:
-    """K, unity and the specific force (n, 3, 7) of a sensor, in the axes of the hinge."""
+    """K, unity and the specific force (7, 3, n) of a sensor, in the axes of the hinge."""
     frame = np.stack([*joint_frame(axis), axis])
-    terms = np.empty((len(rate), 3, 7))
-    terms[..., 0:3], terms[..., 3:6] = frame @ lever_matrix(rate, angular_acceleration), frame
-    terms[..., 6] = force @ frame.T
+    terms = np.empty((7, 3, len(rate)))
+    terms[0:3] = (frame @ lever_matrix(rate, angular_acceleration)).T
+    terms[3:6] = frame.T[..., None]
+    terms[6] = frame @ force.T
     return terms
 
 

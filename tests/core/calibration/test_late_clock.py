@@ -56,11 +56,7 @@ def lag_of(pair: Pair, find: Callable[[Datasets, FloatArray], Lag] = find_lag, e
     return find(data, np.full(data.knots, 0.4))
 
 
-def of_a_hinge(data: Datasets, knots_rad: FloatArray) -> Lag:
-    return find_lag(data, knots_rad, is_hinge=True)
-
-
-@pytest.mark.parametrize("find", [find_lag, of_a_hinge, sharpest_lag, smoothest_lag])
+@pytest.mark.parametrize("find", [find_lag, sharpest_lag, smoothest_lag])
 @pytest.mark.parametrize("samples", [-7, -2, 2, 5])
 def test_a_clock_that_is_late_all_the_time_is_found(
     pair: Pair, find: Callable[[Datasets, FloatArray], Lag], samples: int
@@ -74,14 +70,13 @@ def test_a_clock_that_is_late_all_the_time_is_found(
     assert found.cost_ratio > 1.15
 
 
-@pytest.mark.parametrize("find", [find_lag, of_a_hinge])
-def test_a_clock_that_is_late_in_one_half_only_is_not(pair: Pair, find: Callable[[Datasets, FloatArray], Lag]) -> None:
-    found = lag_of(late(pair, 5, from_sample=len(pair) // 3), find)
+def test_a_clock_that_is_late_in_one_half_only_is_not(pair: Pair) -> None:
+    found = lag_of(late(pair, 5, from_sample=len(pair) // 3))
     assert found.lag_s == 0.0
     assert abs(found.best_s) > 0.004
 
 
-@pytest.mark.parametrize("find", [find_lag, of_a_hinge])
+@pytest.mark.parametrize("find", [find_lag, sharpest_lag])
 def test_no_lag_is_found_where_there_is_none(pair: Pair, find: Callable[[Datasets, FloatArray], Lag]) -> None:
     found = lag_of(pair, find)
     assert found.lag_s == 0.0

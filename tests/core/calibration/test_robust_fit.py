@@ -22,7 +22,8 @@ KNEE = Joint.LEFT_KNEE
 
 
 def fitted(design: FloatArray, target: FloatArray, scale_m_s2: float) -> Coincidence:
-    return solve_robustly(np.concatenate([design, target[..., None]], axis=-1), scale_m_s2)
+    rows = np.concatenate([design, target[..., None]], axis=-1)  # the unknowns last: easier to read
+    return solve_robustly(np.moveaxis(rows, (3, 2, 1), (1, 2, 3)).copy(), scale_m_s2)
 
 
 def test_what_no_sample_shows_is_as_unknown_as_before() -> None:
