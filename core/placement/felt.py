@@ -10,9 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.pair import FAST_RAD_S, OrientedTrack, angular_acceleration, lever_matrix
+from core.joint_force import MIN_HEARD, JointForce
+from core.pair import FAST_RAD_S, OrientedTrack
 from core.placement.steps import at_once
-from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray, IntArray
 from core.tracks import at_positions
 
@@ -21,7 +21,8 @@ MEAN_S = 0.15  # twice over: longer than tissue rings, shorter than a leg swings
 LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
 WINDOW_S = 15.0  # over which two headings hardly drift apart
 MAX_INSTANTS = 400
-BORDER_SAMPLES = 2  # without angular acceleration (eq 1)
+BORDER_S = 0.05  # at the ends of a stretch what is felt leans on one side
+MIN_SHARE = 0.2  # of what is averaged was heard
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,27 +112,26 @@ def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, flo
 def _felt(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Felt:
     rows = np.full((len(time_s), 21), np.nan)
     for one in stretches:
-        reach_s = (2 * _half_width(one.track.step_s) + BORDER_SAMPLES + 2) * one.track.step_s
+        force = one.joint_force
+        reach_s = 2 * _half_width(force.step_s) * force.step_s + BORDER_S
         is_inside = (time_s >= one.track.start_s + reach_s) & (time_s <= one.track.end_s - reach_s)
         if is_inside.any():
-            rows[is_inside] = _smooth_terms(one, time_s[is_inside])
+            rows[is_inside] = _smooth_terms(force, time_s[is_inside])
     terms = rows.reshape(-1, 3, 7)
     return Felt(terms, np.gradient(terms, STEP_S, axis=0))
 
 
-def _smooth_terms(one: OrientedTrack, time_s: FloatArray) -> FloatArray:
-    """Terms row by row (n, 21), averaged around ascending instants inside a stretch."""
-    track = one.track
-    half = _half_width(track.step_s)
-    middle = (time_s - track.start_s) / track.step_s
-    first = int(middle[0]) - 2 * half - 1
+def _smooth_terms(force: JointForce, time_s: FloatArray) -> FloatArray:
+    """Terms row by row (n, 21), averaged around ascending instants inside a stretch; NaN where little was heard."""
+    half = _half_width(force.step_s)
+    middle = (time_s - force.start_s) / force.step_s
+    first = max(0, int(middle[0]) - 2 * half - 1)
     near = slice(first, int(middle[-1]) + 2 * half + 3)
-    swing = lever_matrix(track.gyr_rad_s[near], angular_acceleration(track.gyr_rad_s, track.step_s)[near])
-    earth_from = matrix_from_quaternion(one.q_earth_from_sensor[near])
-    force = earth_from @ track.acc_m_s2[near][..., None]
-    terms = np.concatenate([earth_from @ swing, earth_from, force], axis=2).reshape(-1, 21)
-    smooth = _running_mean(_running_mean(terms, half), half)
-    return at_positions(smooth, middle - first - 2 * half)
+    is_heard = force.heard[near, None] > MIN_HEARD
+    rows = np.concatenate([np.where(is_heard, force.terms[near].reshape(-1, 21), 0.0), is_heard], axis=1)
+    smooth = at_positions(_running_mean(_running_mean(rows, half), half), middle - first - 2 * half)
+    share = smooth[:, 21:]
+    return np.where(share > MIN_SHARE, smooth[:, :21] / np.maximum(share, MIN_SHARE), np.nan)
 
 
 def _half_width(step_s: float) -> int:
