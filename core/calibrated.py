@@ -8,7 +8,6 @@ import numpy as np
 from core.body import Joint, knee_of
 from core.calibration.clinical_sign import ClinicalSign, ankle_sign, ankle_sign_from_foot, knee_sign
 from core.calibration.zero import standing_twist, within_half_a_turn
-from core.gait.foot import follow
 from core.identified import Identified
 from core.measure import Twist
 from core.results import JointCalibration, Method, ZeroKind
@@ -163,8 +162,7 @@ def _sign_of_foot(tracks: SensorTracks, found: Identified) -> ClinicalSign | Non
     for recording in tracks.span:
         if recording.name not in found.basis.walks or not tracks.is_usable(recording, joint.distal):
             continue
-        for foot in tracks.oriented(recording, joint.distal, tracks.blocks(recording)[0]):
-            motion = follow(foot)
+        for motion in tracks.foot_motions(recording, joint.distal, tracks.blocks(recording)[0]):
             told = ankle_sign_from_foot(float(found.geometry.axis_2 @ motion.pitch_axis), len(motion.swings))
             if motion.is_direction_certain and told.is_certain:
                 return told

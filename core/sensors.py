@@ -6,6 +6,7 @@ import numpy as np
 
 from core.body import Joint, Site
 from core.calibration.rest import Rest, rest_of
+from core.gait.foot import FootMotion, follow
 from core.orientation import oriented
 from core.pair import OrientedTrack, Pair
 from core.samples import FloatArray, RateKind, Recording, RecordingKind, Session
@@ -35,6 +36,7 @@ class SensorTracks:
     rate_kind: RateKind
     pairs: dict[tuple[str, Joint, float], list[Pair]] = field(default_factory=dict)
     _tracks: dict[tuple[str, Site, int], list[OrientedTrack]] = field(default_factory=dict)
+    _motions: dict[tuple[str, Site], list[FootMotion]] = field(default_factory=dict)
     _spans: dict[str, tuple[float, float]] = field(default_factory=dict)
     _rests: dict[tuple[str, Site], Rest | None] = field(default_factory=dict)
 
@@ -83,3 +85,13 @@ class SensorTracks:
             tracks = even_tracks(recording.imu[site], block.from_s, block.to_s)
             self._tracks[key] = [oriented(track, kind, bias) for track in tracks]
         return self._tracks[key]
+
+    def foot_motions(self, recording: Recording, site: Site, block: Block) -> list[FootMotion]:
+        """How a foot travels over each of its tracks in one block; of first blocks remembered."""
+        key = (recording.name, site)
+        if block.number or key not in self._motions:
+            motions = [follow(foot) for foot in self.oriented(recording, site, block)]
+            if block.number:
+                return motions
+            self._motions[key] = motions
+        return self._motions[key]

@@ -15,7 +15,7 @@ from core.gait.cycles import (
     find_peak,
     range_of_cycles,
 )
-from core.gait.events import FootEvents, gait_of
+from core.gait.events import FootEvents, detect_events
 from core.gait.phases import phases_at
 from core.gait.shank import gait_of_shank
 from core.gait.spatiotemporal import parameters_of
@@ -110,12 +110,16 @@ def _events(tracks: SensorTracks, recording: Recording, site: Site, offset_s: fl
     found: list[FootEvents] = []
     is_rigid = site.side in prosthetic_sides(tracks.session.patient)
     for block in tracks.blocks(recording):
-        for foot in tracks.oriented(recording, site, block):
-            if foot.track.end_s < block.core_from_s or foot.track.start_s >= block.core_to_s:
+        for k, worn in enumerate(tracks.oriented(recording, site, block)):
+            if worn.track.end_s < block.core_from_s or worn.track.start_s >= block.core_to_s:
                 continue  # another block's, seen in the overlap
-            events = gait_of(foot, is_rigid) if site.segment is Segment.FOOT else gait_of_shank(foot)
+            if site.segment is Segment.FOOT:
+                motion = tracks.foot_motions(recording, site, block)[k]
+                events = detect_events(motion, worn.track.is_measured, is_rigid)
+            else:
+                events = gait_of_shank(worn)
             events = _rows(events, events.initial_contact_s < block.core_to_s)
-            if found and foot.track.start_s < block.core_from_s:
+            if found and worn.track.start_s < block.core_from_s:
                 found[-1] = _continued(found[-1], events, block.core_from_s)
             else:
                 found.append(events)

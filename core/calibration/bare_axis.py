@@ -16,7 +16,7 @@ from core.samples import FloatArray
 
 MAX_RINGING_RAD_S = 0.21  # above 3 Hz, root mean square; simulated rigid feet have 0.17 to 0.20, people 0.5 to 0.7
 FAST_SHARE_S2 = 0.1  # fast parts count less, by 1 / (1 + 0.1 |w|^2)
-ROUNDS, HEADING_STEPS = 4, 3
+ROUNDS, HEADING_STEPS = 4, 2
 SAMPLES = 800
 Axes = tuple[FloatArray, FloatArray]
 
@@ -33,10 +33,11 @@ def bare_axes(data: Datasets, axes: Axes) -> Axes | None:
         return None
     some = data.thinned(SAMPLES)
     one, two = axes
+    knots = heading_from_axes(some, one[None], two[None])
     for _ in range(ROUNDS):
-        knots = heading_from_axes(some, one[None], two[None])
         fit = polish(some, Candidates(one[None], two[None], knots, np.zeros(1)), HEADING_STEPS, is_axis_fixed=True)
-        heading = some.heading(fit.knots_rad[0])
+        knots = fit.knots_rad
+        heading = some.heading(knots[0])
         relative = _relative_rate(some, heading)
         weight = 1 / (1 + FAST_SHARE_S2 * np.sum(relative**2, axis=1))
         seen_1 = np.einsum("nij,ni->nj", some.earth_from_1, relative)
