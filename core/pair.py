@@ -23,6 +23,11 @@ class OrientedTrack:
     q_earth_from_sensor: FloatArray
 
     @cached_property
+    def earth_from_sensor(self) -> FloatArray:
+        """The same as rotations (n, 3, 3)."""
+        return matrix_from_quaternion(self.q_earth_from_sensor)
+
+    @cached_property
     def joint_force(self) -> JointForce:
         """What it feels of a joint; found once, for both joints of its segment."""
         track = self.track
@@ -32,7 +37,7 @@ class OrientedTrack:
             track.gyr_rad_s,
             angular_acceleration(track.gyr_rad_s, track.step_s),
             track.acc_m_s2,
-            matrix_from_quaternion(self.q_earth_from_sensor),
+            self.earth_from_sensor,
             track.is_measured,
         )
 
@@ -75,11 +80,13 @@ class Pair:
 
 
 def moving_mean(values: FloatArray, width: int) -> FloatArray:
-    """Centred mean of (n,) over up to `width` samples, fewer at the borders."""
-    total = np.concatenate([[0.0], np.cumsum(values)])
+    """Centred mean of (n, ...) over up to `width` samples, fewer at the borders."""
+    total = np.zeros((len(values) + 1, *values.shape[1:]))
+    np.cumsum(values, axis=0, out=total[1:])
     index = np.arange(len(values))
     first, last = np.maximum(index - width // 2, 0), np.minimum(index + (width - width // 2), len(values))
-    return (total[last] - total[first]) / (last - first)
+    count = (last - first).reshape(-1, *[1] * (values.ndim - 1))
+    return np.asarray((total.take(last, axis=0) - total.take(first, axis=0)) / count)
 
 
 def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
@@ -128,12 +135,14 @@ def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pai
     whole = np.round(position)
     if np.max(np.abs(position - whole)) < 1e-3:  # one clock: no interpolation
         position = whole
-    q2 = at_positions(continuous(distal.q_earth_from_sensor), position)
+        turned = at_positions(distal.earth_from_sensor.reshape(-1, 9), position).reshape(-1, 3, 3)
+    else:
+        turned = matrix_from_quaternion(at_positions(continuous(distal.q_earth_from_sensor), position))
     is_measured = one.is_measured[part] & two.is_measured[np.clip(whole, 0, len(two) - 1).astype(int)]
     rates = one.gyr_rad_s[part], at_positions(two.gyr_rad_s, position)
     forces = one.acc_m_s2[part], at_positions(two.acc_m_s2, position)
-    q1 = proximal.q_earth_from_sensor[part]
-    return _pair(time_s, one.step_s, rates, forces, (q1, q2), is_measured, (proximal, distal), lag_s)
+    earth_from = proximal.earth_from_sensor[part], turned
+    return _pair(time_s, one.step_s, rates, forces, earth_from, is_measured, (proximal, distal), lag_s)
 
 
 def pair_of(
@@ -157,7 +166,8 @@ def pair_of(
         OrientedTrack(Track(float(time_s[0]), step_s, rate, force, None, None, is_measured), q)
         for rate, force, q in zip(rates, forces, orientations, strict=True)
     )
-    return _pair(time_s, step_s, rates, forces, orientations, is_measured, (one, two), 0.0)
+    earth_from = one.earth_from_sensor, two.earth_from_sensor
+    return _pair(time_s, step_s, rates, forces, earth_from, is_measured, (one, two), 0.0)
 
 
 def _pair(
@@ -165,7 +175,7 @@ def _pair(
     step_s: float,
     rates: tuple[FloatArray, FloatArray],
     forces: tuple[FloatArray, FloatArray],
-    orientations: tuple[FloatArray, FloatArray],
+    earth_from: tuple[FloatArray, FloatArray],
     is_measured: BoolArray,
     tracks: tuple[OrientedTrack, OrientedTrack],
     lag_s: float,
@@ -179,8 +189,8 @@ def _pair(
         a2=forces[1],
         dg1=angular_acceleration(rates[0], step_s),
         dg2=angular_acceleration(rates[1], step_s),
-        earth_from_1=matrix_from_quaternion(orientations[0]),
-        earth_from_2=matrix_from_quaternion(orientations[1]),
+        earth_from_1=earth_from[0],
+        earth_from_2=earth_from[1],
         is_measured=is_measured,
         is_known=_known(is_measured),
         tracks=tracks,

@@ -9,7 +9,7 @@ from core.calibration.rest import rest_of
 from core.findings import Finding, Severity
 from core.handedness import Turn, reversed_sites, turn_about_vertical
 from core.pair import moving_mean
-from core.samples import BoolArray, FloatArray, ImuBlock, Recording, RecordingKind, Session
+from core.samples import BoolArray, FloatArray, ImuBlock, IntArray, Recording, RecordingKind, Session
 from core.tracks import (
     MAX_REPORTED_GAP_S,
     MIN_STRETCH_S,
@@ -32,6 +32,7 @@ STEPS_TOGETHER, STEPS_BESIDE = 30, 5
 SHORT_STEP, MIN_SHORT_STEPS = 0.7, 0.005  # of the usual step; of all steps, where stamps jitter
 MIN_RATE_HZ = 25.0  # below, a swing is a handful of samples
 COMPARED_ROWS = 2000
+ROW_FACTORS = 1_000_003 ** np.arange(1, 7)  # two rows hardly ever make one number
 MIN_DISTINCT = 0.8  # share of rows that are unlike all others: a finer sensor than that never repeats itself by chance
 MOVING_RAD_S = 0.5
 CLIPPED_RUN = 3  # equal extreme values in a row
@@ -245,25 +246,27 @@ def _same_data(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:
     At rest coarse ones do: of these, only rows in motion count.
     """
     found: list[tuple[tuple[Site, ...], Finding]] = []
-    rows: dict[Site, set[bytes]] = {}
+    rows: dict[Site, IntArray] = {}
     for site, block in recording.imu.items():
         mine = rows[site] = _distinct_rows(block)
         for other, theirs in rows.items():
-            if other is not site and len(mine & theirs) > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
+            shared = 0 if other is site else len(np.intersect1d(mine, theirs, assume_unique=True))
+            if shared > 0.5 * max(min(len(mine), len(theirs)), MIN_STRETCH_SAMPLES):
                 where = f"{recording.name}, {other}, {site}"
                 found.append(((other, site), Finding("same_data", Severity.GRAVE, where)))
     return found
 
 
-def _distinct_rows(block: ImuBlock) -> set[bytes]:
-    """The first rows of a sensor's samples by which it can be told from another."""
+def _distinct_rows(block: ImuBlock) -> IntArray:
+    """The first rows of a sensor's samples by which it can be told from another, each as one number."""
     first = slice(0, COMPARED_ROWS)
     signals = np.concatenate([block.gyr_rad_s[first], block.acc_m_s2[first]], axis=1).astype(np.float64)
     signals = signals[np.isfinite(signals).all(axis=1) & np.any(signals, axis=1)]
-    distinct = {row.tobytes() for row in signals}
+    rows = np.sum(signals.view(np.int64) * ROW_FACTORS, axis=1)  # wraps around, as it may
+    distinct = np.unique(rows)
     if len(distinct) >= MIN_DISTINCT * len(signals):
         return distinct
-    return {row.tobytes() for row in signals[np.linalg.norm(signals[:, :3], axis=1) > MOVING_RAD_S]}
+    return np.unique(rows[np.linalg.norm(signals[:, :3], axis=1) > MOVING_RAD_S])
 
 
 def _clock_offsets(recording: Recording) -> list[tuple[tuple[Site, ...], Finding]]:

@@ -259,10 +259,8 @@ def at_positions(values: FloatArray, position: FloatArray) -> FloatArray:
         return values[left[0] : left[-1] + 1] if is_all_in_a_row else values[left]
     left = np.clip(left, 1, n - 3)
     u = (position - left)[:, None]
-    p0, p1, p2, p3 = values[left - 1], values[left], values[left + 1], values[left + 2]
-    return (
-        -u * (u - 1) * (u - 2) / 6 * p0
-        + (u + 1) * (u - 1) * (u - 2) / 2 * p1
-        - (u + 1) * u * (u - 2) / 2 * p2
-        + (u + 1) * u * (u - 1) / 6 * p3
-    )
+    found = values.take(left, axis=0) * ((u + 1) * (u - 1) * (u - 2) / 2)
+    found -= values.take(left - 1, axis=0) * (u * (u - 1) * (u - 2) / 6)
+    found -= values.take(left + 1, axis=0) * ((u + 1) * u * (u - 2) / 2)
+    found += values.take(left + 2, axis=0) * ((u + 1) * u * (u - 1) / 6)
+    return found

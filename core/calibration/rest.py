@@ -36,7 +36,7 @@ def rest_of(block: ImuBlock) -> Rest | None:
     width = max(3, round(WINDOW_S / step_s))
     if len(time_s) < width:
         return None
-    mean_rate = np.stack([moving_mean(gyr[:, k], width) for k in range(3)], axis=1)
+    mean_rate = moving_mean(gyr, width)
     is_quiet = (_spread(gyr, width) < MAX_SPREAD_RAD_S) & (_spread(acc, width) < MAX_ACC_SPREAD_M_S2)
     is_quiet &= np.sum(mean_rate**2, axis=1) < MAX_BIAS_RAD_S**2
     duration_s = float(np.count_nonzero(is_quiet) * step_s)
@@ -48,5 +48,5 @@ def rest_of(block: ImuBlock) -> Rest | None:
 def _spread(values: FloatArray, width: int) -> FloatArray:
     """Standard deviation (n,) of vectors (n, 3) about their centred mean."""
     centred = values - np.median(values, axis=0)  # keeps the difference of squares exact
-    square = sum(moving_mean(centred[:, k] ** 2, width) - moving_mean(centred[:, k], width) ** 2 for k in range(3))
+    square = np.sum(moving_mean(centred**2, width) - moving_mean(centred, width) ** 2, axis=1)
     return np.sqrt(np.maximum(square, 0.0))

@@ -99,23 +99,21 @@ def _best_heading(one: FloatArray, two: FloatArray) -> tuple[float, FloatArray, 
 
     The turn Rz(d) is cos d A + sin d B + C, so the moments of all headings come from three.
     """
-    across = np.stack([-two[:, 1], two[:, 0]], axis=1)
-    parts = np.empty((3, 7, 7))
-    parts[0] = np.tensordot(one[:, :2], two[:, :2], ((0, 1), (0, 1)))
-    parts[1] = np.tensordot(one[:, :2], across, ((0, 1), (0, 1)))
-    parts[2] = one[:, 2].T @ two[:, 2]
+    x, y, z = np.concatenate([one, two], axis=2).transpose(1, 0, 2)
+    flat, upright, turned = x.T @ x + y.T @ y, z.T @ z, x.T @ y
+    parts = np.stack([flat[:7, 7:], turned[7:, :7].T - turned[:7, 7:], upright[:7, 7:]])
     trial = np.arange(0.0, 2 * np.pi, HEADING_STEP_RAD)
     mixed = np.tensordot(np.stack([np.cos(trial), np.sin(trial), np.ones_like(trial)], axis=1), parts, 1)
-    own_1, own_2 = (np.tensordot(s, s, ((0, 1), (0, 1))) for s in (one, two))
+    own_1, own_2 = ((flat + upright)[part, part] for part in (slice(0, 7), slice(7, 14)))
     matrix = np.zeros((len(trial), 12, 12))
     matrix[:, :6, :6], matrix[:, 6:, 6:] = own_1[:6, :6], own_2[:6, :6]
     matrix[:, :6, 6:], matrix[:, 6:, :6] = -mixed[:, :6, :6], -np.swapaxes(mixed[:, :6, :6], 1, 2)
     matrix += np.diag(np.tile(_prior(), 2))
     slope = np.concatenate([own_1[:6, 6] - mixed[:, :6, 6], own_2[:6, 6] - mixed[:, 6, :6]], axis=1)
-    x = np.linalg.solve(matrix, slope[..., None])[..., 0]
-    left = own_1[6, 6] + own_2[6, 6] - 2 * mixed[:, 6, 6] - np.sum(x * slope, axis=1)
+    unknowns = np.linalg.solve(matrix, slope[..., None])[..., 0]
+    left = own_1[6, 6] + own_2[6, 6] - 2 * mixed[:, 6, 6] - np.sum(unknowns * slope, axis=1)
     best = int(np.argmin(left))
-    return float(trial[best]), x[best], float(left[best])
+    return float(trial[best]), unknowns[best], float(left[best])
 
 
 def _solved(
