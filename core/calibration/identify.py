@@ -30,7 +30,6 @@ CANDIDATE_SAMPLES = 200
 DECISION_SAMPLES = 400
 POLISH_SAMPLES = 1500
 AXIS_SAMPLES = 800
-HEADING_STEPS = 2  # from axes that hardly moved
 CANDIDATE_STEPS = 5
 POLISH_STEPS = 6
 MIN_MOVING_S = 2.0  # less movement than this identifies nothing
@@ -238,27 +237,20 @@ def _refined(
     is_hinge = residual < MAX_HINGE_RESIDUAL_RAD_S and off_axis < MAX_OFF_AXIS_RAD_S
     centre = centre_by_vectors(many, fit.knots_rad[0])
     loose = certainty.looseness(many, j1, many.heading(fit.knots_rad[0]))
-    floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
-    axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, scales), floor)
-    if is_hinge:
-        better = hinge_axes(many, j1, j2, centre.unknowns)
-        if better is not None:
-            j1, j2, rows = better
-            slope, value = rows[..., :4], rows[..., 4]
-            weight = 1 / np.sqrt(1 + value**2)
-            covariance = certainty.sandwich_covariance(slope, value, weight, certainty.time_blocks(many))
-            axis_sd = certainty.axis_sd_rad(covariance, certainty.hinge_floor_rad(loose))
-            again = polish(
-                many,
-                Candidates(j1[None], j2[None], fit.knots_rad, fit.cost),
-                HEADING_STEPS,
-                *scales,
-                is_axis_fixed=True,
-            )
-            centre = centre_by_vectors(many, again.knots_rad[0])
-            centre = refine_on_hinge(united(seen), j1, j2, centre) or centre
-            residual = max(hinge_residual(one, j1, j2) for one in seen)
+    better = hinge_axes(many, j1, j2, centre.unknowns) if is_hinge else None
+    if better is not None:
+        j1, j2, rows = better
+        slope, value = rows[..., :4], rows[..., 4]
+        weight = 1 / np.sqrt(1 + value**2)
+        covariance = certainty.sandwich_covariance(slope, value, weight, certainty.time_blocks(many))
+        axis_sd = certainty.axis_sd_rad(covariance, certainty.hinge_floor_rad(loose))
+        # the angle of a hinge needs no heading, so a centre under the axes before is as good a start
+        centre = refine_on_hinge(united(seen), j1, j2, centre) or centre
+        residual = max(hinge_residual(one, j1, j2) for one in seen)
     else:
+        floor = certainty.AXIS_FLOOR_WALKING_RAD if is_from_walking else certainty.AXIS_FLOOR_HUMAN_RAD
+        axis_sd = certainty.axis_sd_rad(_axis_covariance(many, fit, scales), floor)
+    if not is_hinge:
         centre = centre_by_lengths(free.thinned(POLISH_SAMPLES), centre.unknowns)
     elevation = float(_elevations(j1[None], j2[None], downs)[0].max()) if downs else None
     lies_flat = is_hinge or (elevation is not None and elevation < MAX_ELEVATION_RAD)
