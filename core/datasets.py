@@ -50,7 +50,8 @@ class Datasets:
 
     def only(self, keep: BoolArray | IntArray) -> "Datasets":
         """The samples where `keep` (n,) holds, or of those numbers, with all knots."""
-        mine = {name: getattr(self, name)[keep] for name in _PER_SAMPLE}
+        index = np.flatnonzero(keep) if keep.dtype == np.bool_ else keep
+        mine = {name: getattr(self, name).take(index, axis=0) for name in _PER_SAMPLE}
         return replace(self, **mine)
 
     def thinned(self, count: int) -> "Datasets":
@@ -126,7 +127,9 @@ def gather(pairs: tuple[Pair, ...], indices: list[IntArray]) -> Datasets:
         first_knot += intervals + 1
 
     signals = {
-        name: np.concatenate([getattr(pair, name)[index] for pair, index in zip(pairs, indices, strict=True)])
+        name: np.concatenate(
+            [getattr(pair, name).take(index, axis=0) for pair, index in zip(pairs, indices, strict=True)]
+        )
         for name in _SIGNALS
     }
     return Datasets(

@@ -119,8 +119,9 @@ def _about_block(block: ImuBlock, kind: RecordingKind) -> list[About]:
         return [*about, ("stuck_throughout", Severity.GRAVE, {})]
     if stuck > 0.0:
         about.append(("stuck", Severity.WARNING, {"percent": round(stuck, 1)}))
-    about += _about_gaps(block, block.time_s[heard])
-    rate_hz = 1 / nominal_step_s(block.time_s[heard])
+    step_s = nominal_step_s(block.time_s[heard])
+    about += _about_gaps(block, block.time_s[heard], step_s)
+    rate_hz = 1 / step_s
     if rate_hz < MIN_RATE_HZ:
         about.append(("low_rate", Severity.WARNING, {"rate_hz": round(rate_hz, 1)}))
     clipped = max(
@@ -164,23 +165,22 @@ def _lengths(vectors: FloatArray) -> FloatArray:
 def lost_percent(block: ImuBlock) -> float:
     """How many of a sensor's samples are missing, to its own rate; 100 where next to none was heard."""
     heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
-    return _missing_percent(block, heard_s) if len(heard_s) >= MIN_STRETCH_SAMPLES else 100.0
+    return _missing_percent(block, heard_s, nominal_step_s(heard_s)) if len(heard_s) >= MIN_STRETCH_SAMPLES else 100.0
 
 
-def _missing_percent(block: ImuBlock, heard_s: FloatArray) -> float:
-    missing = float(np.sum(_missing_rows(heard_s)))
+def _missing_percent(block: ImuBlock, heard_s: FloatArray, step_s: float) -> float:
+    missing = float(np.sum(_missing_rows(heard_s, step_s)))
     missing += float(np.count_nonzero(block.time_s < heard_s[0]) + np.count_nonzero(block.time_s > heard_s[-1]))
     return 100 * missing / (missing + len(heard_s))
 
 
-def _missing_rows(heard_s: FloatArray) -> FloatArray:
+def _missing_rows(heard_s: FloatArray, step_s: float) -> FloatArray:
     """How many samples lack after each but the last (n - 1,).
 
     Where stamps jitter, which shows in short steps, a long step between short ones lacks nothing: as many samples must
     be missing around it, by a step that many steps tell.
     """
     steps = np.diff(heard_s)
-    step_s = nominal_step_s(heard_s)
     if len(steps) <= STEPS_TOGETHER or np.mean(steps < SHORT_STEP * step_s) < MIN_SHORT_STEPS:
         return np.asarray(np.maximum(np.round(steps / step_s) - 1, 0))
     together_s = (heard_s[STEPS_TOGETHER:] - heard_s[:-STEPS_TOGETHER]) / STEPS_TOGETHER
@@ -191,10 +191,9 @@ def _missing_rows(heard_s: FloatArray) -> FloatArray:
     return np.asarray(np.clip(np.round(steps / step_s) - 1, 0, np.maximum(around, 0)))
 
 
-def _about_gaps(block: ImuBlock, heard_s: FloatArray) -> list[About]:
-    step_s = nominal_step_s(heard_s)
+def _about_gaps(block: ImuBlock, heard_s: FloatArray, step_s: float) -> list[About]:
     steps = np.diff(heard_s)
-    percent = _missing_percent(block, heard_s)
+    percent = _missing_percent(block, heard_s, step_s)
     longest_s = float(np.max(steps))
     count = int(np.count_nonzero(steps > max(MAX_REPORTED_GAP_S, 1.5 * step_s)))
     if percent < MIN_LOSS_PERCENT and count == 0:

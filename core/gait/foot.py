@@ -12,7 +12,6 @@ import numpy as np
 from scipy.signal import find_peaks
 
 from core.pair import OrientedTrack, moving_mean
-from core.rotations import matrix_from_quaternion
 from core.samples import FloatArray, IntArray
 
 GRAVITY_M_S2 = 9.81
@@ -111,7 +110,7 @@ def follow(foot: OrientedTrack) -> FootMotion:
     """Find every swing of a foot and how far it went. A foot that never steps has no swings."""
     track = foot.track
     step_s, gyr = track.step_s, track.gyr_rad_s
-    earth_from_sensor = matrix_from_quaternion(foot.q_earth_from_sensor)
+    earth_from_sensor = foot.earth_from_sensor
     acceleration = np.einsum("nij,nj->ni", earth_from_sensor, track.acc_m_s2) - [0.0, 0.0, GRAVITY_M_S2]
     up = earth_from_sensor[:, 2]  # in sensor axes
     restless = _restlessness(gyr, acceleration, step_s)
