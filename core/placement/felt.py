@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.joint_force import MIN_HEARD, JointForce
+from core.joint_force import JointForce
 from core.pair import FAST_RAD_S, OrientedTrack
 from core.placement.steps import at_once
 from core.samples import FloatArray, IntArray
@@ -22,7 +22,7 @@ LONGEST_S = 60.0  # the liveliest minute tells as much as an hour
 WINDOW_S = 15.0  # over which two headings hardly drift apart
 MAX_INSTANTS = 400
 BORDER_S = 0.05  # at the ends of a stretch what is felt leans on one side
-MIN_SHARE = 0.2  # of what is averaged was heard
+MIN_SHARE = 0.5  # of what a mean is taken over was heard
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +127,7 @@ def _smooth_terms(force: JointForce, time_s: FloatArray) -> FloatArray:
     middle = (time_s - force.start_s) / force.step_s
     first = max(0, int(middle[0]) - 2 * half - 1)
     near = slice(first, int(middle[-1]) + 2 * half + 3)
-    is_heard = force.heard[near, None] > MIN_HEARD
+    is_heard = force.heard[near, None] > MIN_SHARE
     rows = np.concatenate([np.where(is_heard, force.terms[near].reshape(-1, 21), 0.0), is_heard], axis=1)
     smooth = at_positions(_running_mean(_running_mean(rows, half), half), middle - first - 2 * half)
     share = smooth[:, 21:]
