@@ -8,8 +8,9 @@ import pytest
 
 from core.body import Joint
 from core.calibration import identify
-from core.calibration.identify import Decision, Downs, Identification, identify_joint
+from core.calibration.identify import Decision, Downs, Identification, identify_joint, moving_data
 from core.datasets import Datasets
+from core.pair import OrientedTrack, Pair, pair_up
 from core.rotations import joint_frame
 from core.samples import FloatArray
 
@@ -54,3 +55,31 @@ def test_flexion_is_doubted_where_the_axis_stands_up(person: "Person") -> None:
     assert found.elevation_rad is not None
     assert found.elevation_rad > np.deg2rad(80.0)
     assert not found.did_flexion_dominate
+
+
+def test_a_lag_of_a_hinge_is_found_to_a_fraction_of_a_sample_without_walks(person: "Person") -> None:
+    """The distal stamps are 20 ms early and then some: the second look finds what the first correction left."""
+    pair = person.exact_pair(KNEE, duration_s=12.0, heading_rad=0.4)
+    one, two = pair.tracks
+    early = OrientedTrack(replace(two.track, start_s=two.track.start_s - 0.0234), two.q_earth_from_sensor)
+
+    def pairs_at(lag_s: float) -> tuple[Pair, ...]:
+        found = pair_up(one, early, lag_s)
+        assert found is not None
+        return (found,)
+
+    found = identify_joint(pairs_at, lambda _: (), pairs_at, True, False, None)
+    assert found is not None
+    assert found.is_hinge
+    assert found.lag.lag_s == pytest.approx(0.0234, abs=1e-4)
+
+
+@pytest.mark.parametrize(("samples", "is_used"), [(50, True), (49, False)])
+def test_half_a_second_of_movement_is_a_stretch(person: "Person", samples: int, is_used: bool) -> None:
+    pair = person.exact_pair(KNEE)
+    is_heard = np.zeros(len(pair), dtype=bool)
+    is_heard[200 : 200 + samples] = True
+    data = moving_data((pair, replace(pair, is_known=is_heard)))
+    assert data is not None
+    assert len(data.pairs) == 1 + is_used
+    assert np.sum(data.stretch == 1) == (samples if is_used else 0)

@@ -181,6 +181,15 @@ def test_a_sensor_that_changes_is_told(make_session: MakeSession) -> None:
     assert session.findings[0].numbers == {"before": "left_thigh", "after": "B"}
 
 
+def test_findings_come_from_the_text_then_from_the_files_then_from_both(make_session: MakeSession) -> None:
+    second = '[[recordings]]\nname = "walk 2"\nkind = "walking"\nfolder = "walk_2"\nsensors = {left_thigh = "B"}\n'
+    files = {"left_thigh.csv": table(*ROWS), "video.mp4": b""}
+    folder = make_session(files, toml=TOML + 'weather = "rain"\n' + second)
+    (folder / "walk_2").mkdir()
+    (folder / "walk_2" / "left_thigh.csv").write_text(table(*ROWS))
+    assert [f.key for f in read_session(folder).findings] == ["unknown_key", "file_left_out", "sensor_changed"]
+
+
 UNKNOWN = """\
 format = "gaitwright-session/1"
 clinic = "north"
