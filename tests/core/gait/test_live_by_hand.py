@@ -1,4 +1,4 @@
-"""Are live events where a foot was made to have them? Its pitch rate is drawn with ruler and power law, so they are known."""
+"""Live events of a foot whose pitch rate is drawn with straight lines and a power law, so that its events are known."""
 
 from collections.abc import Sequence
 
@@ -15,12 +15,15 @@ STANDING_S = 2.003  # no event falls on a sample
 FALL = 0.28  # s after the heel rise the foot no longer turns toes down
 
 Foot = tuple[FloatArray, FloatArray, FloatArray]  # time, angular rate and specific force in axes forward, left, up
-Down = tuple[float, float, float, float, float]  # begin, peak, end in s after the heel rise, its peak and rebound, rad/s
+Down = tuple[float, float, float, float, float]  # begin, peak, end, s; peak, rebound, rad/s
 LOADING: Down = (0.60, 0.62, 0.72, 4.0, 0.0)
 
 
 def turning_rad_s(t: FloatArray, down: Down) -> FloatArray:
-    """Toes up, of one step whose heel rises at 0: 5 rad/s down at 0.20 s, up again until `down`, for 0.1 s after which it rebounds."""
+    """Toes-up rate of one step whose heel rises at 0: 5 rad/s down at 0.20 s, then up until the toes come `down`.
+
+    They may rebound for 0.1 s.
+    """
     begin, peak, end, load, rebound = down
     rate = np.zeros_like(t)
     shown = (t > 0.0) & (t <= 0.2)
@@ -65,7 +68,7 @@ def after_rise_s(told: Sequence[LiveEvent], event: FootEvent) -> FloatArray:
 
 @pytest.mark.parametrize("rate_hz", [60.0, 100.0, 200.0])
 def test_every_event_is_where_it_was_drawn(rate_hz: float) -> None:
-    """A rate that grows with the power 1.75 of time begins where it was zero; the others are shares of a straight line."""
+    """A rate that grows with the power 1.75 of time begins where it was zero; the others lie on straight lines."""
     told = LiveEvents().update(*walking_foot(rate_hz, [LOADING] * 4))
     assert [one.event for one in told] == 4 * [
         FootEvent.HEEL_RISE,
@@ -107,7 +110,7 @@ def test_way_and_speed_of_a_foot_whose_velocity_crept() -> None:
 
 
 def test_a_shaken_foot_shows_the_vertical_in_five_seconds() -> None:
-    """It lay level, then a force of 6 m/s2 stays across: of the tilt of 31.5 degrees that this means, 1 - 1/e is seen in 5 s.
+    """It lay level, then a force of 6 m/s2 stays across; of the tilt that this means, 1 - 1/e is seen in 5 s.
 
     The direction of gravity, of length g, turns at rate f sin(angle left) / (g tau) towards a force f of 11.5 m/s2.
     """
@@ -124,7 +127,8 @@ def test_a_shaken_foot_shows_the_vertical_in_five_seconds() -> None:
         speed_m_s += step_s * (force - 9.81 * np.array([np.sin(tilt), np.cos(tilt)]))
         left_rad -= step_s * np.hypot(6.0, 9.81) * np.sin(left_rad) / (9.81 * 5.0)
     assert motion.calm_s == 0.0
-    assert motion.speed_m_s == pytest.approx(float(np.linalg.norm(speed_m_s)), rel=0.03)  # for its first 20 ms it is still taken to be calm
+    # for its first 20 ms the foot is still taken to be calm
+    assert motion.speed_m_s == pytest.approx(float(np.linalg.norm(speed_m_s)), rel=0.03)
 
 
 def test_a_foot_is_in_swing_between_toe_off_and_contact() -> None:
@@ -141,7 +145,7 @@ def test_a_foot_is_in_swing_between_toe_off_and_contact() -> None:
 
 @pytest.mark.parametrize("usual_steps", [0, 1, 5])
 def test_two_steps_to_the_contrary_turn_the_toes_round(usual_steps: int) -> None:
-    """A foot that leaves the floor toes down, forward, turns its toes up about its right; then its swings say otherwise."""
+    """A foot that leaves the floor forward, toes down, lifts its toes about its right, until swings say otherwise."""
     motion = LiveMotion(None)
     times_s, gyr, acc = walking_foot(100.0, [LOADING])
     axis = None
@@ -158,7 +162,7 @@ def test_two_steps_to_the_contrary_turn_the_toes_round(usual_steps: int) -> None
             motion.add(0.0, 0.01, (0.0, toes_down_rad_s, 0.0), (0.0, 0.0, 9.81), 0.18)
         return motion.begin_step(has_swung=True)
 
-    assert not any([is_turned_by(2.0) for _ in range(usual_steps)])
+    assert [is_turned_by(2.0) for _ in range(usual_steps)] == [False] * usual_steps
     assert [is_turned_by(-2.0) for _ in range(2)] == [False, True]
     assert motion.pitch_axis == pytest.approx((0.0, 1.0, 0.0), abs=1e-6)
     assert not is_turned_by(-2.0)
