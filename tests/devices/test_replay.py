@@ -258,3 +258,8 @@ def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: Clock) -> None
     assert source.now_ns() - begin_ns == 2_000_000_000
     heard = [block for _ in range(10) for block in source.read(lambda _: None)]
     assert sum(map(len, heard)) / 6 == pytest.approx((0.1 + 10 * 0.015) * 20 * RATE_HZ, abs=5)
+
+
+def test_the_demonstration_stands_for_ten_seconds_and_moves_freely_for_six() -> None:
+    lasts_s = [one.duration_s for one in DEMONSTRATION_SESSION.recordings if not isinstance(one, Walk)]
+    assert lasts_s == [10.0, *[6.0] * 6]

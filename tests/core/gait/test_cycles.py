@@ -80,3 +80,14 @@ def test_curves_are_compared_point_by_point() -> None:
     one = np.linspace(0.0, 10.0, 101)
     assert curve_difference(one, one + 3.0) == pytest.approx(3.0)
     assert gait_variable_score(one, one - 4.0) == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize("lost", [51, 100, 159, 160, 161])
+def test_one_missing_sample_anywhere_makes_its_stride_missing_throughout(lost: int) -> None:
+    """The stride lies between the samples 50 and 51 at one end, 160 and 161 at the other."""
+    broken = angle()
+    broken[lost] = np.nan
+    start_s = np.array([0.503, 1.613])
+    cycles = cycles_of(TIME_S, broken, start_s, start_s + 1.1)
+    assert np.isnan(cycles[0]).all()
+    assert np.isfinite(cycles[1]).all() == (lost < 161)
