@@ -109,5 +109,5 @@ def status_in_ascii(recording: RecordingAnalysis, joint: Joint) -> str:
     """A joint's status and why, in letters that every format takes."""
     status, reasons = joint_status(recording, joint) or "not_measured", why_status(recording, joint)
     told = f"{status}: {reasons}" if reasons else status
-    plain = unicodedata.normalize("NFKD", told.replace("\N{DEGREE SIGN}", " deg").replace("\N{SUPERSCRIPT TWO}", "2"))
+    plain = unicodedata.normalize("NFKD", told.replace("\N{DEGREE SIGN}", " deg"))
     return plain.encode("ascii", "ignore").decode("ascii")

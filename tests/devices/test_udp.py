@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import pytest
 
+from devices import channels
 from devices.channels import UdpChannel
 from devices.emulators.transports import Emulation, UdpSender
 from devices.emulators.ximu3 import Ximu3Voice
@@ -84,3 +85,22 @@ def test_the_port_is_free_again_and_refused_where_another_program_has_it(port: i
         other.bind(("", port))
         with pytest.raises(SourceRefusedError, match="used by another program"):
             channel.open()
+
+
+def test_a_read_hands_on_what_is_there_and_does_not_wait_for_more(port: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    waited_s: list[float] = []
+
+    def is_there(sockets: Sequence[socket.socket], writing: object, odd: object, wait_s: float) -> object:
+        waited_s.append(wait_s)
+        return ready(sockets, writing, odd, 0.0)
+
+    ready = channels.select.select
+    monkeypatch.setattr(channels.select, "select", is_there)
+    channel = UdpChannel("127.0.0.1", 1, port)
+    channel.open()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for datagram in (b"one", b"two"):
+            sender.sendto(datagram, ("127.0.0.1", port))
+    assert channel.read() == b"onetwo"
+    channel.close()
+    assert waited_s == [0.0, 0.0]

@@ -6,7 +6,8 @@ import pytest
 from core.body import Side
 from core.samples import FloatArray
 from devices.walker_body import WalkerSettings, make_leg
-from devices.walker_sensors import interpolate
+from devices.walker_motion import NO_EVENTS, JointAngles, LegMotion
+from devices.walker_sensors import _liveliness, interpolate
 
 PEOPLE = 400
 
@@ -34,3 +35,16 @@ def test_what_lies_between_samples_is_exact_for_a_cubic() -> None:
         return np.stack([2.0 + x - 0.3 * x**2 + 0.05 * x**3, 1.0 - 0.02 * (x - 4.0) ** 3], axis=1)
 
     np.testing.assert_allclose(interpolate(curves(index), at), curves(at), atol=1e-10)
+
+
+@pytest.mark.parametrize(
+    ("rate_rad_s", "expected"),
+    [(0.2, 0.0), (1.575, 0.25), (3.15 / np.sqrt(2.0), 0.5), (3.1, (3.1 / 3.15) ** 2), (6.0, 1.0)],
+)
+def test_tissue_shakes_as_the_square_of_how_fast_the_knee_bends(rate_rad_s: float, expected: float) -> None:
+    """A knee that bends and stretches at one rate for 5 of 10 s; 3.15 rad/s, and all that is faster, shakes in full."""
+    time_s = 0.001 * np.arange(10_000)
+    knee = rate_rad_s * np.abs((np.minimum(time_s, 5.0) + 0.25) % 1.0 - 0.5)
+    zero = np.zeros_like(knee)
+    leg = LegMotion(time_s, JointAngles(knee, zero, zero, zero), np.empty(0), np.empty(0), NO_EVENTS, np.empty((0, 2)))
+    assert _liveliness(leg) == pytest.approx(expected, abs=0.005)

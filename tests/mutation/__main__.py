@@ -22,6 +22,7 @@ COVERING, RESULTS = BUILD / "covering.json", BUILD / "results.jsonl"
 EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 SEED = 15
 ALIVE = (Fate.SURVIVED, Fate.UNCOVERED)
+AGAIN = (*ALIVE, Fate.TIMEOUT)  # on a machine that is busy with other things, too, not every timeout is an endless loop
 
 Results = dict[str, dict[str, Any]]
 """The last result of each mutant, by its name."""
@@ -33,7 +34,7 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=300, help="mutants in all, as many of each package (300)")
     parser.add_argument("--seed", type=int, default=SEED, help=f"which of them ({SEED})")
     parser.add_argument("--cover", action="store_true", help="first find out again which tests run which lines")
-    parser.add_argument("--again", action="store_true", help="try those that survived once more")
+    parser.add_argument("--again", action="store_true", help="try those that survived or took too long once more")
     parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no mutant after so long")
     parser.add_argument("--report", action="store_true", help="run nothing, tell what was found")
     wanted = parser.parse_args()
@@ -63,7 +64,7 @@ def run(mutants: Iterable[Mutant], is_again: bool, until_s: float) -> None:
     for one in mutants:
         before = known.get(one.name)
         is_known = before is not None and before["source"] == digest(one.file)
-        if is_known and not (is_again and before is not None and before["fate"] in ALIVE):
+        if is_known and not (is_again and before is not None and before["fate"] in AGAIN):
             continue
         if named(one) in equivalent or time.monotonic() > until_s:
             continue

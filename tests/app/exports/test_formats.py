@@ -125,8 +125,10 @@ def test_the_motion_file_holds_the_rows_of_the_angles(
     head, body = (tmp_path / "angles.mot").read_text().split("endheader\n")
     header, *lines = body.splitlines()
     assert head.startswith("Coordinates\nversion=1\n")
-    assert f"nRows={len(lines)}\nnColumns={len(header.split())}\ninDegrees=yes\n" in head
-    assert "SIMULATED" in head
+    assert (
+        f"nRows={len(lines)}\nnColumns={len(header.split())}\ninDegrees=yes\n\nSIMULATED: nobody was measured.\n"
+        in head
+    )
     values = np.array([[float(cell) for cell in line.split("\t")] for line in lines])
     names = header.split("\t")
     angles = tables / walk.folder / "angles.csv"

@@ -135,3 +135,32 @@ def test_what_no_motion_shows_of_a_centre_is_as_uncertain_as_before(person_3: "P
     found = centre_by_lengths(still, np.zeros(12))
     assert found.covariance[:3, :3] == pytest.approx(CENTRE_PRIOR_M**2 * np.eye(3), rel=1e-6, abs=1e-9)
     assert np.linalg.eigvalsh(centre_by_lengths(data, np.zeros(12)).covariance[:3, :3])[0] < 0.01**2
+
+
+def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person", data: Datasets) -> None:
+    """The covariance of eq 8 across the axis: slopes by differences, residuals in blocks of a second."""
+    rng = np.random.default_rng(8)
+    noisy = replace(data, a1=data.a1 + 0.3 * rng.normal(size=data.a1.shape))
+    found = centre_by_lengths(noisy, np.zeros(12))
+    x = found.unknowns
+    error = lengths_apart(noisy, x)
+    slope = np.stack(
+        [(lengths_apart(noisy, x + STEP * e) - lengths_apart(noisy, x - STEP * e)) / (2 * STEP) for e in np.eye(12)],
+        axis=1,
+    )
+    scale = 1.4826 * np.median(np.abs(error))
+    weight = 1 / np.sqrt(1 + (error / scale) ** 2) / scale**2
+    told = (slope * weight[:, None]).T @ slope
+    inverse = np.linalg.inv(told)
+    second = np.floor(noisy.time_s - noisy.time_s[0]).astype(int)
+    pushes = np.array([(slope * (weight * error)[:, None])[second == k].sum(axis=0) for k in range(second.max() + 1)])
+    by_residuals = inverse @ pushes.T @ pushes @ inverse
+    shift = 0.0004 * np.sqrt(np.sum(noisy.dg1**2 + noisy.dg2**2, axis=1))  # m/s2, of 0.4 mm in step with the limb
+    prior = np.diag([0.3**-2] * 6 + [0.05**-2] * 6)
+    unseen = np.linalg.inv(told / (1 + np.sum(weight * shift**2)) + prior)
+    expected = unseen + (4.0 / 2.5) ** 2 * by_residuals  # a human joint's sd is told 2.5 times as large
+    for site, part in ((KNEE.proximal, slice(0, 3)), (KNEE.distal, slice(3, 6))):
+        across = np.stack(joint_frame(person_3.axis(site, KNEE)))
+        of_both = [across @ covariance[part, part] @ across.T for covariance in (found.covariance, expected)]
+        np.testing.assert_allclose(*of_both, rtol=0.01, atol=0.01 * np.trace(of_both[1]))
+        assert np.trace(across @ by_residuals[part, part] @ across.T) > 0.2 * np.trace(of_both[1])
