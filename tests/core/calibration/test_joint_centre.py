@@ -150,17 +150,19 @@ def test_residuals_count_with_four_times_the_spread_they_show(person_3: "Person"
     )
     scale = 1.4826 * np.median(np.abs(error))
     weight = 1 / np.sqrt(1 + (error / scale) ** 2) / scale**2
-    told = (slope * weight[:, None]).T @ slope
-    inverse = np.linalg.inv(told)
+    information = (slope * weight[:, None]).T @ slope
+    inverse = np.linalg.inv(information)
     second = np.floor(noisy.time_s - noisy.time_s[0]).astype(int)
     pushes = np.array([(slope * (weight * error)[:, None])[second == k].sum(axis=0) for k in range(second.max() + 1)])
     by_residuals = inverse @ pushes.T @ pushes @ inverse
     shift = 0.0004 * np.sqrt(np.sum(noisy.dg1**2 + noisy.dg2**2, axis=1))  # m/s2, of 0.4 mm in step with the limb
     prior = np.diag([0.3**-2] * 6 + [0.05**-2] * 6)
-    unseen = np.linalg.inv(told / (1 + np.sum(weight * shift**2)) + prior)
+    unseen = np.linalg.inv(information / (1 + np.sum(weight * shift**2)) + prior)
     expected = unseen + (4.0 / 2.5) ** 2 * by_residuals  # a human joint's sd is told 2.5 times as large
     for site, part in ((KNEE.proximal, slice(0, 3)), (KNEE.distal, slice(3, 6))):
         across = np.stack(joint_frame(person_3.axis(site, KNEE)))
-        of_both = [across @ covariance[part, part] @ across.T for covariance in (found.covariance, expected)]
-        np.testing.assert_allclose(*of_both, rtol=0.01, atol=0.01 * np.trace(of_both[1]))
-        assert np.trace(across @ by_residuals[part, part] @ across.T) > 0.2 * np.trace(of_both[1])
+        told, wanted, shown = (
+            across @ covariance[part, part] @ across.T for covariance in (found.covariance, expected, by_residuals)
+        )
+        np.testing.assert_allclose(told, wanted, rtol=0.01, atol=0.01 * np.trace(wanted))
+        assert np.trace(shown) > 0.2 * np.trace(wanted)
