@@ -29,6 +29,7 @@ BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
 AGREEING = 5  # samples that make a new clock of what looked damaged
 REMEMBERED = 3  # samples, of which the next has to follow one
+MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double tells no milliseconds any more
 
 Arrival = tuple[float, float]
 """A sample's time by the sensor's clock, and when it arrived."""
@@ -139,6 +140,11 @@ class ClockRuns:
 
     def take(self, device_s: FloatArray, host_s: FloatArray) -> IntArray:
         """Number the run of each arrival (n,), in the order in which they arrived; -1 for what cannot be."""
+        can_be = np.abs(device_s) < MOST_CLOCK_S
+        if not can_be.all():
+            run = np.full(len(device_s), -1, dtype=np.int64)
+            run[can_be] = self.take(device_s[can_be], host_s[can_be])
+            return run
         if self._last and len(device_s) and not self._doubtful:
             last_device_s, last_host_s = self._last[-1]
             step_s = np.diff(device_s, prepend=last_device_s)
@@ -307,9 +313,11 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
             # what was heard first was wild, and held up: it must not take the instants of what follows
             timeless += len(rows.pop())
             times.pop()
-        if times and len(stamps_s):  # the sensor began anew
+        if times:  # the sensor began anew
             is_later: BoolArray = stamps_s > times[-1][-1]
             timeless += int(np.count_nonzero(~is_later))  # the run before had been held up: theirs are taken already
+            if not is_later.any():
+                continue
             kept, stamps_s = kept[is_later], stamps_s[is_later]
             lost += _missing(np.concatenate([times[-1][-1:], stamps_s[:1]]), usual_s)
         rows.append(kept)

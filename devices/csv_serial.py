@@ -138,7 +138,7 @@ class CsvFramer:
             and -MOST_M_S2 < ax < MOST_M_S2
             and -MOST_M_S2 < ay < MOST_M_S2
             and -MOST_M_S2 < az < MOST_M_S2
-            and math.isfinite(time)
+            and math.isfinite(time / self._columns.tick_hz)
         )
         if not is_meant:
             return False

@@ -59,7 +59,7 @@ def numbers_of(message: bytes, shape: Struct, count: int) -> tuple[float, ...]:
     Raises
     ------
     DamagedError
-        It has another length, or no numbers.
+        It has another length, no numbers, or a time that no 64 bits hold.
     """
     if message[0] & 0x80:
         if len(message) != shape.size:
@@ -69,9 +69,12 @@ def numbers_of(message: bytes, shape: Struct, count: int) -> tuple[float, ...]:
     if len(parts) != count + 2:
         raise DamagedError
     try:
-        return int(parts[1]), *map(float, parts[2:])
+        us, *numbers = int(parts[1]), *map(float, parts[2:])
     except ValueError as problem:
         raise DamagedError from problem
+    if not 0 <= us < 1 << 64:
+        raise DamagedError
+    return us, *numbers
 
 
 class Ximu3Framer:

@@ -43,6 +43,7 @@ SETTING = struct.Struct(">HH")  # an item's identifier and its frequency
 MOTION = frozenset({Item.RATE, Item.ACCELERATION, Item.ROTATION_CHANGE, Item.VELOCITY_CHANGE, Item.QUATERNION})
 MOST_LAYOUTS = 64  # of messages; a sensor has a handful, noise any
 HALF_TURN = 0.5**0.5
+MOST_RAD_S, MOST_M_S2 = 100.0, 500.0  # no sensor worn by a person measures more
 
 
 class MtiFramer:
@@ -82,6 +83,9 @@ class MtiFramer:
         rate, force = _told(items, here.rate), _told(items, here.acceleration)
         if not rate or not force:
             self.heard.skipped += 1  # what the satellites told
+            return
+        if not all(-MOST_RAD_S < x < MOST_RAD_S for x in rate) or not all(-MOST_M_S2 < x < MOST_M_S2 for x in force):
+            self.heard.damaged += 1  # a checksum of 8 bits is right by chance one time in 256
             return
         if fine := _told(items, here.fine):
             device_s = self._fine.ticks(int(fine[0]), self._host_s) / FINE_HZ

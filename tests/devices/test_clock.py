@@ -136,6 +136,34 @@ def test_a_wild_sample_at_the_beginning_takes_no_others_along() -> None:
     assert (ordered.counts.damaged, ordered.counts.lost) == (AGREEING, 0)
 
 
+def test_a_run_all_of_whose_instants_are_taken_is_counted_and_leaves_the_others_as_they_are() -> None:
+    """It was held up, together with the run before it, which lasted longer."""
+    true_s = 110.0 + np.arange(600) / RATE_HZ
+    device_s, host_s = true_s.copy(), true_s.copy()
+    device_s[300:350] -= 50.0
+    device_s[350:360] -= 90.0
+    host_s[300:360] = host_s[359]
+    ordered = put_in_order(device_s, host_s, 1 / RATE_HZ, begins=[300, 350, 360])
+    assert ordered.rows.tolist() == [*range(350), *range(360, 600)]
+    true_s[300:350] += 0.1  # so long that run was held up
+    assert np.abs(ordered.time_s - true_s[ordered.rows]).max() < 1e-6
+    assert (ordered.counts.received, ordered.counts.damaged, ordered.counts.lost) == (590, 10, 10)
+
+
+@pytest.mark.parametrize("wild_s", [np.nan, np.inf, -np.inf, 1e308, -1e308])
+def test_times_that_no_clock_shows_are_damage_live_and_afterwards(wild_s: float) -> None:
+    device_s = 10.0 + np.arange(400) / RATE_HZ
+    true_s = device_s + 100.0
+    wild = [*range(7), 200, 399]
+    device_s[wild] = wild_s
+    ordered = put_in_order(device_s, true_s, 1 / RATE_HZ)
+    assert (ordered.counts.received, ordered.counts.damaged) == (391, 9)
+    assert np.abs(ordered.time_s - true_s[ordered.rows]).max() < 1e-6
+    clock = LiveClock()
+    live_s = [clock.stamp(device_s[k : k + 10], float(true_s[k + 9])) for k in range(0, 400, 10)]
+    assert np.flatnonzero(np.isnan(np.concatenate(live_s))).tolist() == wild
+
+
 def test_runs_do_not_depend_on_how_the_bytes_were_cut() -> None:
     device_s = np.concatenate([np.arange(100) / 50, np.arange(100) / 50])
     device_s[[7, 150]] = 1e6

@@ -47,6 +47,12 @@ def test_a_heading_is_skipped_and_damage_counted() -> None:
     assert (found.skipped, found.damaged) == (1, len(bad))
 
 
+def test_a_time_beyond_all_numbers_is_damage() -> None:
+    columns = Columns(0, (1, 2, 3), (4, 5, 6), tick_hz=0.01, count=7)
+    found = heard(columns, b"1,1,2,3,0,0,1\n", b"1e307,1,2,3,0,0,1\n").heard
+    assert (len(found.rows), found.damaged) == (1, 1)
+
+
 def test_a_counter_that_begins_anew_goes_on() -> None:
     columns = Columns(0, (1, 2, 3), (4, 5, 6), tick_hz=100.0, wraps_bits=16, rate_hz=100.0)
     decoder = Decoder(CsvSerial())

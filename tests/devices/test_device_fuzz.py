@@ -18,6 +18,16 @@ def test_damage_stays_where_it_is(name: str, frames: int) -> None:
     assert outcome.most_held <= MOST_HELD
 
 
+@pytest.mark.parametrize("frames", COUNTS)
+@pytest.mark.parametrize("name", drivers())
+def test_after_a_burst_of_damage_it_is_in_step_again(name: str, frames: int) -> None:
+    outcome = fuzz(drivers()[name], frames, seed=7, has_bursts=True)
+    assert outcome.faults == []
+    assert outcome.lost == 0
+    assert outcome.whole > 0.6 * frames
+    assert outcome.most_held <= MOST_HELD
+
+
 @pytest.mark.endurance
 @pytest.mark.parametrize("name", drivers())
 def test_fifty_thousand_messages_a_second_are_decoded(name: str) -> None:

@@ -67,6 +67,8 @@ def test_it_does_not_matter_how_bytes_are_cut(cuts: list[int], is_binary: bool) 
         b"I,12,1,2,3,4,5,6,7\n",
         b"I,x,1,2,3,4,5,6\n",
         b"I,12,nan,2,3,0,0,1\n",
+        b"I," + b"9" * 400 + b",1,2,3,0,0,1\n",
+        b"I,-12,1,2,3,0,0,1\n",
         b"I,12,9000,2,3,0,0,1\n",
         b"I,12,1,2,3,0,0,1e9\n",
         b"\xc9short\n",

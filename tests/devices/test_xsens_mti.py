@@ -1,5 +1,6 @@
 """Is what an Xsens MTi sends understood: recorded streams to the last digit, damaged ones, and an emulated sensor?"""
 
+import math
 import random
 import re
 import struct
@@ -171,6 +172,16 @@ def test_without_a_fine_time_the_counter_tells_it_even_where_it_begins_anew() ->
         data += item(Item.ACCELERATION, bytes(12)) + item(Item.RATE, bytes(12))
         framer.feed(message(Mid.MT_DATA2, data), number / 100.0)
     assert np.diff([row[0] for row in framer.heard.rows]) == pytest.approx(0.01)
+
+
+@pytest.mark.parametrize("wild", [math.nan, math.inf, -1e38, 200.0])
+def test_a_rate_that_nobody_turns_at_is_damage_whatever_its_checksum_says(wild: float) -> None:
+    framer = MtiFramer(INFO)
+    for number, rate_rad_s in enumerate([1.0, wild, 1.0]):
+        data = item(Item.COUNTER, struct.pack(">H", number)) + item(Item.ACCELERATION, bytes(12))
+        framer.feed(message(Mid.MT_DATA2, data + item(Item.RATE, struct.pack(">3f", 0, 0, rate_rad_s))), 0.0)
+    assert [row[3] for row in framer.heard.rows] == [1.0, 1.0]
+    assert framer.heard.damaged == 1
 
 
 def decoded(data: bytes) -> DecodedSensor:

@@ -1,16 +1,18 @@
 """T5: damaged streams. Does a driver raise, lose whole messages, fall out of step, or hoard bytes?
 
-    python -m tests.safety.device_fuzz --frames 1000000
+    python -m tests.safety.device_fuzz --frames 1000000 [--bursts]
 
 One message in seven is changed, cut, doubled in part, or has noise before it; the stream is fed in pieces of any size.
-A message that is whole, and begins where a whole one ended or after a whole end of line, has to be heard.
+A message that is whole, and begins where a whole one ended or after a whole end of line, has to be heard. With
+`--bursts` whole blocks are damaged, lost, swapped, repeated or stamped by a clock that leaps (`stream_bursts.py`); then
+a whole message has to be heard that follows two whole ones in their order.
 """
 
 import argparse
 import random
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -21,14 +23,16 @@ from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import message
 from devices.emulators.xsens_mti import MtiVoice
 from devices.emulators.xsens_mti import sample as mti_sample
-from devices.shimmer3 import Shimmer3Framer
+from devices.shimmer3 import Shimmer3Framer, checksum
 from devices.source import SourceInfo
 from devices.stream import Framer, Row
 from devices.witmotion import WitFramer
 from devices.ximu3 import Ximu3Framer
 from devices.xsens_mti import MtiFramer
+from tests.safety.stream_bursts import in_bursts
 
 DAMAGED_SHARE = 1 / 7
+FOLLOWS = 2  # whole messages after a burst; the next one must be heard
 LONGEST_PIECE = 300
 MOST_HELD = 4096 + LONGEST_PIECE
 SHIMMER3 = SourceInfo(
@@ -42,6 +46,7 @@ SHIMMER3 = SourceInfo(
         "acc_calibration": ACC_CALIBRATION.hex(),
     },
 )
+OLD_SHIMMER3 = SourceInfo("shimmer3", "1", settings={**SHIMMER3.settings, "has_checksum": False})
 MTI = SourceInfo("xsens-mti", "1", settings={"rate_hz": 100.0})
 COLUMNS = Columns(0, (1, 2, 3), (4, 5, 6), count=7)
 
@@ -53,6 +58,8 @@ class Fuzzed:
     make: Callable[[], Framer]
     sample: Callable[[int], bytes]
     has_lines: bool
+    row: Callable[[bytes], Row] | None = None
+    """What a message tells that is not understood alone."""
 
 
 @dataclass(slots=True)
@@ -89,7 +96,7 @@ def raw(number: int) -> Sequence[int]:
 
 
 def drivers() -> dict[str, Fuzzed]:
-    mti = MtiVoice(motion=lambda number: [*motion(number), 1.0, 0.0, 0.0, 0.0])
+    mti = MtiVoice(motion=lambda number: [*(value / 60.0 for value in motion(number)), 1.0, 0.0, 0.0, 0.0])  # rad/s
     shimmer3 = Shimmer3Voice(raw)
     shimmer3.period, shimmer3.has_checksum = 320, True
     voice = WitVoice("1", motion, content=0b1111, now_ns=lambda: 0)
@@ -103,20 +110,28 @@ def drivers() -> dict[str, Fuzzed]:
     }
 
 
-def fuzz(driver: Fuzzed, frames: int, seed: int) -> Outcome:
+def old_shimmer3() -> Fuzzed:
+    """A Shimmer3 whose packets have no checksum: not every whole one beside damage can be told from it."""
+    voice, checked = Shimmer3Voice(raw), drivers()["Shimmer3, with checksums"]
+    voice.period = 320
+    return Fuzzed(
+        lambda: Shimmer3Framer(OLD_SHIMMER3), voice.sample, False, lambda said: row_of(checked, said + checksum(said))
+    )
+
+
+def fuzz(driver: Fuzzed, frames: int, seed: int, *, has_bursts: bool = False) -> Outcome:
     chance, outcome = random.Random(seed), Outcome(frames=frames)
     framer, begin_s = driver.make(), time.monotonic()
     heard: dict[Row, int] = {}
     expected: set[Row] = set()
+    sent: set[Row] = set()
     waiting = b""
-    is_joined = False  # whether the end of the message before is whole
-    for number in range(frames):
-        sample = driver.sample(number)
-        said = _damaged(sample, chance) if chance.random() < DAMAGED_SHARE else sample
-        if said == sample and (is_joined or not driver.has_lines):
-            expected.add(_row(driver, sample))
-            outcome.whole += 1
-        is_joined = said.endswith(b"\n") if driver.has_lines else True
+    for said, sample, is_expected in (_in_bursts if has_bursts else _one_by_one)(driver, frames, chance):
+        if sample:
+            sent.add(row := row_of(driver, sample))
+            if is_expected:
+                expected.add(row)
+                outcome.whole += 1
         waiting += said
         while len(waiting) > LONGEST_PIECE:
             size = chance.randint(1, LONGEST_PIECE)
@@ -126,10 +141,30 @@ def fuzz(driver: Fuzzed, frames: int, seed: int) -> Outcome:
     framer.flush()
     _take(framer, heard)
     outcome.lost = len(expected - heard.keys())
-    known = expected | {_row(driver, driver.sample(number)) for number in range(frames)}
-    outcome.false = len(heard.keys() - known)
+    outcome.false = len(heard.keys() - sent)
     outcome.seconds = time.monotonic() - begin_s
     return outcome
+
+
+Said = tuple[bytes, bytes, bool]
+"""What is fed, the message of the sample that was to be told, empty where there was none, and whether it must be."""
+
+
+def _one_by_one(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Said]:
+    is_joined = False  # whether the end of the message before is whole
+    for number in range(frames):
+        sample = driver.sample(number)
+        said = _damaged(sample, chance) if chance.random() < DAMAGED_SHARE else sample
+        yield said, sample, said == sample and (is_joined or not driver.has_lines)
+        is_joined = said.endswith(b"\n") if driver.has_lines else True
+
+
+def _in_bursts(driver: Fuzzed, frames: int, chance: random.Random) -> Iterator[Said]:
+    follows, before = 0, -1  # how many whole messages in their order came before this one
+    for one in in_bursts(driver.sample, frames, chance):
+        follows = follows + 1 if one.number is not None and one.number == before + 1 else 0
+        before = -1 if one.number is None else one.number
+        yield one.data, one.data if one.number is not None else b"", follows >= FOLLOWS
 
 
 def _feed(framer: Framer, piece: bytes, heard: dict[Row, int], outcome: Outcome) -> None:
@@ -149,7 +184,10 @@ def _take(framer: Framer, heard: dict[Row, int]) -> None:
     framer.heard.replies.clear()
 
 
-def _row(driver: Fuzzed, sample: bytes) -> Row:
+def row_of(driver: Fuzzed, sample: bytes) -> Row:
+    """What a whole message tells: rate and force."""
+    if driver.row is not None:
+        return driver.row(sample)
     framer = driver.make()
     framer.feed((b"\n" if driver.has_lines else b"") + sample, 0.0)
     framer.flush()
@@ -195,10 +233,14 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--frames", type=int, default=1_000_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--bursts", action="store_true")
+    parser.add_argument("--driver", default="", help="only those whose name has this in it")
     wanted = parser.parse_args()
     is_right = True
     for name, driver in drivers().items():
-        outcome = fuzz(driver, wanted.frames, wanted.seed)
+        if wanted.driver not in name:
+            continue
+        outcome = fuzz(driver, wanted.frames, wanted.seed, has_bursts=wanted.bursts)
         print(f"{name}: {outcome}; {np.round(speed(driver), -2):.0f} messages decoded a second", flush=True)
         is_right &= not outcome.lost and not outcome.faults and outcome.most_held <= MOST_HELD
     return 0 if is_right else 1
