@@ -29,6 +29,7 @@ BACK_S = 1.0  # so far back a sample may have been overtaken on its way
 AHEAD_S = 5.0  # so much further than the host's a sensor's clock may step: the sample before had been held up
 AGREEING = 5  # samples that make a new clock of what looked damaged
 REMEMBERED = 3  # samples, of which the next has to follow one
+EARLY_S = 0.25  # so much sooner than all around it no sample comes: its stamp is wrong
 MOST_CLOCK_S = 1e12  # no clock shows more, and beyond it a double tells no milliseconds any more
 
 Arrival = tuple[float, float]
@@ -214,7 +215,7 @@ class LiveClock:
         self._bins: dict[int, tuple[float, float]] = {}
         self._fit: ClockFit | None = None
         self._fitted_at_s = self._shift_s = self._stamped_s = 0.0
-        self._run = -1
+        self._run, self._early = -1, 0
 
     def begin(self) -> None:
         """What follows was sent after a loss, and the sensor's clock may have begun anew."""
@@ -231,12 +232,24 @@ class LiveClock:
         if self._runs.run != self._run:
             self._run, self._fit, self._bins = self._runs.run, None, {}
         rows = run == self._run
+        rows[rows] = self._is_meant(device_s[rows], host_s)
         if not rows.any():
             return stamps_s
         known_s = device_s[rows]
         self._learn(known_s, host_s)
         stamps_s[rows] = self._followed(known_s)
         return stamps_s
+
+    def _is_meant(self, device_s: FloatArray, host_s: float) -> BoolArray:
+        """Which samples (n,) have not come sooner than can be; if the next ones have, too, it was the line that was wrong.
+
+        Shown where they say they were taken, later than now, they would hide all others until then.
+        """
+        if self._fit is None:
+            return np.ones(len(device_s), dtype=bool)
+        is_early: BoolArray = self._fit.host_s(device_s) > host_s + EARLY_S
+        self._early = self._early + 1 if is_early.any() else 0
+        return ~is_early if self._early < REMEMBERED else np.ones(len(device_s), dtype=bool)
 
     def _learn(self, device_s: FloatArray, host_s: float) -> None:
         # of samples that arrive together the last tells most: it waited least
@@ -300,6 +313,11 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
     for number in range(int(run.max(initial=-1)) + 1):
         arrived = np.flatnonzero(run == number)
         order = arrived[np.argsort(device_s[arrived], kind="stable")]
+        is_wild = _is_too_early(host_s[order] - device_s[order])
+        if is_wild.any():
+            timeless += int(np.count_nonzero(is_wild))
+            order = order[~is_wild]
+            arrived = np.sort(order)
         is_new = np.diff(device_s[order], prepend=-np.inf) > 0
         fit = fit_clock(device_s[arrived], host_s[arrived])
         kept = order[is_new]
@@ -328,6 +346,19 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
     damaged = int(np.count_nonzero(run < 0)) + timeless
     counts = SensorCounts(received=len(chosen), lost=lost, damaged=damaged, doubled=doubled, late=late)
     return Ordered(chosen, time_s, device_s[chosen], counts, max(residuals, default=0.0))
+
+
+def _is_too_early(late_s: FloatArray) -> BoolArray:
+    """Which samples (n,), in the order of the sensor's clock, came sooner than all of the five before and after.
+
+    One such stamp, of a message without a checksum, would draw the line below it, and every sample's time with it.
+    """
+    around_s = np.full(len(late_s), np.inf)
+    for k in range(1, AGREEING + 1):
+        around_s[k:] = np.minimum(around_s[k:], late_s[:-k])
+        around_s[:-k] = np.minimum(around_s[:-k], late_s[k:])
+    too_early: BoolArray = np.isfinite(around_s) & (late_s < around_s - EARLY_S)
+    return too_early & (len(late_s) > AGREEING)
 
 
 def _usual_step_s(device_s: FloatArray) -> float:

@@ -150,6 +150,35 @@ def test_a_run_all_of_whose_instants_are_taken_is_counted_and_leaves_the_others_
     assert (ordered.counts.received, ordered.counts.damaged, ordered.counts.lost) == (590, 10, 10)
 
 
+@pytest.mark.parametrize("ahead_s", [0.4, 2.0971, 4.9])
+def test_a_stamp_that_is_a_little_ahead_moves_no_other(ahead_s: float) -> None:
+    """As a changed bit among the microseconds of a message without a checksum makes it."""
+    device_s = 10.0 + np.arange(2000) / RATE_HZ
+    true_s = device_s + 100.0
+    device_s[1000] += ahead_s
+    ordered = put_in_order(device_s, true_s + 0.001, 1 / RATE_HZ)
+    assert ordered.rows.tolist() == [*range(1000), *range(1001, 2000)]
+    assert np.abs(ordered.time_s - true_s[ordered.rows]).max() < 0.002
+    counts = ordered.counts
+    assert (counts.damaged, counts.lost, counts.late, counts.doubled) == (1, 1, 0, 0)
+    clock = LiveClock()
+    live_s = np.concatenate([clock.stamp(device_s[k : k + 2], float(true_s[k + 1])) for k in range(0, 2000, 2)])
+    assert np.flatnonzero(np.isnan(live_s)).tolist() == [1000]
+    assert np.nanmax(np.abs(live_s - true_s)) < 0.001
+
+
+def test_live_a_start_that_was_held_up_is_left_behind_once_samples_come_in_time() -> None:
+    device_s = 10.0 + np.arange(600) / RATE_HZ
+    true_s = device_s + 100.0
+    clock = LiveClock()
+    late_s = np.where(np.arange(600) < 200, 1.5, 0.0)
+    live_s = np.concatenate(
+        [clock.stamp(device_s[k : k + 2], float(true_s[k + 1] + late_s[k])) for k in range(0, 600, 2)]
+    )
+    assert np.count_nonzero(np.isnan(live_s)) <= 6
+    assert np.nanmax(np.abs(live_s - true_s)[210:]) < 0.002
+
+
 @pytest.mark.parametrize("wild_s", [np.nan, np.inf, -np.inf, 1e308, -1e308])
 def test_times_that_no_clock_shows_are_damage_live_and_afterwards(wild_s: float) -> None:
     device_s = 10.0 + np.arange(400) / RATE_HZ

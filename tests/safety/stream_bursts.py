@@ -11,6 +11,7 @@ BLOCK = (5, 80)  # messages
 HURT_SHARE = 1 / 4  # of the blocks
 MOST_NOISE = 6000  # bytes
 LEAPS = (-100_000, 1_000_000)  # samples that the sensor's clock goes back or ahead
+NEAR = (-600, 600)  # and as far as a clock may go on its own
 FIRST = 200_000  # so that it can go back
 
 
@@ -66,7 +67,8 @@ def _hurt(block: Sequence[Sent], sample: Callable[[int], bytes], chance: random.
         case 7:
             return [Sent(bytes([chance.randrange(256)]) * chance.randint(1, MOST_NOISE)), *block]
         case _:  # stamps that leap and come back; no sample was taken then
-            wild = [max(0, FIRST + chance.randint(*LEAPS)) for _ in range(chance.randint(1, 10))]
+            about, leap = (FIRST, LEAPS) if chance.random() < 0.5 else (block[k].number or FIRST, NEAR)
+            wild = [max(0, about + chance.randint(*leap)) for _ in range(chance.randint(1, 10))]
             return [*block[:k], *(Sent(sample(number), number) for number in wild), *block[k:]]
 
 
