@@ -219,6 +219,14 @@ def _add_devices(parser: argparse.ArgumentParser) -> None:
         metavar="{" + ",".join(EMULATED) + "}",
         help="play sensors that are not there instead, and print their ports",
     )
+    parser.add_argument(
+        "--streams",
+        nargs="?",
+        const="127.0.0.1",
+        default="",
+        metavar="ADDRESS",
+        help="ask for streams, too: on this computer, or in the network where it has this address",
+    )
     parser.add_argument("--count", type=int, default=6, metavar="N", help="how many are played (6)")
     parser.add_argument(
         "--seconds", type=positive, default=math.inf, metavar="S", help="for how long they are played (until Ctrl C)"
@@ -276,7 +284,7 @@ def _devices(wanted: argparse.Namespace) -> None:
     if wanted.emulate:
         emulate(wanted.emulate, wanted.count, wanted.seconds, lambda line: print(line, flush=True), sys.stdin)
         return
-    for line in list_devices():
+    for line in list_devices(wanted.streams):
         print(line)
 
 

@@ -18,13 +18,27 @@ EMULATED = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")  # as devices.
 MOVEMENTS = {"f": "free_motion", "w": "walking", "s": "standing"}
 
 
-def list_devices() -> Iterator[str]:
-    """What is heard now, at which port nothing is, and how each driver was proved; takes a second or two."""
+def list_devices(streams_in: str = "") -> Iterator[str]:
+    """What is heard now, at which port nothing is, and how each driver was proved; takes a second or two.
+
+    Parameters
+    ----------
+    streams_in
+        By which of this computer's addresses streams are asked for; empty: they are not.
+    """
     from app.known_columns import known_columns
     from devices.catalogue import DRIVERS
-    from devices.search import search
+    from devices.live import SourceRefusedError
+    from devices.search import Found, search, search_streams
 
     found = search(columns=known_columns())
+    if streams_in:
+        try:
+            streams = search_streams(streams_in)
+        except SourceRefusedError as refusal:
+            yield str(refusal)
+        else:
+            found = Found(found.sensors + streams.sensors, found.passed + streams.passed, found.lines)
     names = {driver.key: driver.name for driver in DRIVERS}
     yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
     for sensor in found.sensors:

@@ -241,7 +241,7 @@ class LiveClock:
         return stamps_s
 
     def _is_meant(self, device_s: FloatArray, host_s: float) -> BoolArray:
-        """Which samples (n,) have not come sooner than can be; if the next ones have, too, it was the line that was wrong.
+        """Which samples (n,) have not come sooner than can be; if the next ones do, too, the line was wrong, not they.
 
         Shown where they say they were taken, later than now, they would hide all others until then.
         """

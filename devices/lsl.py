@@ -5,10 +5,13 @@ units of its channels; what is a rate or a force is found by these and asked for
 sending machine's. Where Lab Streaming Layer's own measurement of that machine's clock agrees with what arrives it is
 taken; a stream that stamps by a clock of its own is put right by its arrivals (`devices.clock`).
 
-The library is an extra (`lsl`): without it there are no streams, and all else goes on.
+The library is an extra (`lsl`): without it there are no streams, and all else goes on. Left to itself it asks every
+network that the computer is in, by broadcast and multicast, who sends. Here it asks nobody until somebody has chosen a
+network, and then that one only (`ask_in`).
 """
 
 import re
+import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
@@ -21,6 +24,7 @@ from core.samples import ImuBlock, RecordingKind
 from devices.clock import LiveClock
 from devices.host_clock import host_time_ns
 from devices.live import Keep, SensorTold, SourceLostError, SourceRefusedError
+from devices.networks import THIS_COMPUTER
 from devices.source import SourceInfo
 
 DRIVER, VERSION = "lsl", "1"
@@ -40,6 +44,27 @@ FORCE_UNITS = {
     "mg": G / 1000,
 }
 RATE_WORDS, FORCE_WORDS = ("gyr", "rate", "angvel", "angular"), ("acc",)
+GROUP, PORT = "224.0.0.183", 16571  # of the addresses that senders listen to the one that no router passes on
+ON_THIS_COMPUTER = """\
+[ports]
+IPv6 = disable
+[multicast]
+ResolveScope = machine
+AddressesOverride = {{{address}}}
+Interfaces = {{{address}}}
+[lab]
+KnownPeers = {{{address}}}
+"""
+IN_A_NETWORK = """\
+[ports]
+IPv6 = disable
+[multicast]
+ResolveScope = link
+AddressesOverride = {{{group}}}
+TTLOverride = 1
+Interfaces = {{{address}}}
+ListenAddress = {address}
+"""
 WIDE = "wr"  # of a Shimmer's two accelerometers the one with the wide range
 
 
@@ -69,12 +94,39 @@ class LslStream:
     rate_hz: float | None
 
 
-def find_streams(wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
-    """Listen for streams of numbers on this machine and its network; none where the library is not installed."""
-    try:
-        pylsl = _library()
-    except SourceRefusedError:
-        return ()
+class _Asked:
+    """Where this process asks for streams: the library reads its settings once, before it does anything."""
+
+    changing = threading.Lock()
+    address = ""
+
+
+def ask_in(address: str) -> None:
+    """Ask for streams in the network where this computer has this address, or on this computer only.
+
+    Raises
+    ------
+    SourceRefusedError
+        The library is not installed, or streams were asked for elsewhere before.
+    """
+    pylsl = _imported()
+    with _Asked.changing:
+        if not _Asked.address:
+            settings = ON_THIS_COMPUTER if address == THIS_COMPUTER else IN_A_NETWORK
+            pylsl.set_config_content(settings.format(address=address, group=GROUP))
+            _Asked.address = address
+        elif _Asked.address != address:
+            raise SourceRefusedError(
+                "Lab Streaming Layer has been asked in the network of {other}, and asks there until the program ends",
+                "Close Gaitwright and start it again to ask elsewhere",
+                other=_Asked.address,
+            )
+
+
+def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
+    """Ask for streams of numbers, see `ask_in`; raises as it does."""
+    ask_in(address)
+    pylsl = _library()
     found = [one for one in pylsl.resolve_streams(wait_s) if one.channel_format() != pylsl.cf_string]
     return tuple(sorted((_stream(one) for one in found), key=lambda one: (one.name, one.host)))
 
@@ -296,6 +348,13 @@ def _texts(told: Sequence[str | None] | None) -> list[str]:
 
 
 def _library() -> ModuleType:
+    """The library, which asks this computer only where nobody has chosen."""
+    if not _Asked.address:
+        ask_in(THIS_COMPUTER)
+    return _imported()
+
+
+def _imported() -> ModuleType:
     try:
         import pylsl
         import pylsl.util

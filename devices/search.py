@@ -1,4 +1,4 @@
-"""Which sensors can be heard now? At ports, on the network where x-IMU3s announce themselves, in streams."""
+"""Which sensors can be heard now? At ports, where x-IMU3s announce themselves, and in streams that are asked for."""
 
 import json
 import socket
@@ -71,7 +71,9 @@ def search(
     announced_at: int = ANNOUNCED_AT,
     columns: Mapping[str, Columns] = NO_COLUMNS,
 ) -> Found:
-    """Listen to all ports at once, to the network and for streams; takes a second or two. Each sensor is named once.
+    """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
+
+    Nothing is sent but to ports. Who wants streams asks for them: `search_streams`.
 
     Ports that have nothing plugged in are left alone, and so are those of Bluetooth, which take long to open, but for
     those that somebody bound or that are a sensor's by their name.
@@ -89,7 +91,6 @@ def search(
     ]
     on_network: list[FoundSensor] = []
     works.append(threading.Thread(target=lambda: on_network.extend(_announced(announced_at)), daemon=True))
-    works.append(threading.Thread(target=lambda: heard.extend(_streamed()), daemon=True))
     for work in works:
         work.start()
     for work in works:
@@ -217,12 +218,17 @@ def _announced(at_port: int) -> list[FoundSensor]:
     return list(found.values())
 
 
-def _streamed() -> list[FoundSensor | Passed]:
-    """The sensors among the streams of Lab Streaming Layer; none where that is not installed."""
-    if not _has_network():
-        return []
-    found: list[FoundSensor | Passed] = []
-    for stream in find_streams():
+def search_streams(address: str) -> Found:
+    """Ask for the sensors among the streams of Lab Streaming Layer; see `devices.lsl.ask_in`.
+
+    Raises
+    ------
+    SourceRefusedError
+        It is not installed, or was asked elsewhere before.
+    """
+    found: list[FoundSensor] = []
+    passed: list[Passed] = []
+    for stream in find_streams(address):
         place = f"Lab Streaming Layer, {stream.name}"
         try:
             names = [sensor.name for sensor in told_sensors(stream)]
@@ -230,8 +236,8 @@ def _streamed() -> list[FoundSensor | Passed]:
         except OtherStreamError:  # of a heart or a brain
             continue
         except SourceRefusedError as refusal:
-            found.append(Passed(PortInfo(place), refusal))
-    return found
+            passed.append(Passed(PortInfo(place), refusal))
+    return Found(tuple(found), tuple(passed))
 
 
 def _has_network() -> bool:

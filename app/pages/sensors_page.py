@@ -34,7 +34,7 @@ from core.body import Site
 from core.samples import FloatArray
 
 FLASH_MS = 700
-OFFERED_AT_ONCE = 4  # sources that have a button of their own where there is none yet
+OFFERED_AT_ONCE = 5  # sources that have a button of their own where there is none yet
 FIGURE_WIDTH = (414, 560)  # as the window grows
 USUAL_WIDTH = 1016
 SCROLL_BAR = 12

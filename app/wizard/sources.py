@@ -1,11 +1,14 @@
-"""What can sensors be heard through? What was found at ports and on the network, and a simulated patient.
+"""What can sensors be heard through? What was found at ports and on the network, streams, and a simulated patient.
 
-Sensors are looked for beside the screen: ports take a second or two, and some never answer.
+Sensors are looked for beside the screen: ports take a second or two, and some never answer. Streams are asked for in
+the network that somebody has chosen, and in none before.
 """
 
 import logging
 import threading
 from collections.abc import Callable, Sequence
+from functools import partial
+from importlib.util import find_spec
 from typing import TYPE_CHECKING, overload
 
 from app.wizard.worn_sensors import SourceChoice
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 DEMONSTRATION = "demonstration"
 SEARCH = "search"
 COLUMNS = "columns"
+STREAMS = "streams "  # and the address that is asked
 SEARCH_ENDS_S = 10.0
 
 _log = logging.getLogger(__name__)
@@ -25,7 +29,7 @@ _log = logging.getLogger(__name__)
 
 def choices() -> Sequence[SourceChoice]:
     """All sources of this machine: they become more while the search that begins now goes on."""
-    sources = Sources(_search)
+    sources = Sources(_search, _networks())
     sources.look()
     return sources
 
@@ -36,8 +40,8 @@ class Sources(Sequence[SourceChoice]):
     Read it from the screen's thread: that never waits for the search.
     """
 
-    def __init__(self, search: "Callable[[], Found]") -> None:
-        self._search = search
+    def __init__(self, search: "Callable[[], Found]", networks: Sequence[str] = ()) -> None:
+        self._search, self._networks = search, networks
         self._searching = threading.Lock()  # two searches would take each other's ports
         self._found: Found | None = None
         self._is_over = threading.Event()
@@ -78,7 +82,8 @@ class Sources(Sequence[SourceChoice]):
     def _every(self) -> tuple[SourceChoice, ...]:
         demonstration = SourceChoice(DEMONSTRATION, tr("Simulated patient"), _demonstration, is_simulated=True)
         anew = SourceChoice(SEARCH, tr("Search for sensors"), self._open_all)
-        return (demonstration, *self._of_drivers(), *self._of_lines(), anew)
+        streams = [_of_streams(address) for address in self._networks]
+        return (demonstration, *self._of_drivers(), *self._of_lines(), anew, *streams)
 
     def _of_drivers(self) -> list[SourceChoice]:
         found = self._found
@@ -128,6 +133,44 @@ def _demonstration() -> "Acquisition":
     from devices.replay import demonstration
 
     return Acquisition([demonstration()])
+
+
+def _networks() -> Sequence[str]:
+    """By which of its addresses this computer can ask for streams; none where their library is not installed."""
+    from devices.networks import THIS_COMPUTER, own_addresses
+
+    return (THIS_COMPUTER, *own_addresses()) if find_spec("pylsl") is not None else ()
+
+
+def _of_streams(address: str) -> SourceChoice:
+    """The streams where this computer has this address. Whom that asks is told before."""
+    from devices.lsl import GROUP, PORT
+    from devices.networks import THIS_COMPUTER
+
+    make = partial(_open_streams, address)
+    if address == THIS_COMPUTER:
+        return SourceChoice(STREAMS + address, tr("Streams of this computer's programs"), make)
+    what = tr(
+        "This asks every computer in the network of {address} whether it streams sensors: by UDP to {group}, "
+        "port {port}, then those that answer. Nothing about the patient is sent."
+    ).format(address=address, group=GROUP, port=PORT)
+    name = tr("Streams in the network of {address}").format(address=address)
+    return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose it once more to ask.")))
+
+
+def _open_streams(address: str) -> "Acquisition":
+    """Ask there, and take all sensors that are streamed."""
+    from devices.live import SourceRefusedError
+    from devices.search import search_streams
+
+    found = search_streams(address)
+    if found.sensors:
+        return _opening(found.sensors)
+    if len(found.passed) == 1:
+        raise found.passed[0].refusal
+    raise SourceRefusedError(
+        later("No stream of motion was found"), later("Start it in the program that sends it, then ask again")
+    )
 
 
 def _opening(sensors: "Sequence[FoundSensor]") -> "Acquisition":

@@ -27,7 +27,8 @@ class SourceChoice:
 
     What `is_simulated` or replayed was not measured on this patient: the library keeps it apart from real recordings.
     `worn` gives the site by the sensor's name where the source tells it, as a stored session does. Of `lines` it has to
-    be told what they mean; they are heard through another choice then.
+    be told what they mean; they are heard through another choice then. `asks` says whom on the network `make` will ask
+    what, where it asks anybody, and what to do to have it ask: that is said before.
     """
 
     key: str
@@ -36,6 +37,7 @@ class SourceChoice:
     is_simulated: bool = False
     worn: Mapping[str, Site] = field(default_factory=dict)
     lines: "tuple[LinesAt, ...]" = ()
+    asks: tuple[str, str] = ("", "")
 
 
 class WornSensors(QObject):

@@ -14,8 +14,9 @@ import pytest
 from core.samples import FloatArray
 from devices.host_clock import host_time_ns
 from devices.live import SourceLostError, SourceRefusedError
-from devices.lsl import LslSensor, LslSource, LslStream, find_streams, sensors_of
-from devices.search import search
+from devices.lsl import LslSensor, LslSource, LslStream, ask_in, find_streams, sensors_of
+from devices.networks import THIS_COMPUTER
+from devices.search import search_streams
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -72,7 +73,8 @@ def test_without_the_library_there_are_no_streams_and_the_refusal_says_what_to_d
 
     monkeypatch.setattr(builtins, "__import__", importing)
     monkeypatch.delitem(sys.modules, "pylsl", raising=False)
-    assert find_streams(0.0) == ()
+    with pytest.raises(SourceRefusedError, match="extra lsl"):
+        find_streams(THIS_COMPUTER, 0.0)
     with pytest.raises(SourceRefusedError, match="extra lsl"):
         LslSource(LslStream("s", "IMU", "", "", None)).open()
 
@@ -89,6 +91,7 @@ class Outlet:
 
     def __init__(self, offset_s: float = 0.0, skew: float = 0.0, per_chunk: int = 1) -> None:
         pylsl = pytest.importorskip("pylsl", reason="Lab Streaming Layer is an extra")
+        ask_in(THIS_COMPUTER)  # before its first stream is made
         self.name = f"gaitwright test {uuid.uuid4()}"
         info = pylsl.StreamInfo(self.name, "IMU", 6, RATE_HZ, pylsl.cf_double64, self.name)
         info.set_channel_labels(list(PLAIN))
@@ -103,7 +106,7 @@ class Outlet:
         self._thread.start()
         if not pylsl.resolve_byprop("source_id", self.name, timeout=5.0):
             self._is_closing.set()
-            pytest.skip("streams are not announced on this machine: it lets no multicast through")
+            pytest.fail("a stream is not heard on its own computer")
 
     def taken_s(self, number: FloatArray) -> FloatArray:
         """When samples (n,) were taken, by the host's clock."""
@@ -143,7 +146,7 @@ def outlets() -> Iterator[list[Outlet]]:
 
 
 def opened(outlet: Outlet) -> LslSource:
-    (stream,) = [one for one in find_streams() if one.name == outlet.name]
+    (stream,) = [one for one in find_streams(THIS_COMPUTER) if one.name == outlet.name]
     source = LslSource(stream)
     source.open()
     return source
@@ -239,12 +242,18 @@ def test_a_clock_that_drifts_is_followed_for_a_minute(outlets: list[Outlet]) -> 
 
 def test_a_stream_is_found_by_the_search_and_its_sensors_are_counted(outlets: list[Outlet]) -> None:
     outlets.append(Outlet())
-    (found,) = [one for one in search([], 0).of("lsl") if one.name == outlets[0].name]
+    (found,) = [one for one in search_streams(THIS_COMPUTER).of("lsl") if one.name == outlets[0].name]
     assert found.count == 1
     source = found.make()
     source.open()
     assert source.info.sensors == (outlets[0].name,)
     source.close()
+
+
+def test_who_was_asked_on_this_computer_is_asked_nowhere_else(outlets: list[Outlet]) -> None:
+    outlets.append(Outlet())
+    with pytest.raises(SourceRefusedError, match=f"asked in the network of {THIS_COMPUTER}"):
+        find_streams("192.0.2.9")
 
 
 def test_a_stream_that_ends_is_lost_and_then_not_there(outlets: list[Outlet], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -21,7 +21,7 @@ from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceRefusedError
 from devices.lsl import LslSensor, LslStream, sensors_of
 from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
-from devices.search import announcement, search
+from devices.search import announcement, search, search_streams
 from devices.shimmer3 import EMULATED as SHIMMER3
 
 
@@ -39,7 +39,7 @@ def free_port() -> int:
 def streams(monkeypatch: pytest.MonkeyPatch) -> list[LslStream]:
     """What is streamed; nothing that others stream on this network."""
     there: list[LslStream] = []
-    monkeypatch.setattr("devices.search.find_streams", lambda: tuple(there))
+    monkeypatch.setattr("devices.search.find_streams", lambda address: tuple(there))
     return there
 
 
@@ -140,7 +140,6 @@ def test_what_is_announced_on_the_network_is_found(monkeypatch: pytest.MonkeyPat
 def test_streams_of_motion_are_found_and_others_say_why_not(
     monkeypatch: pytest.MonkeyPatch, streams: list[LslStream]
 ) -> None:
-    monkeypatch.setattr("devices.search._has_network", lambda: True)
     told = {
         "Consensys": ["gyr_x", "gyr_y", "gyr_z", "acc_x", "acc_y", "acc_z"],
         "heart": ["ECG"],
@@ -153,7 +152,8 @@ def test_streams_of_motion_are_found_and_others_say_why_not(
         return sensors_of(stream.name, told[stream.name], units)
 
     monkeypatch.setattr("devices.search.told_sensors", sensors)
-    found = search([], free_port())
+    assert search([], free_port()).sensors == ()  # nobody asked
+    found = search_streams("127.0.0.1")
     assert [(one.driver, one.name, one.count) for one in found.sensors] == [("lsl", "Consensys", 1)]
     assert [str(one.refusal).partition(". ")[0] for one in found.passed] == [
         "The stream no units does not tell its units"

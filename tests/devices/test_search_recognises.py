@@ -85,7 +85,6 @@ class Lost(Silence):
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     one = Clock()
     monkeypatch.setattr(time, "monotonic", one.monotonic)
-    monkeypatch.setattr("devices.search.find_streams", tuple)
     monkeypatch.setattr("devices.search._announced", lambda at_port: [])
     return one
 

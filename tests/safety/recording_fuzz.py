@@ -261,7 +261,9 @@ def _contradictions(decoded: DecodedJournal) -> Iterator[str]:
 def _compare(stream: Stream, arrivals: Sequence[Arrival], recording: Recording, outcome: Outcome) -> None:
     """Count whole samples, those that the recording holds, and those of them whose stamps are not right."""
     taken_s: defaultdict[Row, list[float]] = defaultdict(list)
-    for one in (one for arrival in arrivals for one in arrival.sent if one.number is not None):
+    for one in (one for arrival in arrivals for one in arrival.sent):
+        if one.number is None:
+            continue
         row = tuple(motion(one.number)) if stream.protocol is None else row_of(stream.protocol, one.data)
         taken_s[row] += [] if one.index is None else [one.index / stream.rate_hz]
     outcome.whole += sum(map(bool, taken_s.values()))

@@ -54,6 +54,7 @@ class SensorsStep(Step):
         self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
         self._silent_site: Site | None = None
         self._is_choosing = False  # which stored session is to be replayed
+        self._told_of = ""  # the choice of which it was said whom it asks on the network
         self._names: dict[UUID, str] = {}  # of stored sessions
         self._dialog: QFileDialog | None = None
         self._telling = ColumnsTelling(self)
@@ -128,6 +129,7 @@ class SensorsStep(Step):
 
     def leave(self) -> None:
         self._is_in_sight = self._is_choosing = False
+        self._told_of = ""
         self._replays.stop()
         self._telling.end()
         sensors = self._visit.sensors
@@ -260,7 +262,8 @@ class SensorsStep(Step):
             options[at : at + 1] = [SourceOption(chosen.key, chosen.name, note)]
         page = self.page
         page.show_sources(options, chosen.key if chosen is not None else "")
-        page.tell("" if options else tr("No source of sensors is at hand for this patient."))
+        asks = next((choice.asks for choice in visit.choices if choice.key == self._told_of), ("", ""))
+        page.tell(*asks if options else (tr("No source of sensors is at hand for this patient."), ""))
         apart = tr(
             "Simulated and replayed sensors are offered only for codes that begin with DEMO, "
             "so that they never pass for a real patient's."
@@ -366,7 +369,13 @@ class SensorsStep(Step):
             return
         self._is_choosing = False
         self._telling.end()
-        if choice.lines:
+        is_told, self._told_of = key == self._told_of, ""
+        if any(choice.asks) and not is_told:
+            self._told_of = key
+            sensors.close()
+            self._show()
+            self.changed.emit()
+        elif choice.lines:
             sensors.close()  # they may be at the same ports
             self._telling.begin(self.page.columns, choice.lines)
             self._show()

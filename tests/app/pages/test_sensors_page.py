@@ -26,6 +26,7 @@ OPTIONS = (
     SourceOption("demonstration", "Demonstration"),
     SourceOption("network", "Network"),
     SourceOption("stream", "Streams"),
+    SourceOption("other", "Another"),
 )
 
 
@@ -240,9 +241,9 @@ def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) ->
     assert page.nothing.buttons[0].nextInFocusChain() is page.nothing.buttons[1]
 
 
-def test_without_a_source_four_are_offered_and_pressed_by_keys(page: SensorsPage, qtbot: QtBot) -> None:
+def test_without_a_source_five_are_offered_and_pressed_by_keys(page: SensorsPage, qtbot: QtBot) -> None:
     page.show_no_source()
-    assert [button.text() for button in page.nothing.buttons] == [option.name for option in OPTIONS[:4]]
+    assert [button.text() for button in page.nothing.buttons] == [option.name for option in OPTIONS[:5]]
     page.focus()
     with qtbot.waitSignal(page.source_chosen, timeout=1000) as heard:
         QTest.keyClick(page.nothing.buttons[0], Qt.Key.Key_Return)

@@ -108,5 +108,35 @@ def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -
 
 def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.MonkeyPatch, qtbot: QtBot) -> None:
     monkeypatch.setattr(sources_module, "_search", lambda: Found((sensor("A"),)))
+    monkeypatch.setattr(sources_module, "_networks", tuple)
     listed = choices()
     qtbot.waitUntil(lambda: len(listed) == 3, timeout=5000)
+
+
+def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    def search_streams(address: str) -> Found:
+        asked.append(address)
+        return Found((sensor("A", "lsl"),)) if address == "192.0.2.9" else Found()
+
+    monkeypatch.setattr("devices.search.search_streams", search_streams)
+    sources = Sources(Found, ("127.0.0.1", "192.0.2.9"))
+    sources.look()
+    sources.wait()
+    *_, search, here, network = sources
+    assert (search.key, asked) == (SEARCH, [])
+    assert (here.name, here.asks) == ("Streams of this computer's programs", ("", ""))
+    assert network.name == "Streams in the network of 192.0.2.9"
+    assert network.asks == (
+        "This asks every computer in the network of 192.0.2.9 whether it streams sensors: by UDP to 224.0.0.183, port "
+        "16571, then those that answer. Nothing about the patient is sent.",
+        "Choose it once more to ask.",
+    )
+    with pytest.raises(SourceRefusedError, match="No stream of motion was found"):
+        here.make()
+    with pytest.raises(SourceRefusedError, match="No sensor was found"):
+        search.make()
+    assert asked == ["127.0.0.1"]
+    network.make().close()
+    assert asked == ["127.0.0.1", "192.0.2.9"]

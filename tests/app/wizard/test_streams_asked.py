@@ -1,0 +1,81 @@
+"""Streams are asked for on the network once somebody has read whom that asks, and wants it."""
+
+from collections.abc import Iterator
+
+import pytest
+from pytestqt.qtbot import QtBot
+
+from app.theme import Look
+from app.wizard.sources import SEARCH, STREAMS, Sources
+from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.visit import Visit
+from devices.search import Found
+
+NETWORK = STREAMS + "192.0.2.9"
+WARNING = "This asks every computer in the network of 192.0.2.9"
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    addresses: list[str] = []
+
+    def search_streams(address: str) -> Found:
+        addresses.append(address)
+        return Found()
+
+    monkeypatch.setattr("devices.search.search_streams", search_streams)
+    return addresses
+
+
+@pytest.fixture
+def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
+    visit._choices = Sources(Found, ("127.0.0.1", "192.0.2.9"))
+    step = SensorsStep(Look(), visit)
+    qtbot.addWidget(step.page)
+    step.enter()
+    step.page.resize(1064, 672)
+    step.page.show()
+    yield step
+    step.leave()
+    step.deleteLater()
+
+
+def said(step: SensorsStep) -> str:
+    return step.page.nothing._notice.text
+
+
+def test_it_is_said_whom_it_asks_and_asked_when_it_is_chosen_once_more(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, asked: list[str]
+) -> None:
+    assert WARNING not in said(step)
+    step.page.source_chosen.emit(NETWORK)
+    assert WARNING in said(step)
+    assert "Choose it once more to ask." in said(step)
+    assert (asked, visit.sensors.is_searching) == ([], False)
+    with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
+        step.page.source_chosen.emit(NETWORK)
+    assert asked == ["192.0.2.9"]
+    assert refused.args[0] == "No stream of motion was found."
+    assert WARNING not in said(step)
+
+
+@pytest.mark.parametrize("other", [SEARCH, STREAMS + "127.0.0.1"])
+def test_another_choice_takes_it_back(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, asked: list[str], other: str
+) -> None:
+    step.page.source_chosen.emit(NETWORK)
+    with qtbot.waitSignal(visit.refused, timeout=5000):
+        step.page.source_chosen.emit(other)
+    assert WARNING not in said(step)
+    step.page.source_chosen.emit(NETWORK)
+    assert WARNING in said(step)
+    assert "192.0.2.9" not in asked
+
+
+def test_who_leaves_has_to_be_told_anew(step: SensorsStep, asked: list[str]) -> None:
+    step.page.source_chosen.emit(NETWORK)
+    step.leave()
+    step.enter()
+    assert WARNING not in said(step)
+    step.page.source_chosen.emit(NETWORK)
+    assert (WARNING in said(step), asked) == (True, [])
