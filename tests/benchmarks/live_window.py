@@ -2,13 +2,16 @@
 
     python -m tests.benchmarks.live_window [--rate 100] [--size 1280 800] [--seconds 60] [--curves 18] [--analyses]
 
-The application itself on a display of its own (Xvfb) leads a whole session with the simulated patient, from home to the
-results, and records a walk of so many seconds; readers, journal, estimator and frames are all in its process. Told are:
-CPU of the walk as a share of one core, by thread; frames a second and how far apart; age: from an angle's stamp until
-the frame that shows it was sent to the display, the estimator's wait for the samples around it included; what held
-the screen's thread up for more than 100 ms in the whole session, and where. With `--curves 18` frames are those of a
-page that draws the rates of six sensors about three axes, instead of the walking page, for as long. One analysis runs
-beside the walk, as ever, to find the ankles' axes; with `--analyses` one after the other all the time.
+The application itself on a display of its own (Xvfb) leads a whole session with the simulated patient, from home to
+the results, and records a walk of so many seconds; readers, journal, estimator and frames are all in its process.
+Told are: CPU of the walk as a share of one core, by thread; frames a second and how far apart; age: from an angle's
+stamp until the frame that shows it was sent to the display, the estimator's wait for the samples around it included;
+what held the screen's thread up for more than 100 ms in the whole session, and where. Of the longest time between two
+frames: how long each of our threads was at work in it, and how long it was ready and other processes were on the
+processor; and how long a process beside that does nothing but beat was silent. A machine that stands still is no
+fault of the window. With `--curves 18` frames are those of a page that draws the rates of six sensors about three
+axes, instead of the walking page, for as long. One analysis runs beside the walk, as ever, to find the ankles' axes;
+with `--analyses` one after the other all the time.
 """
 
 import argparse
@@ -19,7 +22,8 @@ import sys
 import threading
 import time
 from collections import defaultdict
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -39,6 +43,8 @@ POLL_MS = 50
 PATIENCE_S = 180.0
 PAUSE_S = 0.7  # at each stop, for what is drawn after it
 DUE_S = 1 / 30
+BEAT_S = 0.02
+KEPT = "at_work_and_kept_ms"
 
 
 def lead(wanted: argparse.Namespace) -> dict[str, Any]:
@@ -213,6 +219,7 @@ class _Watch:
         assert visit.sensors.acquisition is not None
         self._acquisition = visit.sensors.acquisition
         self._painted_s: list[float] = []
+        self._spent: list[dict[str, Spent]] = []  # at each of these
         self._age_s: list[float] = []
         self._shown_to_s: dict[int, float] = {}
         self._first: Any = None
@@ -228,6 +235,7 @@ class _Watch:
             self._first = item
         if item is self._first:
             self._painted_s.append(time.perf_counter())
+            self._spent.append(_spent())
         for trace in item._traces.values():
             shown_to_s = self._shown_to_s.get(id(trace), trace.last_s)
             new = trace.time_s[(trace.time_s > shown_to_s) & np.isfinite(trace.angle_deg)]
@@ -247,6 +255,7 @@ class _Watch:
             "threads": {name: share for name, share in threads.items() if share >= 0.2},
             "frames": len(self._painted_s) / elapsed_s,
             "between_ms": _quantiles(between_s, (0.5, 0.95, 0.99, 1.0)),
+            "longest": longest_gap(self._painted_s, self._spent),
             "age_ms": _quantiles(np.array(self._age_s), (0.5, 0.95, 1.0)),
             "behind": self._acquisition.dropped_from_preview,
             "lost": sum(status.counts.lost for status in self._acquisition.status().values()),
@@ -284,6 +293,52 @@ def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
     window.screens.addWidget(page)
     window.screens.setCurrentWidget(page)
     return page
+
+
+Spent = tuple[float, float]
+"""How long a thread was at work so far, and how long it was ready and others were on the processor, both s."""
+
+
+def longest_gap(painted_s: Sequence[float], spent: Sequence[Mapping[str, Spent]]) -> dict[str, Any]:
+    """Of the longest time between two of these instants (n,): how long, since when, and what each thread did, ms."""
+    if len(painted_s) < 2:
+        return {}
+    k = int(np.argmax(np.diff(painted_s)))
+    threads = {
+        name: [round(1000 * (after - before)) for before, after in zip(spent[k][name], now, strict=True)]
+        for name, now in spent[k + 1].items()
+        if name in spent[k]
+    }
+    gap_ms = round(1000 * (painted_s[k + 1] - painted_s[k]), 1)
+    return {"ms": gap_ms, "since_s": round(painted_s[k], 3), KEPT: threads}
+
+
+def _spent() -> dict[str, Spent]:
+    """What each of our threads has spent."""
+    told = {}
+    for thread in threading.enumerate():
+        with suppress(OSError):  # it has just ended
+            busy_ns, kept_ns, _ = Path(f"/proc/self/task/{thread.native_id}/schedstat").read_text().split()
+            told[thread.name] = int(busy_ns) / 1e9, int(kept_ns) / 1e9
+    return told
+
+
+class _Beside(threading.Thread):
+    """Beats in another process than the window's: when it was silent for how long."""
+
+    def __init__(self) -> None:
+        super().__init__(daemon=True)
+        self._is_over = threading.Event()
+        self.beats_s: list[float] = []
+
+    def run(self) -> None:
+        while not self._is_over.wait(BEAT_S):
+            self.beats_s.append(time.perf_counter())
+
+    def end(self) -> dict[str, float]:
+        self._is_over.set()
+        self.join()
+        return {key: told for key, told in longest_gap(self.beats_s, [{}] * len(self.beats_s)).items() if key != KEPT}
 
 
 def _by_thread() -> dict[str, float]:
@@ -330,8 +385,10 @@ def main() -> None:
         return
     with own_display() as display, own_environment(display) as environment:
         command = [sys.executable, "-m", "tests.benchmarks.live_window", "--inside", *sys.argv[1:]]
+        beside = _Beside()
+        beside.start()
         told = subprocess.run(command, env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
-    measured = json.loads(told.splitlines()[-1])
+    measured = json.loads(told.splitlines()[-1]) | {"beside": beside.end()}
     for late in measured.pop("late", []):
         print(late)
     print(json.dumps(measured, indent=1))

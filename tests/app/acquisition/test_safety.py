@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from app.storage.library import FILE_NAME, Library
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role
 from core.results import Analysis, Method
-from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
+from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.replay import ReplaySource
 from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import faults_of, numbered_session, open_journal, read_back
@@ -124,8 +124,17 @@ def test_a_blocked_screen_and_a_full_processor_lose_nothing(
     check(acquisition, acquisition.stop_recording(), 0.9 * seconds)
 
 
-@pytest.mark.parametrize("seconds", [0.5, pytest.param(2.0, marks=pytest.mark.endurance)])
-def test_a_disk_that_stalls_loses_nothing(
+class Newest:
+    """A live work that only notes how far it has come."""
+
+    newest_s = 0.0
+
+    def update(self, blocks: Mapping[str, ImuBlock]) -> None:
+        self.newest_s = max(float(block.time_s[-1]) for block in blocks.values())
+
+
+@pytest.mark.parametrize("seconds", [0.5, pytest.param(4.0, marks=pytest.mark.endurance)])
+def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
     acquisition: Acquisition, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, seconds: float
 ) -> None:
     answers, append = threading.Event(), JournalFile.append
@@ -136,11 +145,14 @@ def test_a_disk_that_stalls_loses_nothing(
         append(file, data)
 
     monkeypatch.setattr(JournalFile, "append", slow_append)
+    shown = Newest()
+    acquisition.set_work(shown)
     acquisition.record(open_journal(tmp_path, ID))
     time.sleep(0.1)
     answers.clear()
     time.sleep(seconds)
     assert all(one.silent_s < 1.0 for one in acquisition.status().values())
+    assert acquisition.now_s - shown.newest_s < 1.0
     answers.set()
     check(acquisition, acquisition.stop_recording(), seconds)
 
