@@ -84,7 +84,7 @@ class MtiFramer:
         if not rate or not force:
             self.heard.skipped += 1  # what the satellites told
             return
-        if not all(-MOST_RAD_S < x < MOST_RAD_S for x in rate) or not all(-MOST_M_S2 < x < MOST_M_S2 for x in force):
+        if not _is_meant(rate, MOST_RAD_S) or not _is_meant(force, MOST_M_S2):
             self.heard.damaged += 1  # a checksum of 8 bits is right by chance one time in 256
             return
         if fine := _told(items, here.fine):
@@ -131,6 +131,11 @@ def _whole(items: Items, kind: int) -> int:
 
 def _told(items: Items, identifier: int) -> tuple[float, ...]:
     return values(identifier, items[identifier]) if identifier else ()
+
+
+def _is_meant(told: tuple[float, ...], most: float) -> bool:
+    x, y, z = told
+    return -most < x < most and -most < y < most and -most < z < most
 
 
 def _upward(q: Row) -> Row:
