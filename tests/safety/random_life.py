@@ -1,0 +1,343 @@
+"""One life of the window under a random user: from its start until it is closed, or killed.
+
+    python -m tests.safety.random_life PLACE --seed 1/1 --seconds 60 --end close
+
+PLACE holds the library, the user's settings and folders; `random_keys` makes it. Each line of the output is JSON:
+`did` counts what was reached, `fault` is what must not be, with the step and what was done before it.
+"""
+
+import argparse
+import faulthandler
+import gc
+import json
+import logging
+import os
+import random
+import signal
+import sys
+import threading
+import time
+import traceback
+from collections import deque
+from dataclasses import replace
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+os.environ["QT_QPA_PLATFORM"] = "offscreen"
+os.environ["OPENBLAS_NUM_THREADS"] = "1"
+
+from PySide6.QtCore import QMessageLogContext, QObject, QSettings, Qt, QTimer, QtMsgType, qInstallMessageHandler
+from PySide6.QtGui import QDrag
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
+
+from app.acquisition.acquisition import Acquisition
+from app.main_window import SWITCH_S, MainWindow
+from app.settings import Settings
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.opened import KEYS
+from app.theme import Look, load_fonts
+from app.wizard import sources
+from app.wizard.worn_sensors import SourceChoice
+from app.workers.garbage import GarbageCollector
+from devices.replay import ReplaySource
+from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.watchdog import Watchdog
+from tests.safety.random_user import OPERATOR, PASSPHRASE, RandomUser
+from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
+
+SPEED = 20.0
+PAUSE_MS = (10, 120)
+CHECK_EVERY = 5  # steps
+SETTLES_S, SETTLES_BUSY_S = 4.0, 45.0  # what is said and what is held may differ for so long
+LOOK_AGAIN_MS = 250
+HELD_UP_S = 2.0  # of the thread that draws
+HANGS_S = 90.0  # without a step: then all threads are told, and the life ends
+STALE_STEPS = 150  # with nothing new on the screen: then every control is tried
+WAY_OUT_S = 30.0  # a page on which nothing can be pressed may stay for so long
+REMEMBERED = 25  # steps told with a fault
+NOISE = ("This plugin does not support",)  # offscreen's own
+ENDS = ("close", "kill")
+
+
+class RandomLife(QObject):
+    """Lets the user act, and looks at what came of it. All of it happens on the screen's thread."""
+
+    def __init__(self, window: MainWindow, user: RandomUser, dog: Watchdog, chance: random.Random, end: str) -> None:
+        super().__init__()
+        self._window, self._user, self._dog, self._chance, self._end = window, user, dog, chance, end
+        self.tells = False
+        self._number = self._nested = self._late_told = self._compared = 0
+        self._is_acting = self._is_over = False
+        self._before: deque[str] = deque(maxlen=REMEMBERED)
+        self._told: set[str] = set()
+        self._doubts: set[str] = set()
+        self._doubted_s = 0.0
+        self._seen = ""
+        self._stale = 0
+        self._to_try: list[QWidget] | None = None
+        self._shut_since_s: float | None = None
+        self._key: tuple[Path, bytes | None] | None = None
+        user.did = self.count
+
+    def count(self, what: str) -> None:
+        print(json.dumps({"did": what}), flush=True)
+
+    def fault(self, kind: str, what: str) -> None:
+        if (key := f"{kind} {what[-300:]}") not in self._told:
+            self._told.add(key)
+            told = {"fault": kind, "step": self._number, "what": what, "before": list(self._before)}
+            print(json.dumps(told), flush=True)
+
+    def step(self) -> None:
+        """Do one thing, or look again; the next step is asked for first, for a menu has a loop of its own."""
+        if self._is_over:
+            return
+        faulthandler.dump_traceback_later(HANGS_S, exit=True)
+        waits_ms = LOOK_AGAIN_MS if self._doubts else self._chance.randint(*PAUSE_MS)
+        QTimer.singleShot(waits_ms, self, self.step)
+        if self._is_acting and self._leaves_alone():
+            return
+        was_acting, self._is_acting = self._is_acting, True
+        try:
+            self._act()
+        except Exception:
+            self.fault("exception in a step", traceback.format_exc())
+        finally:
+            self._is_acting = was_acting
+
+    def _leaves_alone(self) -> bool:
+        """Whether an inner loop has nothing that could be answered: what is dragged is let go after a while."""
+        if QApplication.activePopupWidget() is not None or QApplication.activeModalWidget() is not None:
+            self._nested = 0
+            return False
+        self._nested += 1
+        if self._nested % 5 == 0:
+            QDrag.cancel()
+            QTest.mouseRelease(self._window, Qt.MouseButton.LeftButton)
+        return True
+
+    def _act(self) -> None:
+        self._number += 1
+        if self._number % CHECK_EVERY == 0 or self._doubts:
+            with self._dog.paused():
+                self._compare()
+            if self._doubts:
+                return  # hands off, until it is settled
+        for late in self._dog.late[self._late_told :]:
+            if late.busy_s + late.waited_s > HELD_UP_S:
+                self.fault("held up", str(late))
+        self._late_told = len(self._dog.late)
+        if self._to_try is not None:
+            self._try_next()
+        else:
+            self._remember(self._user.act())
+        self._look()
+
+    def _remember(self, deed: str) -> None:
+        self._before.append(f"{self._number}: {deed}")
+        if self.tells:
+            print(f"{self._number}: {deed}", file=sys.stderr, flush=True)
+
+    # what the screen says
+
+    def _compare(self) -> None:
+        if QApplication.activeModalWidget() is not None or self._window.is_covered or (held := self._held()) is None:
+            self._doubts.clear()
+            return
+        self._compared += 1
+        now = set(contradictions(self._window, held)) | set(self._left_open(held))
+        if not self._doubts:
+            self._doubts, self._doubted_s = now, time.monotonic()
+            return
+        self._doubts &= now
+        waited_s = time.monotonic() - self._doubted_s
+        if self._doubts and waited_s > (SETTLES_BUSY_S if self._is_busy() else SETTLES_S):
+            for one in self._doubts:
+                self.fault("contradiction", one)
+            self._doubts.clear()
+
+    def _left_open(self, held: HeldLibrary) -> list[str]:
+        wizard = self._window._wizard
+        visits = [] if wizard is None else [*wizard._closing, *([wizard.visit] if wizard.visit is not None else [])]
+        return [] if any(not visit.takes.is_idle for visit in visits) else left_open(held)
+
+    def _is_busy(self) -> bool:
+        wizard = self._window._wizard
+        visit = wizard.visit if wizard is not None else None
+        is_long = self._window.desk._long.is_busy
+        if visit is None:
+            return is_long
+        return is_long or visit.evaluation.is_busy or not visit.takes.is_idle or visit.sensors.is_searching
+
+    def _held(self) -> HeldLibrary | None:
+        """The open library's, while there is one whose key the user knows."""
+        state = self._window.desk.state
+        if state is None:
+            return None
+        folder = state.library.folder
+        if self._key is None or self._key[0] != folder:
+            data_key = None
+            if not state.is_demonstration:
+                try:
+                    data_key = KeySlots(folder / KEYS).open(OPERATOR, PASSPHRASE)
+                except KeyRefusedError:
+                    return None  # the user has changed the passphrase
+            self._key = (folder, data_key)
+        return HeldLibrary(*self._key)
+
+    # whether there is a way on
+
+    def _look(self) -> None:
+        controls = self._user.controls()
+        if any(isinstance(one, QAbstractButton) for one in controls) or QApplication.activePopupWidget() is not None:
+            self._shut_since_s = None
+        else:
+            self._shut_since_s = self._shut_since_s or time.monotonic()
+            if time.monotonic() - self._shut_since_s > WAY_OUT_S:
+                self.fault("dead end", f"nothing can be pressed on {self._where()}")
+                self._shut_since_s = None
+        seen = self._signature(controls)
+        if seen != self._seen:
+            self._seen, self._stale, self._to_try = seen, 0, None
+            return
+        self._stale += 1
+        if self._to_try is None and self._stale > STALE_STEPS:
+            self._to_try = [one for one in controls if isinstance(one, QAbstractButton | QComboBox)]
+
+    def _try_next(self) -> None:
+        assert self._to_try is not None
+        if self._to_try:
+            one = self._to_try.pop()
+            if one.isVisible() and one.isEnabled():
+                self._user.click(one)
+            self._remember(f"tries {one.accessibleName() or type(one).__name__!r}")
+            return
+        self.fault("dead end", f"whatever is pressed, nothing changes on {self._where()}")
+        self._to_try, self._stale = None, 0
+
+    def _signature(self, controls: list[QWidget]) -> str:
+        """What is on the screen but for figures, which change by themselves."""
+        front = QApplication.activeModalWidget() or self._window
+        labels = [one.text() for one in front.findChildren(QLabel) if one.isVisible()]
+        names = [f"{one.accessibleName()} {_state(one)}" for one in controls]
+        whole = "|".join([self._where(), *labels, *names, f"{front.size()}"])
+        return "".join(letter for letter in whole if not letter.isdigit())
+
+    def _where(self) -> str:
+        screen: Any = self._window.screens.currentWidget()
+        current = getattr(screen, "current", None)
+        modal = QApplication.activeModalWidget()
+        return f"{type(screen).__name__} {type(current).__name__} {type(modal).__name__ if modal else ''}"
+
+    # the end
+
+    def finish(self) -> None:
+        """Close the window as a user does, or be killed."""
+        for what, count in (("steps", self._number), ("comparisons", self._compared)):
+            print(json.dumps({"did": what, "count": count}), flush=True)
+        if self._end == "kill":
+            self.count("killed")
+            os.kill(os.getpid(), signal.SIGKILL)
+        self._is_over = True
+        faulthandler.cancel_dump_traceback_later()
+        for widget in filter(None, (QApplication.activePopupWidget(), QApplication.activeModalWidget())):
+            widget.close()
+        self._window.close()
+        QApplication.quit()
+
+
+def _state(widget: QWidget) -> str:
+    if isinstance(widget, QAbstractButton):
+        return f"{widget.text()} {widget.isChecked()}"
+    return widget.currentText() if isinstance(widget, QComboBox) else ""
+
+
+class _LoudLog(logging.Handler):
+    def __init__(self, life: RandomLife) -> None:
+        super().__init__(logging.ERROR)
+        self._life = life
+
+    def emit(self, record: logging.LogRecord) -> None:
+        trace = "".join(traceback.format_exception(*record.exc_info)) if record.exc_info else ""
+        self._life.fault("logged", f"{record.name}: {record.getMessage()}\n{trace}")
+
+
+def listen(life: RandomLife) -> None:
+    """Let whatever goes wrong anywhere in the program be a fault of this life."""
+
+    def hook(kind: type[BaseException], error: BaseException | None, trace: TracebackType | None) -> None:
+        life.fault("exception", "".join(traceback.format_exception(kind, error, trace)))
+
+    def unraisable(told: Any) -> None:
+        life.fault("unraisable", "".join(traceback.format_exception(told.exc_type, told.exc_value, told.exc_traceback)))
+
+    def qt_said(kind: QtMsgType, _context: QMessageLogContext, message: str) -> None:
+        if kind not in (QtMsgType.QtDebugMsg, QtMsgType.QtInfoMsg) and not message.startswith(NOISE):
+            life.fault("Qt warns", f"{message}\n{''.join(traceback.format_stack(limit=12))}")
+
+    sys.excepthook = hook
+    sys.unraisablehook = unraisable
+    threading.excepthook = lambda told: hook(told.exc_type, told.exc_value, told.exc_traceback)
+    qInstallMessageHandler(qt_said)
+    logging.getLogger().addHandler(_LoudLog(life))
+
+
+def simulated_source() -> SourceChoice:
+    """A patient whose time runs faster than ours."""
+    played = (Standing(duration_s=10.0), FreeMotion(duration_s=30.0), Walk(strides=14), Walk("walk 2", strides=14))
+    session = simulate(replace(DEMONSTRATION, recordings=played)).session
+
+    def make() -> Acquisition:
+        source = ReplaySource(session, speed=SPEED)
+        return Acquisition([source], source.now_ns)
+
+    return SourceChoice("fast", "Fast patient", make, is_simulated=True)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("place", type=Path)
+    parser.add_argument("--seed", default="1/1")
+    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--end", choices=ENDS, default="close")
+    parser.add_argument("--tell", action="store_true", help="write every step to the standard error")
+    wanted = parser.parse_args()
+    faulthandler.enable()
+    source = simulated_source()
+    sources.choices = lambda: (source,)  # before the wizard takes it from there
+    sys.setswitchinterval(SWITCH_S)
+    application = QApplication([])
+    application.setApplicationName("Gaitwright")
+    application.setStyle("Fusion")
+    load_fonts()
+    chance = random.Random(wanted.seed)
+    settings = Settings(QSettings(str(wanted.place / "settings.ini"), QSettings.Format.IniFormat))
+    window = MainWindow(Look(application), settings, wanted.place / "library")
+    dog = Watchdog()
+    user = RandomUser(window, chance, wanted.place)
+    life = RandomLife(window, user, dog, chance, wanted.end)
+    life.tells = wanted.tell
+    listen(life)
+    garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
+    window.preparing.done.connect(garbage.pass_over_imported)
+    window.show()
+    window.activateWindow()
+    window.prepare()
+    dog.start()
+    QTimer.singleShot(0, life, life.step)
+    QTimer.singleShot(round(1000 * wanted.seconds), life, life.finish)
+    application.exec()
+    faulthandler.dump_traceback_later(HANGS_S, exit=True)
+    dog.stop()
+    window.finish()
+    longest_s = max((late.busy_s + late.waited_s for late in dog.late), default=0.0)
+    print(json.dumps({"did": "closed", "longest_held_up_s": longest_s}), flush=True)
+    del window
+    gc.collect()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
