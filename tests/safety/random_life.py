@@ -69,7 +69,7 @@ class RandomLife(QObject):
         self._window, self._user, self._dog, self._chance, self._end = window, user, dog, chance, end
         self.tells = False
         self._number = self._nested = self._late_told = self._compared = 0
-        self._is_acting = self._is_over = False
+        self._is_acting = self._is_over = self._has_desk_answered = False
         self._before: deque[str] = deque(maxlen=REMEMBERED)
         self._told: set[str] = set()
         self._doubts: set[str] = set()
@@ -136,6 +136,8 @@ class RandomLife(QObject):
         self._look()
 
     def _remember(self, deed: str) -> None:
+        if self._before and self._before[-1].endswith(f": {deed}"):
+            self._before.pop()  # the last of many alike is enough
         self._before.append(f"{self._number}: {deed}")
         if self.tells:
             print(f"{self._number}: {deed}", file=sys.stderr, flush=True)
@@ -149,14 +151,19 @@ class RandomLife(QObject):
         self._compared += 1
         now = set(contradictions(self._window, held)) | set(self._left_open(held))
         if not self._doubts:
-            self._doubts, self._doubted_s = now, time.monotonic()
+            self._doubts, self._doubted_s, self._has_desk_answered = now, time.monotonic(), False
+            if now:
+                self._window.desk.run(lambda _opened: None, self._on_desk_answered, None, self)
             return
         self._doubts &= now
         waited_s = time.monotonic() - self._doubted_s
         if self._doubts and waited_s > (SETTLES_BUSY_S if self._is_busy() else SETTLES_S):
-            for one in self._doubts:
-                self.fault("contradiction", one)
+            for one in self._doubts:  # what is said before the library was heard is not so either
+                self.fault("contradiction" if self._has_desk_answered else "said too early", one)
             self._doubts.clear()
+
+    def _on_desk_answered(self, _nothing: object) -> None:
+        self._has_desk_answered = True
 
     def _left_open(self, held: HeldLibrary) -> list[str]:
         wizard = self._window._wizard
@@ -334,7 +341,6 @@ def main() -> int:
     window.finish()
     longest_s = max((late.busy_s + late.waited_s for late in dog.late), default=0.0)
     print(json.dumps({"did": "closed", "longest_held_up_s": longest_s}), flush=True)
-    del window
     gc.collect()
     return 0
 

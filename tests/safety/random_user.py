@@ -53,7 +53,7 @@ WITH_CTRL = (
     *(Key.Key_0, Key.Key_F, Key.Key_N, Key.Key_S, Key.Key_P, Key.Key_Z, Key.Key_A, Key.Key_V, Key.Key_D, Key.Key_O),
 )
 SIZES = ((640, 480), (800, 600), (1024, 700), (1280, 800), (1600, 1000), (2200, 1300))
-WALK_STEPS = (20, 60)  # of the user's, while a walk is recorded
+WALK_STEPS = (10, 40)  # of the user's, while a walk is recorded
 COMMENTS = ("Walks further than in spring.", "The left foot drags.", "New socket since Monday.")
 
 
@@ -188,7 +188,7 @@ class RandomUser:
             return "leaves the demonstration"
         deed = self._chance.choices(
             ("old", "new", "open", "settings", "help", "demonstration", "import", "search", "delete", "undo", "theme"),
-            (30, 25, 25, 4, 2, 2, 4, 4, 3, 3, 2),
+            (40, 25, 25, 3, 2, 1, 3, 3, 2, 2, 1),
         )[0]
         if deed == "old" and home._patient is not None:
             for _ in range(self._chance.randrange(4)):
@@ -240,7 +240,7 @@ class RandomUser:
         if wizard.shell.banner.isVisible() and self._chance.random() < 0.3:
             self.press_named("Dismiss", wizard)
             return "dismisses the banner"
-        if self._chance.random() < 0.015:
+        if self._chance.random() < 0.004:
             self.press_named("All patients", wizard)
             return "goes to all patients"
         step = type(wizard.current).__name__
@@ -302,7 +302,7 @@ class RandomUser:
                 return "goes away"
             self.press_named(visit.choices[0].name, page)
             return "chooses the sensors"
-        if not sensors.site_of and not sensors.is_left_to_motion or self._chance.random() < 0.1:
+        if (not sensors.site_of and not sensors.is_left_to_motion) or self._chance.random() < 0.1:
             if self._chance.random() < 0.4:
                 self.press_named("Movement decides", page)
                 return "leaves it to the movement"
@@ -337,7 +337,7 @@ class RandomUser:
                 self.type_into(self._chance.choice(fields), self._chance.choice(("5", "-10", "", "0")))
                 return "types a zero"
         self.press(Key.Key_Space)
-        self._waits = 15
+        self._waits = 10
         return "starts the count"
 
     def _on_free_motion(self, wizard: "Wizard") -> str:
@@ -379,7 +379,7 @@ class RandomUser:
         if self._chance.random() < 0.3:
             self.press(Qt.Key(Key.Key_1 + self._chance.randrange(5)))
             return "chooses a label"
-        if self._chance.random() < 0.05:
+        if self._chance.random() < 0.02:
             page: Any = step.page
             self.click(page.walks.restrapped)
             return "straps anew"

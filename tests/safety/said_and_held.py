@@ -8,10 +8,8 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 from contextlib import closing
-from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from uuid import UUID
 
 import sqlcipher3.dbapi2 as sqlite
 
@@ -39,8 +37,7 @@ WALKS = f"""
     SELECT name, condition, is_kept, is_decided, judged_by, state FROM recordings
     WHERE session_id = ? AND kind = 'walking' AND state IN {READ_BACK} ORDER BY number"""
 PATIENT = """
-    SELECT p.code, p.birth_year, p.sex, p.height_m, p.mass_kg, p.device, p.aids, p.affected_side, p.prosthetic_side
-    FROM patients p JOIN sessions s ON s.patient_id = p.id WHERE s.id = ?"""
+    SELECT p.code, p.birth_year, p.device FROM patients p JOIN sessions s ON s.patient_id = p.id WHERE s.id = ?"""
 PATIENT_FIELDS = ("code", "birth_year", "sex", "height_m", "mass_kg", "device", "aids")
 ONE_PATIENT = f"SELECT {', '.join(PATIENT_FIELDS)} FROM patients WHERE id = ?"
 CONDITIONS = "SELECT DISTINCT condition FROM recordings WHERE session_id = ? AND condition <> ''"
@@ -71,9 +68,11 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
         return [*_of_home(window.home, held), *_of_banner(window.home.banner.text, held)]
     wizard = window._wizard
     if wizard is not None and screen is wizard and wizard.visit is not None and wizard.visit.session is not None:
-        said = [*_of_frame(wizard, wizard.visit, held), *_of_rail(wizard, wizard.visit, held)]
-        said += [*_of_page(wizard, wizard.visit, held), *_of_banner(wizard.shell.banner.text, held)]
-        return said
+        visit = wizard.visit
+        if not held.ask("SELECT 1 FROM sessions WHERE id = ?", wizard.visit.session.id.hex):
+            return ["the session in sight is not held"]
+        said = [*_of_frame(wizard, visit, held), *_of_rail(wizard, visit, held), *_of_page(wizard, visit, held)]
+        return [*said, *_of_banner(wizard.shell.banner.text, held)]
     return []
 
 
@@ -138,11 +137,7 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
 
 def _of_frame(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
     assert visit.session is not None
-    rows = held.ask(PATIENT, visit.session.id.hex)
-    if not rows:
-        yield "the session in sight is not held"
-        return
-    code, birth_year, _, _, _, device, *_ = rows[0]
+    ((code, birth_year, device),) = held.ask(PATIENT, visit.session.id.hex)
     header = wizard.shell.header
     if wizard._current != 0:  # where it is being typed
         if header._code.text() != code:
@@ -263,13 +258,12 @@ def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[
 
 def _of_banner(text: str, held: HeldLibrary) -> Iterator[str]:
     """What is claimed of recordings that were recovered, or are safe."""
-    if (one := RECOVERED_ONE.search(text)) is not None:
-        if not held.ask("SELECT 1 FROM recordings WHERE state = 'recovered' AND name = ?", one[1]):
-            yield f"the banner says {text!r}, held is no recovered {one[1]!r}"
-    if (many := RECOVERED_MANY.search(text)) is not None:
-        count = held.ask("SELECT COUNT(*) FROM recordings WHERE state = 'recovered'")[0][0]
-        if count < int(many[1]):
-            yield f"the banner says {text!r}, held are {count} recovered"
+    one = RECOVERED_ONE.search(text)
+    if one and not held.ask("SELECT 1 FROM recordings WHERE state = 'recovered' AND name = ?", one[1]):
+        yield f"the banner says {text!r}, held is no recovered {one[1]!r}"
+    many = RECOVERED_MANY.search(text)
+    if many and held.ask("SELECT COUNT(*) FROM recordings WHERE state = 'recovered'")[0][0] < int(many[1]):
+        yield f"the banner says {text!r}, held are fewer"
     if "safe on the disk" in text and not any((held.folder / "recordings").glob("*.journal")):
         yield f"the banner says {text!r}, there is no journal"
 

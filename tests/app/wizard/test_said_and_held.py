@@ -1,0 +1,126 @@
+"""Does `tests.safety.said_and_held` see when screen and library disagree, and is it silent when they agree?"""
+
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+import sqlcipher3.dbapi2 as sqlite
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.settings import Settings
+from app.storage.exchange import import_session
+from app.storage.opened import OpenedLibrary
+from app.theme import Look
+from app.wizard.wizard import RESULTS, WALKING, Wizard
+from app.workers.library_desk import LibraryDesk
+from core.samples import Session
+from tests.safety.random_keys import play
+from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
+
+WAIT_MS = 20_000
+Alter = Callable[[str], None]
+
+
+@pytest.fixture
+def opened(desk: LibraryDesk, simulated_session: Session) -> OpenedLibrary:
+    """The desk's library, with a session of two walks."""
+    assert desk.state is not None
+    library = desk.state.library
+    import_session(library, simulated_session, lambda _share, _what: None, "DEMO-1")
+    return library
+
+
+@pytest.fixture
+def held(opened: OpenedLibrary) -> HeldLibrary:
+    return HeldLibrary(opened.folder, opened.data_key)
+
+
+@pytest.fixture
+def alter(opened: OpenedLibrary) -> Alter:
+    """Change the library behind the program's back."""
+
+    def change(statement: str) -> None:
+        with closing(sqlite.connect(str(opened.folder / "library.db"), isolation_level=None)) as connection:
+            assert opened.data_key is not None
+            connection.execute(f"PRAGMA key = \"x'{opened.data_key.hex()}'\"")
+            connection.execute(statement)
+
+    return change
+
+
+@pytest.fixture
+def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any:
+    """A window that shows the session at Walking."""
+    (line,) = opened.library.sessions.list()
+    wizard.show_session(line.id)
+    visit = wizard.visit
+    assert visit is not None
+    qtbot.waitUntil(lambda: wizard._current == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    wizard.go_to(WALKING)
+    return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, _wizard=wizard)
+
+
+@pytest.fixture
+def home_in_sight(
+    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, opened: OpenedLibrary, tmp_path: Path
+) -> Iterator[Any]:
+    assert desk.state is not None
+    home = Home(Look(), desk, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
+    qtbot.addWidget(home)
+    home.show_library(desk.state)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines.lines), timeout=WAIT_MS)
+    yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, _wizard=None)
+    qapp.setStyleSheet("")
+
+
+def test_what_is_said_otherwise_of_a_session_is_seen(session_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
+    assert contradictions(session_in_sight, held) == []
+    for statement, *words in (
+        ("UPDATE recordings SET condition = 'else' WHERE name = 'walk 2'", "the list of walks says"),
+        ("UPDATE recordings SET condition = '' WHERE name = 'walk 2'",),
+        ("UPDATE recordings SET is_kept = 0 WHERE name = 'walk 2'", "held are 1 walks kept", "held is is_kept 0"),
+        ("UPDATE patients SET code = 'DEMO-9'", "held as 'DEMO-9'"),
+        ("UPDATE patients SET birth_year = 1801", "birth year 1801"),
+        ("UPDATE sessions SET cannot_stand = 1", "cannot_stand True"),
+        ("UPDATE recordings SET is_kept = 0 WHERE kind = 'standing'", "held is no kept standing"),
+        ("DELETE FROM sessions", "the session in sight is not held"),
+    ):
+        assert not any(word in one for word in words for one in contradictions(session_in_sight, held))
+        alter(statement)
+        said = contradictions(session_in_sight, held)
+        assert all(any(word in one for one in said) for word in words), said
+
+
+def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLibrary, alter: Alter) -> None:
+    assert contradictions(home_in_sight, held) == []
+    home_in_sight.home.banner.tell("The program was closed while recording. 00:14 of walk 1 was recovered.")
+    for statement, words in (
+        ("UPDATE sessions SET is_simulated = 0", "simulated, it is not held as such"),
+        ("UPDATE recordings SET condition = 'else'", "home says conditions"),
+        ("UPDATE sessions SET deleted_at = '2026-01-01'", "home lists sessions"),
+        ("UPDATE patients SET code = 'DEMO-9'", "home lists patients"),
+        ("UPDATE recordings SET name = 'walk 3' WHERE name = 'walk 1'", "no recovered 'walk 1'"),
+    ):
+        alter(statement)
+        said = contradictions(home_in_sight, held)
+        assert any(words in one for one in said), said
+
+
+def test_a_recording_that_nobody_ended_is_seen(held: HeldLibrary, alter: Alter) -> None:
+    assert left_open(held) == []
+    alter("UPDATE recordings SET state = 'open' WHERE name = 'walk 1'")
+    assert len(left_open(held)) == 1
+
+
+@pytest.mark.endurance
+def test_two_lives_of_random_keys_find_nothing(tmp_path: Path) -> None:
+    outcome = play(60.0, 5, tmp_path)
+    assert outcome.faults == []
+    assert outcome.did["steps"] > 100
+    assert outcome.did["comparisons"] > 10
