@@ -54,8 +54,8 @@ SETTLES_S, SETTLES_BUSY_S = 4.0, 45.0  # what is said and what is held may diffe
 LOOK_AGAIN_MS = 250
 HELD_UP_S = 2.0  # of the thread that draws
 HANGS_S = 90.0  # without a step: then all threads are told, and the life ends
-STALE_STEPS = 150  # with nothing new on the screen: then every control is tried
-WAY_OUT_S = 30.0  # a page on which nothing can be pressed may stay for so long
+STALE_STEPS, STALE_S = 150, 20.0  # with nothing new on the screen: then every control is tried
+WAY_OUT_S = 120.0  # a page on which nothing can be pressed may stay for so long, on a busy machine
 REMEMBERED = 25  # steps told with a fault
 NOISE = ("This plugin does not support",)  # offscreen's own
 ENDS = ("close", "kill")
@@ -75,7 +75,7 @@ class RandomLife(QObject):
         self._doubts: set[str] = set()
         self._doubted_s = 0.0
         self._seen = ""
-        self._stale = 0
+        self._stale, self._stale_since_s = 0, 0.0
         self._to_try: list[QWidget] | None = None
         self._shut_since_s: float | None = None
         self._key: tuple[Path, bytes | None] | None = None
@@ -206,11 +206,12 @@ class RandomLife(QObject):
                 self.fault("dead end", f"nothing can be pressed on {self._where()}")
                 self._shut_since_s = None
         seen = self._signature(controls)
-        if seen != self._seen:
-            self._seen, self._stale, self._to_try = seen, 0, None
+        if seen != self._seen or self._shut_since_s is not None:
+            self._seen, self._stale, self._stale_since_s, self._to_try = seen, 0, time.monotonic(), None
             return
         self._stale += 1
-        if self._to_try is None and self._stale > STALE_STEPS:
+        is_stale = self._stale > STALE_STEPS and time.monotonic() - self._stale_since_s > STALE_S
+        if self._to_try is None and is_stale:
             self._to_try = [one for one in controls if isinstance(one, QAbstractButton | QComboBox)]
 
     def _try_next(self) -> None:
