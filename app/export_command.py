@@ -1,8 +1,9 @@
 """`gaitwright export`: the results of a session for other programs, without names unless identity is asked for."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.library_commands import (
     DECODERS,
@@ -14,7 +15,12 @@ from app.library_commands import (
 )
 from devices.files.refusal import FileRefusedError, one_line
 
+if TYPE_CHECKING:
+    from app.storage.pseudonyms import Typed
+
 FORMATS = ("xlsx", "c3d", "mot", "fhir")  # as app.exports.exports has them, whose import takes long
+
+TYPED = ("device", "aids", "surface", "conditions")  # as app.storage.pseudonyms has it
 
 Report = Callable[[float, str], None]
 
@@ -31,8 +37,18 @@ def add_export_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add_key_arguments(parser)
     parser.add_argument("--as", dest="formats", metavar="FORMAT,...", required=True, help=", ".join(FORMATS))
+    parser.add_argument(
+        "--keep",
+        metavar="WHAT,...",
+        default="",
+        help=f"without identity, what was typed freely and leaves all the same: {', '.join(TYPED)}",
+    )
     parser.add_argument("--identified", action="store_true", help="leave code, notes, operator and dates as they are")
-    parser.add_argument("--out", metavar="OUT", type=Path, required=True, help="an empty or new folder")
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--out", metavar="OUT", type=Path, help="an empty or new folder")
+    where.add_argument(
+        "--preview", action="store_true", help="write nothing; say all that would leave without identity"
+    )
 
 
 def export(wanted: argparse.Namespace, report: Report) -> list[str]:
@@ -41,21 +57,23 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
     Raises
     ------
     FileRefusedError
-        No such format, a session that cannot be read, or something stands at OUT.
+        No such format, nothing that could be kept, a session that cannot be read, or something stands at OUT.
     OSError
         The files cannot be written.
     """
     from app.exports.exports import Format, export_from_folder, export_from_library
     from app.reports.patient_report.report_file import session_of
     from app.reports.result_folder import written_beside
+    from app.storage.pseudonyms import Typed
     from core.analysis import analyse
     from devices.files.session_folder import read_session
 
-    names = wanted.formats.split(",")
-    for name in names:
-        if name not in FORMATS:
-            raise FileRefusedError("--as", f"{one_line(name)} is no format", f"Choose of: {', '.join(FORMATS)}")
-    formats = [Format(name) for name in dict.fromkeys(names)]
+    formats = [Format(name) for name in _chosen("--as", wanted.formats, FORMATS, "is no format")]
+    kept = [Typed(name) for name in _chosen("--keep", wanted.keep, TYPED, "is not among what is typed")]
+    if wanted.identified and (kept or wanted.preview):
+        raise FileRefusedError("--identified", "with identity all leaves as it is", "Leave out --keep and --preview")
+    if wanted.preview:
+        return _preview(wanted, kept)
     if wanted.out.exists() and not (wanted.out.is_dir() and not any(wanted.out.iterdir())):
         raise FileRefusedError(
             str(wanted.out), "there is something here already", "Choose an empty folder or a new one"
@@ -64,11 +82,43 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
         if isinstance(wanted.session, LibrarySession):
             with opened_library(wanted) as opened:
                 session_id, identified = wanted.session.id, wanted.identified
-                export_from_library(opened, session_id, formats, folder, DECODERS, report, is_identified=identified)
+                export_from_library(
+                    opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
+                )
         else:
             session = read_session(session_of(wanted.session))
             analysis = analyse(session, progress=report)
-            export_from_folder(session, analysis, formats, folder, is_identified=wanted.identified)
+            export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
         count = sum(path.is_file() for path in folder.rglob("*"))
     whose = "with identity" if wanted.identified else "pseudonymised"
     return [f"{wanted.out}: {count} {'file' if count == 1 else 'files'}, {whose}."]
+
+
+def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str]:
+    """The words of an option, each once.
+
+    Raises
+    ------
+    FileRefusedError
+        One is not known.
+    """
+    names = list(dict.fromkeys(filter(None, said.split(","))))
+    for name in names:
+        if name not in known:
+            raise FileRefusedError(option, f"{one_line(name)} {what}", f"Choose of: {', '.join(known)}")
+    return names
+
+
+def _preview(wanted: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
+    """Lines with all that would leave beside the figures; raises as `export`."""
+    from app.exports.exports import preview_from_folder, preview_from_library
+    from app.reports.patient_report.report_file import session_of
+    from devices.files.session_folder import read_session
+
+    if isinstance(wanted.session, LibrarySession):
+        with opened_library(wanted) as opened:
+            rows = preview_from_library(opened, wanted.session.id, kept)
+    else:
+        rows = preview_from_folder(read_session(session_of(wanted.session)), kept)
+    told = [f"{name}: {one_line(str(value))}" for name, value in rows]
+    return [*told, "And angles, events, strides and averages of these recordings. Nothing was written."]

@@ -2,18 +2,19 @@
 
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from enum import StrEnum
 from importlib.util import find_spec
 from pathlib import Path
-from uuid import UUID
+from uuid import UUID, uuid4
 
-from app.exports.nameless import nameless, nameless_once
+from app.exports.nameless import Row, nameless, nameless_once, once, what_leaves
 from app.storage.audit import about
-from app.storage.exchange import session_with_samples
+from app.storage.exchange import READ_BACK, session_with_samples
 from app.storage.journal.decoding import Decoders
 from app.storage.opened import OpenedLibrary, Report
-from app.storage.pseudonyms import Pseudonyms
+from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.stored import Action
 from core.analysis import analyse
 from core.results import Analysis, RecordingAnalysis
@@ -51,9 +52,17 @@ def check_formats(formats: Sequence[Format]) -> None:
 
 
 def export_from_folder(
-    session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path, *, is_identified: bool = False
+    session: Session,
+    analysis: Analysis,
+    formats: Sequence[Format],
+    folder: Path,
+    *,
+    kept: Collection[Typed] = (),
+    is_identified: bool = False,
 ) -> None:
     """Write a session that is in no library into `folder`, which is there: whole, or not at all.
+
+    Without identity, of what was typed freely only what is `kept` leaves.
 
     Raises
     ------
@@ -64,7 +73,7 @@ def export_from_folder(
     """
     check_formats(formats)
     if not is_identified:
-        session, analysis = nameless_once(session, analysis)
+        session, analysis = nameless_once(session, analysis, kept)
     _write(session, analysis, formats, folder)
 
 
@@ -77,9 +86,12 @@ def export_from_library(
     report: Report,
     *,
     analysed: Callable[[Session], Analysis] = analyse,
+    kept: Collection[Typed] = (),
     is_identified: bool = False,
 ) -> None:
     """Analyse a session of a library and write it; the audit says which formats before anything is written.
+
+    Without identity, of what was typed freely only what is `kept` leaves, and the audit names it.
 
     Raises
     ------
@@ -93,16 +105,35 @@ def export_from_library(
     check_formats(formats)
     visit = opened.library.sessions.get(session_id)
     for wanted in formats:
+        typed = "all" if is_identified else ", ".join(sorted(kept))
         opened.library.audit.note(
-            Action.EXPORT, about("session", session_id), format=str(wanted), is_identified=is_identified
+            Action.EXPORT, about("session", session_id), format=str(wanted), is_identified=is_identified, typed=typed
         )
     session = session_with_samples(opened, visit, decoders, report)
     report(0.5, "analysing")
     analysis = analysed(session)
     if not is_identified:
-        session, analysis = nameless(Pseudonyms(opened.data_key), visit.patient_id, session, analysis)
+        session, analysis = nameless(Pseudonyms(opened.data_key), visit.patient_id, session, analysis, kept)
     report(1.0, "writing")
     _write(session, analysis, formats, folder)
+
+
+def preview_from_folder(session: Session, kept: Collection[Typed] = ()) -> list[Row]:
+    """All that `export_from_folder` would tell beside the figures; the pseudonym is another each time."""
+    return what_leaves(once().session(uuid4(), session, kept))
+
+
+def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collection[Typed] = ()) -> list[Row]:
+    """All that `export_from_library` would tell beside the figures.
+
+    Raises
+    ------
+    LibraryError
+        There is no such session.
+    """
+    visit = opened.library.sessions.get(session_id)
+    told = replace(visit.told, recordings=tuple(one.told for one in visit.recordings if one.state in READ_BACK))
+    return what_leaves(Pseudonyms(opened.data_key).session(visit.patient_id, told, kept))
 
 
 def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> None:

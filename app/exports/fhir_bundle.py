@@ -8,6 +8,7 @@ column's name; sides are coded. Simulated figures carry the label that HL7 gives
 
 import datetime
 import json
+import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from uuid import NAMESPACE_URL, uuid5
 
 from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, reason_of, software, unit_of, walk_figures
 from app.gates_in_words import gate_sentence
+from app.storage.pseudonyms import AGE
 from core.body import Side
 from core.norms import MIN_STRIDES_FOR_SD
 from core.results import Analysis
@@ -42,6 +44,8 @@ WITHHELD = {"system": ABSENT, "code": "error", "display": "Error"}
 NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
 ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
 FEW = f"Fewer than {MIN_STRIDES_FOR_SD} strides."
+YEARS_OLD = {"system": "http://loinc.org", "code": "30525-0", "display": "Age"}
+AGE_TOLD = re.compile(r"(\d{1,3})(\+?)")
 GENDERS = ("male", "female", "other")
 
 
@@ -60,7 +64,7 @@ def write_bundle(session: Session, analysis: Analysis, path: Path) -> None:
 def bundle(session: Session, analysis: Analysis) -> dict[str, Any]:
     """A Bundle of kind collection: the patient, as far as is told, and an Observation per figure."""
     patient_url = _url(session, "patient")
-    resources = [(patient_url, _patient(session))]
+    resources = [(patient_url, _patient(session)), *_age(session, patient_url)]
     conditions = {recording.name: recording.condition for recording in session.recordings}
     started = {recording.name: recording.started or session.started for recording in session.recordings}
     for one in walk_figures(analysis):
@@ -87,6 +91,18 @@ def _patient(session: Session) -> dict[str, Any]:
     if patient.birth_year is not None:
         told["birthDate"] = f"{patient.birth_year:04d}"
     return told
+
+
+def _age(session: Session, patient_url: str) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The age at the visit, where it stands in place of the year of birth."""
+    told = str(session.patient.unknown.get(AGE, ""))
+    if (found := AGE_TOLD.fullmatch(told)) is None:
+        return
+    value: dict[str, Any] = {"value": int(found[1]), "unit": "years", "system": UCUM, "code": "a"}
+    if found[2]:
+        value = {"value": value.pop("value"), "comparator": ">=", **value}
+    observation = {"resourceType": "Observation", "status": "final", "code": {"coding": [YEARS_OLD], "text": "age"}}
+    yield _url(session, "age"), {**observation, "subject": {"reference": patient_url}, "valueQuantity": value}
 
 
 def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str]) -> Iterator[tuple[str, Any]]:

@@ -5,19 +5,26 @@ folder has no key to make one from, so each export draws its own, and two of the
 """
 
 import secrets
+from collections.abc import Collection
 from dataclasses import replace
 from uuid import UUID, uuid4
 
-from app.storage.pseudonyms import Pseudonyms
+from app.storage.pseudonyms import AGE, Pseudonyms, Typed
+from app.wording import later
 from core.results import Analysis, Calibration, JointCalibration
-from core.samples import Session
+from core.samples import Recording, Session
+
+Row = tuple[str, str | float | int | None]
 
 
 def nameless(
-    pseudonyms: Pseudonyms, patient_id: UUID, session: Session, analysis: Analysis
+    pseudonyms: Pseudonyms, patient_id: UUID, session: Session, analysis: Analysis, kept: Collection[Typed] = ()
 ) -> tuple[Session, Analysis]:
-    """Both with our names for patient, recordings and sensors, and without findings, which may quote what was typed."""
-    other = pseudonyms.session(patient_id, session)
+    """Both with our names for patient, recordings and sensors, and without findings, which may quote what was typed.
+
+    Of what was typed freely only what is `kept` stays.
+    """
+    other = pseudonyms.session(patient_id, session, kept)
     pairs = list(zip(session.recordings, other.recordings, strict=True))
     names = {old.name: new.name for old, new in pairs}
     folders = {old.name: new.folder for old, new in pairs}
@@ -38,6 +45,42 @@ def nameless(
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
 
 
-def nameless_once(session: Session, analysis: Analysis) -> tuple[Session, Analysis]:
+def nameless_once(session: Session, analysis: Analysis, kept: Collection[Typed] = ()) -> tuple[Session, Analysis]:
     """As `nameless`, with a pseudonym that nothing else will have."""
-    return nameless(Pseudonyms(secrets.token_bytes(32)), uuid4(), session, analysis)
+    return nameless(once(), uuid4(), session, analysis, kept)
+
+
+def once() -> Pseudonyms:
+    """Pseudonyms that nothing else will have."""
+    return Pseudonyms(secrets.token_bytes(32))
+
+
+def what_is_said(session: Session) -> list[Row]:
+    """Whose a session is, as every format that says any of it does; what is not known is empty."""
+    patient = session.patient
+    return [
+        (later("patient"), patient.code),
+        (later("birth year"), patient.birth_year),
+        (later("age, years"), str(patient.unknown.get(AGE, ""))),
+        (later("sex"), patient.sex),
+        (later("height, m"), patient.height_m),
+        (later("mass, kg"), patient.mass_kg),
+        (later("device"), patient.device),
+        (later("aids"), patient.aids),
+        (later("affected side"), patient.affected_side),
+        (later("prosthetic side"), patient.prosthetic_side),
+        (later("session"), session.started),
+        (later("operator"), session.operator),
+        (later("surface"), session.surface),
+        (later("notes"), session.notes),
+    ]
+
+
+def what_leaves(session: Session) -> list[Row]:
+    """All that a pseudonymised session says beside its figures: whose it is, and each recording."""
+    said = [row for row in what_is_said(session) if row[1] not in ("", None)]
+    return said + [(recording.name, _about(recording)) for recording in session.recordings]
+
+
+def _about(recording: Recording) -> str:
+    return ", ".join(filter(None, [recording.kind.replace("_", " "), recording.condition, recording.started]))

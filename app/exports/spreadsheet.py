@@ -19,6 +19,7 @@ from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
+from app.exports.nameless import what_is_said
 from app.reports.gait_csv import gait_tables
 from app.reports.status import WITHHELD, all_that_is_said, why
 from app.wording import sentence
@@ -65,22 +66,9 @@ def write_spreadsheet(session: Session, analysis: Analysis, path: Path) -> None:
 
 
 def _about(session: Session, analysis: Analysis) -> list[list[Value]]:
-    patient = session.patient
     rows: list[list[Value]] = [[SIMULATED, None]] if analysis.is_simulated else []
+    rows += [list(row) for row in what_is_said(session)]
     rows += [
-        ["patient", patient.code],
-        ["birth year", patient.birth_year],
-        ["sex", patient.sex],
-        ["height, m", patient.height_m],
-        ["mass, kg", patient.mass_kg],
-        ["device", patient.device],
-        ["aids", patient.aids],
-        ["affected side", patient.affected_side],
-        ["prosthetic side", patient.prosthetic_side],
-        ["session", session.started],
-        ["operator", session.operator],
-        ["surface", session.surface],
-        ["notes", session.notes],
         ["method", str(analysis.method)],
         ["software", software()],
         ["use", RESEARCH],

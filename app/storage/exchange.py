@@ -4,7 +4,7 @@ Samples become one journal per recording, one source per site; what `session.tom
 every bit of a float64, and every key and column, those that mean nothing to us included.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from app.storage.journal.header import RESTORE, JournalRefusedError
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary, Report
-from app.storage.pseudonyms import Pseudonyms
+from app.storage.pseudonyms import Pseudonyms, Typed
 from app.storage.recovery import Interrupted
 from app.storage.stored import (
     Action,
@@ -43,6 +43,7 @@ from devices.source import SourceInfo
 DRIVER, VERSION = "session-folder", "1"
 OWN_NAME = "sensor"  # the setting that holds what the folder calls the sensor
 WHOLE = {"is_whole": True}  # of an export, in the audit: it was not broken off
+READ_BACK = (RecordingState.CLOSED, RecordingState.RECOVERED)
 PIECE_ROWS = 10_000  # so that a long recording is not held a second time
 
 
@@ -110,8 +111,7 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
     OSError
         A file cannot be read.
     """
-    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
-    wanted = [recording for recording in visit.recordings if recording.state in usable]
+    wanted = [recording for recording in visit.recordings if recording.state in READ_BACK]
     recordings, findings = [], list(visit.told.findings)
     for number, recording in enumerate(wanted):
         report(number / len(wanted), recording.told.name)
@@ -150,9 +150,12 @@ def export_session(
     decoders: Decoders,
     report: Report,
     *,
+    kept: Collection[Typed] = (),
     is_identified: bool = False,
 ) -> None:
     """Write a session as a session folder, pseudonymised or as it is; the audit says which before anything is written.
+
+    Pseudonymised, of what was typed freely only what is `kept` leaves.
 
     Raises
     ------
@@ -165,10 +168,11 @@ def export_session(
         raise LibraryError("There is something in this folder already", "Choose an empty folder, or a new one")
     visit = opened.library.sessions.get(session_id)
     subject = about("session", session_id)
-    opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified)
+    typed = "all" if is_identified else ", ".join(sorted(kept))
+    opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified, typed=typed)
     session = session_with_samples(opened, visit, decoders, report)
     if not is_identified:
-        session = Pseudonyms(opened.data_key).session(visit.patient_id, session)
+        session = Pseudonyms(opened.data_key).session(visit.patient_id, session, kept)
     report(1.0, "writing")
     write_session(session, folder)
 

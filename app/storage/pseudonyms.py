@@ -2,28 +2,42 @@
 
 A patient's pseudonym and the shift of the dates come from the library's key and the patient's row, so every export of
 one patient has the same ones: visits can still be put together and in order, and nobody without the key gets back.
-What may say a name is left out: notes, operator, keys and columns that mean nothing to us. Recordings get the names
-that we give, sensors are numbered. What is needed to read the angles stays as it was typed: year of birth, sex,
-height, mass, sides, device, aids, surface and conditions. This is pseudonymous, not anonymous: gait itself can be
-recognised.
+What may say a name is left out: notes, operator, software, keys and columns that mean nothing to us. Recordings get the
+names that we give, sensors and their clocks are numbered. In place of the year of birth stands the age at the visit,
+90 and older as one. What somebody typed freely, device, aids, surface and conditions, leaves only where it is asked
+for, each by itself; without their words conditions are numbered, so that equal ones are still equal. Sex, height, mass
+and sides stay. This is pseudonymous, not anonymous: gait itself can be recognised.
 """
 
 import base64
 import datetime
 import hmac
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
+from enum import StrEnum
 from uuid import UUID
 
 from cryptography.hazmat.primitives.hashes import SHA256
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
 from app.storage.desk import DEMO
-from core.samples import Recording, Session
+from core.samples import Patient, Recording, SensorInfo, Session
 from devices.files.imports import folder_for, free_name
 
+AGE = "age_years"  # among what a patient's table of a session folder may hold beside what we read of it
+OLDEST_TOLD = 89  # older people are so few that the age alone says who it is
+SEXES = ("female", "male", "other")
 LETTERS = 8  # of a pseudonym: 40 bits, so that two of ten thousand patients hardly ever share one
 LEAST_SHIFT, MOST_SHIFT = datetime.timedelta(days=30), datetime.timedelta(days=730)
+
+
+class Typed(StrEnum):
+    """What is typed freely, and may say a name."""
+
+    DEVICE = "device"
+    AIDS = "aids"
+    SURFACE = "surface"
+    CONDITIONS = "conditions"
 
 
 class Pseudonyms:
@@ -48,27 +62,40 @@ class Pseudonyms:
         except (ValueError, OverflowError):
             return ""
 
-    def session(self, patient_id: UUID, session: Session) -> Session:
-        """`session` without what may say whose it is."""
-        sensors = _numbered(session)
+    def session(self, patient_id: UUID, session: Session, kept: Collection[Typed] = ()) -> Session:
+        """`session` without what may say whose it is; of what was typed freely only what is `kept`."""
+        sensors, conditions = _numbered(session), _conditions(session, is_kept=Typed.CONDITIONS in kept)
+        clocks = _numbers("clock", (info.clock for info in session.sensors.values()))
         nameless = replace(
             session,
             recordings=(),
-            patient=replace(session.patient, code=self.code(patient_id, session.is_simulated), unknown={}),
-            sensors={
-                site: replace(info, serial=sensors.get(info.serial, ""), unknown={})
-                for site, info in session.sensors.items()
-            },
+            patient=self._patient(patient_id, session, kept),
+            sensors={site: _sensor(info, sensors, clocks) for site, info in session.sensors.items()},
             started=self.shifted(patient_id, session.started),
             operator="",
+            surface=session.surface if Typed.SURFACE in kept else "",
             notes="",
+            software="",
             findings=(),
             unknown={},
         )
         for recording in session.recordings:
             own = self._recording(patient_id, recording, free_name(nameless, recording.kind), sensors)
+            own = replace(own, condition=conditions.get(recording.condition, ""))
             nameless = replace(nameless, recordings=(*nameless.recordings, own))
         return nameless
+
+    def _patient(self, patient_id: UUID, session: Session, kept: Collection[Typed]) -> Patient:
+        told, age = session.patient, age_in_words(session)
+        return replace(
+            told,
+            code=self.code(patient_id, session.is_simulated),
+            birth_year=None,
+            sex=told.sex if told.sex in SEXES else "",
+            device=told.device if Typed.DEVICE in kept else "",
+            aids=told.aids if Typed.AIDS in kept else "",
+            unknown={AGE: age} if age else {},
+        )
 
     def _recording(self, patient_id: UUID, recording: Recording, name: str, sensors: Mapping[str, str]) -> Recording:
         return replace(
@@ -87,8 +114,31 @@ class Pseudonyms:
         return hmac.digest(self._key, what.encode() + patient_id.bytes, "sha256")
 
 
-def _numbered(session: Session) -> dict[str, str]:
+def age_in_words(session: Session) -> str:
+    """The age in the year of the visit, "90+" from 90 on; empty where it is not known."""
+    born, year = session.patient.birth_year, session.started[:4]
+    if born is None or not (year.isascii() and year.isdigit()) or int(year) < born:
+        return ""
+    age_years = int(year) - born
+    return str(age_years) if age_years <= OLDEST_TOLD else f"{OLDEST_TOLD + 1}+"
+
+
+def _sensor(info: SensorInfo, names: Mapping[str, str], clocks: Mapping[str, str]) -> SensorInfo:
+    return replace(info, serial=names.get(info.serial, ""), clock=clocks.get(info.clock, ""), unknown={})
+
+
+def _conditions(session: Session, *, is_kept: bool) -> Mapping[str, str]:
+    typed = [recording.condition for recording in session.recordings]
+    return {one: one for one in typed} if is_kept else _numbers("condition", typed)
+
+
+def _numbered(session: Session) -> Mapping[str, str]:
     """A name of ours for each sensor: another program may have called it after whom it was worn by."""
     names = [info.serial for info in session.sensors.values() if info.serial]
     names += [block.sensor for recording in session.recordings for block in recording.imu.values()]
     return {name: f"sensor {number}" for number, name in enumerate(dict.fromkeys(names), 1)}
+
+
+def _numbers(word: str, names: Iterable[str]) -> Mapping[str, str]:
+    """A number for each name that says something, the same for the same."""
+    return {name: f"{word} {number}" for number, name in enumerate(dict.fromkeys(filter(None, names)), 1)}

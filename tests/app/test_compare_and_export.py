@@ -18,7 +18,7 @@ from core.samples import Session
 from core.verdicts.gates import judged
 from core.verdicts.measurement_error import Judgement
 from core.verdicts.quantities import PARAMETERS
-from devices.files.session_folder import write_session
+from devices.files.session_folder import read_session, write_session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -184,6 +184,26 @@ def test_export_writes_the_formats_asked_for(
     assert main(["export", str(folders[1]), "--as", "mot", "--out", str(out)]) == 2
     assert "something here already" in capsys.readouterr().err
     shutil.rmtree(out)
+    assert main(["export", str(folders[1]), "--as", "mot", "--keep", "device,mood", "--out", str(out)]) == 2
+    assert "mood is not among what is typed" in capsys.readouterr().err
     assert main(["export", str(folders[1]), "--as", "mot,doc", "--out", str(out)]) == 2
     assert "doc is no format" in capsys.readouterr().err
     assert not out.exists()
+
+
+def test_export_says_what_would_leave_and_writes_nothing(
+    folders: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = []
+    listed = list(tmp_path.iterdir())
+    for keep in ("", "conditions"):
+        assert main(["export", str(folders[1]), "--as", "xlsx", "--keep", keep, "--preview"]) == 0
+        said.append(capsys.readouterr().out)
+    typed = {recording.condition for recording in read_session(folders[1]).recordings} - {""}
+    assert typed
+    assert not [one for one in typed if one in said[0]]
+    assert all(one in said[1] for one in typed)
+    assert "Nothing was written." in said[0]
+    assert list(tmp_path.iterdir()) == listed
+    assert main(["export", str(folders[1]), "--as", "xlsx", "--identified", "--preview"]) == 2
+    assert "with identity all leaves" in capsys.readouterr().err

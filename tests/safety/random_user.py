@@ -53,6 +53,7 @@ WITH_CTRL = (
     *(Key.Key_0, Key.Key_F, Key.Key_N, Key.Key_S, Key.Key_P, Key.Key_Z, Key.Key_A, Key.Key_V, Key.Key_D, Key.Key_O),
 )
 SIZES = ((640, 480), (800, 600), (1024, 700), (1280, 800), (1600, 1000), (2200, 1300))
+LONGEST_TYPED = 60  # letters, key by key
 WALK_STEPS = (10, 40)  # of the user's, while a walk is recorded
 COMMENTS = ("Walks further than in spring.", "The left foot drags.", "New socket since Monday.")
 
@@ -110,9 +111,9 @@ class RandomUser:
         self.click(line)
         if QApplication.focusWidget() is line:
             self.press(Key.Key_A, CTRL)
-            if text.isascii() and text.isprintable():
+            if len(text) <= LONGEST_TYPED and text.isascii() and text.isprintable():
                 QTest.keyClicks(line, text)
-            else:  # as an input method gives it
+            else:  # at once, as it is pasted or an input method gives it
                 self.press(Key.Key_Delete)
                 event = QInputMethodEvent("", [])
                 event.setCommitString(text.encode("utf-8", "ignore").decode())

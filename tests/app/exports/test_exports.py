@@ -3,23 +3,32 @@
 import io
 import json
 import zipfile
+from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
 import pytest
 
 from app.exports import exports
-from app.exports.exports import Format, export_from_folder, export_from_library
+from app.exports.exports import (
+    Format,
+    export_from_folder,
+    export_from_library,
+    preview_from_folder,
+    preview_from_library,
+)
 from app.storage.audit import about
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.keys import Cost, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
 from app.storage.stored import Action, LibraryError, Operator, Role
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
+from devices.files.session_folder import write_session
 
 NAME = "Miller"
 
@@ -66,6 +75,88 @@ def test_no_name_leaves_unless_identity_is_asked_for(
     assert NAME in everything_in(tmp_path / "identified")
 
 
+PLANTED = {
+    Typed.DEVICE: "Kniegelenk-Qx1",
+    Typed.AIDS: "Gehstock-Qx2",
+    Typed.SURFACE: "Flurboden-Qx3",
+    Typed.CONDITIONS: "Ausrichtung-Qx4",
+}
+NEVER = ("Operateur-Qx5", "Notiz-Qx6", "Programm-Qx7", "Uhr-Qx8", "Geschlecht-Qx9", "birth", NAME)
+
+
+@pytest.fixture(scope="session")
+def planted(visit: tuple[Session, Analysis]) -> tuple[Session, Analysis]:
+    """The visit with a word in everything that can be typed."""
+    session, analysis = visit
+    operator, notes, software, clock, sex, *_ = NEVER
+    session = replace(
+        session,
+        patient=replace(
+            session.patient, device=PLANTED[Typed.DEVICE], aids=PLANTED[Typed.AIDS], sex=sex, unknown={"name": NAME}
+        ),
+        recordings=tuple(replace(r, condition=PLANTED[Typed.CONDITIONS]) for r in session.recordings),
+        sensors={site: replace(info, clock=clock) for site, info in session.sensors.items()},
+        surface=PLANTED[Typed.SURFACE],
+        operator=operator,
+        notes=notes,
+        software=software,
+    )
+    return session, analysis
+
+
+@pytest.mark.parametrize("kept", [(), *((one,) for one in Typed), tuple(Typed)])
+def test_what_is_typed_freely_leaves_only_where_it_is_ticked(
+    planted: tuple[Session, Analysis], tmp_path: Path, kept: tuple[Typed, ...]
+) -> None:
+    """In every byte of every file, and in what is shown before."""
+    export_from_folder(*planted, list(Format), tmp_path, kept=kept)
+    write_session(Pseudonyms(bytes(32)).session(uuid4(), planted[0], kept), tmp_path / "session")
+    shown = " ".join(str(value) for _, value in preview_from_folder(planted[0], kept))
+    for said in (everything_in(tmp_path), shown):
+        assert [one for one, word in PLANTED.items() if word in said] == list(kept)
+        assert not [word for word in NEVER if word in said]
+
+
+def test_all_that_was_typed_leaves_with_identity(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+    """So that the words that must not leave above are words that could."""
+    export_from_folder(*planted, [Format.XLSX, Format.FHIR], tmp_path, is_identified=True)
+    said = everything_in(tmp_path)
+    assert not [word for word in (*PLANTED.values(), NEVER[0], NEVER[1], "birth", NAME) if word not in said]
+
+
+def test_an_age_leaves_in_place_of_the_year_of_birth(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+    export_from_folder(*planted, [Format.XLSX, Format.FHIR], tmp_path)
+    assert ("age, years", "76") in preview_from_folder(planted[0])
+    about = everything_in(tmp_path)
+    assert "age, years" in about
+    resources = [one["resource"] for one in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
+    assert "birthDate" not in resources[0]
+    (age,) = (one for one in resources if one.get("code", {}).get("text") == "age")
+    assert age["valueQuantity"]["value"] == 76
+
+
+def test_people_of_ninety_and_more_are_of_one_age(planted: tuple[Session, Analysis], tmp_path: Path) -> None:
+    session, analysis = planted
+    for born, age in ((1937, "89"), (1936, "90+"), (1920, "90+"), (2027, ""), (None, "")):
+        assert age_in_words(replace(session, patient=replace(session.patient, birth_year=born))) == age
+    export_from_folder(
+        replace(session, patient=replace(session.patient, birth_year=1920)), analysis, [Format.FHIR], tmp_path
+    )
+    resources = [one["resource"] for one in json.loads((tmp_path / "fhir_bundle.json").read_text())["entry"]]
+    (age,) = (one for one in resources if one.get("code", {}).get("text") == "age")
+    assert (age["valueQuantity"]["value"], age["valueQuantity"]["comparator"]) == (90, ">=")
+
+
+def test_conditions_without_their_words_are_numbered(planted: tuple[Session, Analysis]) -> None:
+    session = planted[0]
+    typed = ("Anna barefoot", "", "Anna barefoot", "shoes of Bob")
+    recordings = tuple(
+        replace(session.recordings[0], name=str(number), condition=one) for number, one in enumerate(typed)
+    )
+    told = Pseudonyms(bytes(32)).session(uuid4(), replace(session, recordings=recordings))
+    assert [one.condition for one in told.recordings] == ["condition 1", "", "condition 1", "condition 2"]
+
+
 def test_a_session_of_no_library_gets_another_pseudonym_each_time(
     visit: tuple[Session, Analysis], tmp_path: Path
 ) -> None:
@@ -96,7 +187,22 @@ def test_a_library_notes_what_left_it_and_gives_the_same_pseudonym(
         noted = opened.library.audit.entries(about("session", session_id))
         told = [json.loads(entry.details) for entry in noted if entry.action == Action.EXPORT]
         assert [one["format"] for one in told] == ["fhir", "mot", "fhir", "mot"]
-        assert not any(one["is_identified"] for one in told)
+        assert not any(one["is_identified"] or one["typed"] for one in told)
+        shown = preview_from_library(opened, session_id)
+        assert all(str(value) in said[0] for name, value in shown if name in ("patient", "sex"))
+        assert NAME not in str(shown)
+        export_from_library(
+            opened,
+            session_id,
+            [Format.XLSX],
+            tmp_path,
+            {},
+            silent,
+            analysed=lambda _: analysis,
+            kept=[Typed.CONDITIONS],
+        )
+        noted = opened.library.audit.entries(about("session", session_id))
+        assert json.loads(noted[-1].details)["typed"] == "conditions"
         with pytest.raises(LibraryError):
             export_from_library(opened, uuid4(), [Format.MOT], tmp_path, {}, silent)
 

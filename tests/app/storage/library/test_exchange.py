@@ -19,7 +19,7 @@ from app.storage.exchange import export_session, import_session, session_with_sa
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
 from app.storage.opened import OpenedLibrary
-from app.storage.pseudonyms import Pseudonyms
+from app.storage.pseudonyms import AGE, Pseudonyms, Typed, age_in_words
 from app.storage.stored import Action, LibraryError, RecordingState
 from core.body import Joint, Site
 from core.findings import Finding, Severity
@@ -297,8 +297,10 @@ def test_a_pseudonym_and_a_shift_are_a_patients_own_and_stay() -> None:
 
 
 def test_samples_and_clinical_facts_pass_the_pseudonyms(walked: Session) -> None:
-    told = Pseudonyms(bytes(32)).session(UUID(int=1), walked)
-    assert told.patient == replace(walked.patient, code=told.patient.code, unknown={})
+    told = Pseudonyms(bytes(32)).session(UUID(int=1), walked, [Typed.CONDITIONS])
+    age = {AGE: age_in_words(walked)} if age_in_words(walked) else {}
+    without = replace(walked.patient, code=told.patient.code, birth_year=None, device="", aids="", unknown=age)
+    assert told.patient == without
     assert (told.zero_rad, told.turned_sign, told.is_simulated) == (walked.zero_rad, walked.turned_sign, True)
     assert told.patient.code.startswith("DEMO-")
     for before, after in zip(walked.recordings, told.recordings, strict=True):
