@@ -24,6 +24,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,7 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
     command += ["--seconds", f"{seconds:.0f}", "--end", end]
     environment = {**os.environ, **{home: str(place / home.lower()) for home in HOMES}}
     environment.pop("DISPLAY", None)
-    errors = place / "errors.txt"
+    errors, began = place / "errors.txt", datetime.now().astimezone().isoformat(timespec="seconds")
     with errors.open("w") as told:
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=told, text=True, env=environment)
         watchdog_s = time.monotonic() + seconds + ENDS_WITHIN_S
@@ -95,7 +96,7 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
         kind = "hang" if "Timeout (" in errors.read_text() else "crash"
         outcome.note({"fault": kind, "seed": seed, "code": code, "what": errors.read_text()[-TAIL:]})
     outcome.did["lives"] += 1
-    for what in _left(place / "library", is_closed=end == "close" and code == wanted):
+    for what in _left(place / "library", began if end == "close" and code == wanted else None):
         outcome.note({"fault": "left behind", "seed": seed, "end": end, "what": what})
 
 
@@ -111,8 +112,8 @@ def _hear(line: str, seed: str, outcome: Outcome) -> None:
         outcome.longest_held_up_s = max(outcome.longest_held_up_s, told.get("longest_held_up_s", 0.0))
 
 
-def _left(library: Path, *, is_closed: bool) -> list[str]:
-    """What must not be so of a library that nobody has open."""
+def _left(library: Path, closed_since: str | None) -> list[str]:
+    """What must not be so of a library that nobody has open, where it was closed after a life that began then."""
     if not (library / KEYS).exists():
         return []
     try:
@@ -128,7 +129,7 @@ def _left(library: Path, *, is_closed: bool) -> list[str]:
         )
     ]
     faults += [f"{name} has no journal {file}" for name, file in files if not (library / "recordings" / file).exists()]
-    return faults + (left_open(held) if is_closed else [])
+    return faults + (left_open(held, closed_since) if closed_since is not None else [])
 
 
 def play(seconds: float, seed: int, folder: Path) -> Outcome:

@@ -268,12 +268,10 @@ def _of_banner(text: str, held: HeldLibrary) -> Iterator[str]:
         yield f"the banner says {text!r}, there is no journal"
 
 
-def left_open(held: HeldLibrary) -> list[str]:
-    """The recordings that nobody ends any more, once nothing is being recorded."""
-    return [
-        f"{name} of {started} is held as open"
-        for name, started in held.ask("SELECT name, started FROM recordings WHERE state = 'open'")
-    ]
+def left_open(held: HeldLibrary, since: str = "") -> list[str]:
+    """The recordings, begun at an ISO time or later, that nobody ends any more once nothing is being recorded."""
+    rows = held.ask("SELECT name, started FROM recordings WHERE state = 'open' AND started >= ?", since)
+    return [f"{name} of {started} is held as open" for name, started in rows]
 
 
 def _number(words: str) -> int:

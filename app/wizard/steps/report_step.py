@@ -1,8 +1,10 @@
 """What goes into the patient's file: the report as it will print, and the results as other programs read them."""
 
 import logging
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime
+from itertools import combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -26,6 +28,7 @@ from app.workers.library_desk import LibraryDesk
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
+    from app.pages.leaving_dialog import Rows
     from app.reports.patient_report.document import Preview
     from app.reports.patient_report.request import ReportRequest
     from app.reports.patient_report.request import Visit as ReportVisit
@@ -46,6 +49,7 @@ class ReportStep(Step):
         self._dialog: QFileDialog | None = None
         self._saved: Path | None = None
         self._is_saving = False
+        self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
         self._comment: str | None = None  # typed here, not yet known to the session's row
         self._clinic = ""
         self._earlier: tuple[UUID, ReportVisit] | None = None  # as was read last
@@ -107,6 +111,26 @@ class ReportStep(Step):
         if not self._can_save() or self._is_saving:
             return
         self.page.report.flush()
+        session = self._visit.session
+        if session is None or not set(OTHERS) & set(self.page.report.formats.chosen):
+            self._ask_where()
+            return
+        session_id = session.id
+        self._desk.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
+
+    def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
+        """Show what leaves without the name before anybody says where to."""
+        from app.pages.leaving_dialog import LeavingDialog
+
+        dialog = LeavingDialog(self._look, previews, self.page)
+        dialog.confirmed.connect(self._on_leaving_confirmed)
+        dialog.open()
+
+    def _on_leaving_confirmed(self, kept: frozenset[str]) -> None:
+        self._kept = kept
+        self._ask_where()
+
+    def _ask_where(self) -> None:
         self._dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
         self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
@@ -271,7 +295,7 @@ class ReportStep(Step):
         if session is None or analysis is None or stored is None:
             return
         out, session_id = Path(folder), stored.id
-        chosen = self.page.report.formats.chosen
+        chosen, kept = self.page.report.formats.chosen, self._kept
         self._is_saving = True
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:
@@ -281,8 +305,10 @@ class ReportStep(Step):
             from app.reports.patient_report.report_file import write_visits
             from app.reports.result_folder import REPORT, check_place, write_results, written_beside
             from app.storage.audit import about
+            from app.storage.pseudonyms import Typed
             from app.storage.stored import Action, LibraryError
 
+            typed = [Typed(one) for one in sorted(kept)]
             report(0.0, tr("writing"))
             try:
                 check_place(out, opened.folder)
@@ -297,7 +323,14 @@ class ReportStep(Step):
                     formats = [Format(name) for name in OTHERS if name in chosen]
                     if formats:
                         export_from_library(
-                            opened, session_id, formats, beside, DECODERS, report, analysed=lambda _session: analysis
+                            opened,
+                            session_id,
+                            formats,
+                            beside,
+                            DECODERS,
+                            report,
+                            analysed=lambda _session: analysis,
+                            kept=typed,
                         )
             except FileRefusedError as refusal:
                 what, remedy = (filled(said, refusal.values) for said in (refusal.what, refusal.remedy))
@@ -317,6 +350,20 @@ class ReportStep(Step):
     def _on_refused(self, what: str, remedy: str) -> None:
         self._is_saving = False
         self.told.emit(what, remedy)
+
+
+def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
+    """For each choice of what was typed freely all that then leaves without the name, beside the figures."""
+    from app.exports.exports import preview_from_library
+    from app.storage.pseudonyms import Typed
+
+    choices = [chosen for count in range(len(Typed) + 1) for chosen in combinations(Typed, count)]
+    return {
+        frozenset(map(str, chosen)): [
+            (name, str(value)) for name, value in preview_from_library(opened, session_id, chosen)
+        ]
+        for chosen in choices
+    }
 
 
 def _words_of(line: "SessionLine") -> str:

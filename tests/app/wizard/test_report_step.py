@@ -1,5 +1,6 @@
 """The report step shows what will print, keeps the clinician's words, and saves the files that were chosen."""
 
+import zipfile
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -8,6 +9,7 @@ import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.pages.leaving_dialog import LeavingDialog
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.theme import Look
@@ -72,6 +74,69 @@ def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, tmp_path: Pa
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
+
+
+def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
+    """What is asked before files without a name are saved."""
+    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is not None, timeout=WAIT_MS)
+    dialog = step.page.findChild(LeavingDialog)
+    assert isinstance(dialog, LeavingDialog)
+    return dialog
+
+
+def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_is_ticked(
+    qtbot: QtBot, step: ReportStep, visit: Visit, simulated_session: Session, tmp_path: Path
+) -> None:
+    state, session = visit.desk.state, visit.session
+    assert state is not None
+    assert session is not None
+    library = state.library.library
+    patients, patient = library.patients, library.patients.get(session.patient_id)
+    told = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
+    imported = import_session(state.library, told, lambda _share, _what: None, patient.told.code)
+    visit.session = library.sessions.get(imported.session_id)
+    patients.change(patient, replace(patient.told, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
+    step.page.report.formats.choose(["xlsx", "fhir"])
+    step.on_primary()
+    dialog = dialog_of(qtbot, step)
+    shown = dict(dialog.shown)
+    assert shown["patient"] != patient.told.code
+    assert "device" not in shown
+    assert "birth year" not in shown
+    assert shown["age, years"] == "76"
+    dialog.typed.buttons[0].click()
+    assert dict(dialog.shown)["device"] == "Qx1 knee"
+    dialog.go.click()
+    qtbot.waitUntil(lambda: step._dialog is not None, timeout=WAIT_MS)
+    assert step._dialog is not None
+    step._dialog.close()
+    out = tmp_path / "results"
+    chosen: Callable[[str], None] = step._on_folder_selected
+    chosen(str(out))
+    qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
+    with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
+        said = b"".join(book.read(name) for name in book.namelist()).decode()
+    assert shown["patient"] in said
+    assert "Qx1 knee" in said
+    assert "Qx2 stick" not in said
+    assert patient.told.code not in said
+
+
+def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep) -> None:
+    step.page.report.formats.choose(["csv", "rrd"])
+    step.on_primary()
+    assert step._dialog is not None
+    assert step.page.findChild(LeavingDialog) is None
+    step._dialog.close()
+
+
+def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
+    step.page.report.formats.choose(["fhir"])
+    step.on_primary()
+    dialog = dialog_of(qtbot, step)
+    dialog.cancel.click()
+    qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
+    assert step._dialog is None
 
 
 @pytest.mark.endurance

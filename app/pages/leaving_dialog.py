@@ -1,0 +1,106 @@
+"""What would leave without the name? All of it, before it is written; what was typed freely only where it is ticked."""
+
+from collections.abc import Mapping, Sequence
+
+from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QColor, QPalette
+from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
+
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.chips import Chips
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wording import tr
+
+SIZE = (640, 600)
+Rows = Sequence[tuple[str, str]]
+
+
+class LeavingDialog(QDialog):
+    """`previews`: for each choice of what was typed freely all that then leaves beside the figures, name and value."""
+
+    confirmed = Signal(object)  # frozenset of keys: what was typed freely and leaves
+
+    def __init__(self, look: Look, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
+        super().__init__(parent)
+        self._look, self._previews = look, previews
+        self.setWindowTitle(tr("What leaves without the name"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self._title = Text(look, tr("What leaves without the name"), size=20, weight=SEMIBOLD, wraps=True)
+        self._lead = Text(
+            look,
+            tr(
+                "The XLSX, C3D, OpenSim and FHIR files say this beside their figures, and nothing more. The report "
+                "that is saved with them names the code: it is for the patient's file."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
+        self._also = Text(
+            look, tr("Typed freely, and may say a name: leaves only if ticked"), weight=MEDIUM, wraps=True
+        )
+        self.typed = Chips(look, tr("Leaves as it was typed"), self._options())
+        self._table = QWidget()
+        self._grid = QGridLayout(self._table)
+        self._grid.setColumnStretch(1, 1)
+        self.go = Button(look, tr("Choose the folder"), Kind.PRIMARY)
+        self.cancel = Button(look, tr("Cancel"), Kind.SECONDARY)
+        self._build()
+        self.typed.turned.connect(self._show)
+        self.go.clicked.connect(self._on_go_clicked)
+        self.cancel.clicked.connect(self.reject)
+        self._show()
+        self.resize(look.theme.px(SIZE[0]), look.theme.px(SIZE[1]))
+
+    @property
+    def shown(self) -> list[tuple[str, str]]:
+        """What stands in the table."""
+        return [(self._word(row, 0), self._word(row, 1)) for row in range(self._grid.rowCount()) if self._word(row, 0)]
+
+    def _options(self) -> list[tuple[str, str]]:
+        return [
+            ("device", tr("Device")),
+            ("aids", tr("Aids and footwear")),
+            ("surface", tr("Surface")),
+            ("conditions", tr("Conditions")),
+        ]
+
+    def _build(self) -> None:
+        scroll = QScrollArea()
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setAccessibleName(tr("All that leaves beside the figures"))
+        scroll.setWidget(self._table)
+        buttons = QHBoxLayout()
+        buttons.addStretch(1)
+        buttons.addWidget(self.cancel)
+        buttons.addWidget(self.go)
+        column = QVBoxLayout(self)
+        for part in (self._title, self._lead, self._also, self.typed):
+            column.addWidget(part)
+        column.addWidget(scroll, 1)
+        column.addLayout(buttons)
+        px, colours = self._look.theme.px, self._look.theme.colours
+        column.setContentsMargins(px(24), px(20), px(24), px(20))
+        column.setSpacing(px(12))
+        palette = self.palette()
+        palette.setColor(QPalette.ColorRole.Window, QColor(colours.surface))
+        self.setPalette(palette)
+
+    def _show(self) -> None:
+        while (item := self._grid.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for row, (name, value) in enumerate(self._previews[frozenset(self.typed.chosen)]):
+            self._grid.addWidget(Text(self._look, tr(name), tone="ink2"), row, 0, Qt.AlignmentFlag.AlignTop)
+            self._grid.addWidget(Text(self._look, value, wraps=True), row, 1)
+
+    def _word(self, row: int, column: int) -> str:
+        item = self._grid.itemAtPosition(row, column)
+        widget = item.widget() if item is not None else None
+        return widget.text() if isinstance(widget, Text) else ""
+
+    def _on_go_clicked(self) -> None:
+        self.confirmed.emit(frozenset(self.typed.chosen))
+        self.accept()
