@@ -72,6 +72,7 @@ class Home(QWidget):
         self._look, self._desk, self._settings = look, desk, settings
         self._state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
+        self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
         self._to_import: Session | None = None
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
@@ -115,7 +116,7 @@ class Home(QWidget):
         self._state = state
         self.banner.hide()
         self.page.search.clear()
-        self.page.show_patients(())
+        self.page.forget_patients()
         if self._settings_desk is not None:
             self._settings_desk.show_library(state)
         if state.is_end_lost:
@@ -135,9 +136,8 @@ class Home(QWidget):
         self.toast.hide()
         self.banner.hide()
         self.page.search.clear()
-        self.page.show_patients(())
+        self.page.forget_patients()
         self.page.show_patient("", "")
-        self.page.show_sessions(())
 
     def refresh(self, chosen: UUID | None = None) -> None:
         """Read the patients anew, and choose one of them, else the one that was chosen."""
@@ -313,6 +313,7 @@ class Home(QWidget):
         patient = self._patients.get(patient_id) if patient_id is not None else None
         self._show()
         if patient is None:
+            self._sessions_of = None
             self.page.show_patient("", "")
             return
         told = patient.told
@@ -320,6 +321,9 @@ class Home(QWidget):
         encrypted = self._state is not None and not self._state.is_demonstration
         self.page.show_patient(told.code, about, tr("stored on this computer") if encrypted else tr("simulated"))
         own = patient.id
+        if own != self._sessions_of:  # what stands there is another patient's
+            self._sessions_of = own
+            self.page.forget_sessions()
 
         def read(opened: "OpenedLibrary") -> _Sessions:
             return _sessions_of(opened, own)

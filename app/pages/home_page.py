@@ -37,7 +37,7 @@ class HomePage(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._patients: Sequence[PatientLine] = ()
+        self._patients: Sequence[PatientLine] | None = None  # not read yet
         self._title = Text(look, tr("Patients"), size=26, weight=SEMIBOLD)
         self._count = Text(look, tone="ink2")
         self.search = _Search(look)
@@ -53,7 +53,7 @@ class HomePage(QWidget):
         self._none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
         self._build()
         self._connect()
-        self.show_patients(())
+        self.forget_patients()
         self.show_patient("", "")
         self._on_look_changed()
 
@@ -76,6 +76,17 @@ class HomePage(QWidget):
 
     def focus(self) -> None:
         self.search.setFocus()
+
+    def forget_patients(self) -> None:
+        """Show nobody, and do not say that there is nobody: the library has still to be read."""
+        self._patients = None
+        self._filter(None)
+        self.forget_sessions()
+
+    def forget_sessions(self) -> None:
+        """Show no session, and do not say that there is none: those of another patient are still to be read."""
+        self.show_sessions(())
+        self._none_yet.hide()
 
     def show_patients(self, lines: Sequence[PatientLine], chosen: UUID | None = None) -> None:
         """Show all patients there are, with one of them chosen, else the first that the search lets through."""
@@ -179,7 +190,7 @@ class HomePage(QWidget):
 
     def _filter(self, chosen: UUID | None) -> None:
         wanted = self.search.text().strip().casefold().split()
-        found: list[Line] = [line for line in self._patients if all(word in line.searched for word in wanted)]
+        found: list[Line] = [line for line in self._patients or () if all(word in line.searched for word in wanted)]
         ids = {line.id for line in found}
         before = self.patient_id
         if chosen not in ids:
@@ -188,7 +199,7 @@ class HomePage(QWidget):
         self._count.setText(str(len(found)) if self._patients else "")
         self._count.setAccessibleName(tr_n("{count} patient", "{count} patients", len(found)).format(count=len(found)))
         self.patients.setVisible(bool(found))
-        self._nobody.setVisible(not found)
+        self._nobody.setVisible(not found and self._patients is not None)
         self._nobody.show_reason(bool(self._patients))
         if self.patient_id is None:
             self.patient_chosen.emit(None)

@@ -31,7 +31,8 @@ class LeavingDialog(QDialog):
             look,
             tr(
                 "The XLSX, C3D, OpenSim and FHIR files say this beside their figures, and nothing more. The report "
-                "that is saved with them names the code: it is for the patient's file."
+                "that is saved with them names the code: it is for the patient's file. Dates are moved, "
+                "by as much for every visit of the patient."
             ),
             tone="ink2",
             wraps=True,
@@ -43,6 +44,7 @@ class LeavingDialog(QDialog):
         self._table = QWidget()
         self._grid = QGridLayout(self._table)
         self._grid.setColumnStretch(1, 1)
+        self._grid.setContentsMargins(0, 0, 0, 0)
         self.go = Button(look, tr("Choose the folder"), Kind.PRIMARY)
         self.cancel = Button(look, tr("Cancel"), Kind.SECONDARY)
         self._build()
@@ -94,7 +96,8 @@ class LeavingDialog(QDialog):
                 widget.deleteLater()
         for row, (name, value) in enumerate(self._previews[frozenset(self.typed.chosen)]):
             self._grid.addWidget(Text(self._look, tr(name), tone="ink2"), row, 0, Qt.AlignmentFlag.AlignTop)
-            self._grid.addWidget(Text(self._look, value, wraps=True), row, 1)
+            self._grid.addWidget(Text(self._look, value, wraps=True), row, 1, Qt.AlignmentFlag.AlignTop)
+        self._grid.setRowStretch(self._grid.rowCount(), 1)
 
     def _word(self, row: int, column: int) -> str:
         item = self._grid.itemAtPosition(row, column)

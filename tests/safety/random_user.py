@@ -70,7 +70,7 @@ class RandomUser:
     def __init__(self, window: "MainWindow", chance: random.Random, place: Path) -> None:
         self._window, self._chance, self._place = window, chance, place
         self._saved = self._waits = 0
-        self._wants: str = ""  # what is done next on home
+        self._last_saved: Path | None = None
         self.did: Callable[[str], None] = print
         self.recovery_key = ""
 
@@ -420,6 +420,9 @@ class RandomUser:
         step: Any = wizard.current
         if step._is_saving:
             return "waits"
+        if step._saved not in (None, self._last_saved):
+            self._last_saved = step._saved
+            self.did("report saved")
         chance = self._chance.random()
         report = step.page.report
         if chance < 0.3 and report.isVisible():

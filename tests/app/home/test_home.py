@@ -445,3 +445,14 @@ def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: Lib
     assert not page._operators.isVisible()
     assert not page._backup.isVisible()
     assert page._access.isVisible()
+
+
+def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_read(qtbot: QtBot, home: Home) -> None:
+    page = home.page
+    visited = next(line.id for line in lines(home) if line.code == "P-0163")
+    page.patients.choose(visited)
+    qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
+    page.patients.choose(next(line.id for line in lines(home) if line.code == "P-0147"))
+    assert sessions(home) == []
+    assert not page._none_yet.isVisible()
+    qtbot.waitUntil(page._none_yet.isVisible, timeout=WAIT_MS)

@@ -118,3 +118,20 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
                 assert spans[0][0] >= 0
                 assert spans[-1][1] <= view.room - 2 * look.theme.px(24)
             assert view.model().index(0, 0).data(Role.LINE) is not None
+
+
+def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
+    assert not page._nobody.isVisible()
+    page.show_patients(())
+    assert page._nobody.isVisible()
+    page.show_patients([patient(1)])
+    page.show_patient("P-0001", "")
+    page.show_sessions(())
+    assert page._none_yet.isVisible()
+    page.show_sessions([session(1, "barefoot")])
+    page.forget_sessions()
+    assert page.sessions.lines.rowCount() == 0
+    assert not page._none_yet.isVisible()
+    page.forget_patients()
+    assert page.patients.lines.rowCount() == 0
+    assert not page._nobody.isVisible()
