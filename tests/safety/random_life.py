@@ -27,6 +27,7 @@ from typing import Any
 os.environ["QT_QPA_PLATFORM"] = "offscreen"
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
+import sqlcipher3.dbapi2 as sqlite
 from PySide6.QtCore import QMessageLogContext, QObject, QSettings, Qt, QTimer, QtMsgType, qInstallMessageHandler
 from PySide6.QtGui import QDrag
 from PySide6.QtTest import QTest
@@ -148,8 +149,11 @@ class RandomLife(QObject):
         if QApplication.activeModalWidget() is not None or self._window.is_covered or (held := self._held()) is None:
             self._doubts.clear()
             return
+        try:
+            now = set(contradictions(self._window, held)) | set(self._left_open(held))
+        except sqlite.OperationalError as refusal:  # the program is just opening or closing it
+            now = {f"the library cannot be read beside: {refusal}"}
         self._compared += 1
-        now = set(contradictions(self._window, held)) | set(self._left_open(held))
         if not self._doubts:
             self._doubts, self._doubted_s, self._has_desk_answered = now, time.monotonic(), False
             if now:
