@@ -36,7 +36,7 @@ from tests.safety.random_user import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, left_open
 
 LIVES = 8  # of one library
-LIFE_S = (40.0, 150.0)
+LIFE_S = (60.0, 300.0)
 KILLED_SHARE = 0.35
 ENDS_WITHIN_S = 120.0
 TAIL = 6000  # letters of what a process said last
