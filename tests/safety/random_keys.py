@@ -32,7 +32,7 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.opened import KEYS
 from devices.files.session_folder import write_session
 from devices.walker import DEMONSTRATION, simulate
-from tests.safety.random_user import OPERATOR, PASSPHRASE
+from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, left_open
 
 LIVES = 8  # of one library

@@ -45,7 +45,8 @@ from app.workers.garbage import GarbageCollector
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.watchdog import Watchdog
-from tests.safety.random_user import OPERATOR, PASSPHRASE, RandomUser
+from tests.safety.random_user import RandomUser
+from tests.safety.random_visits import OPERATOR, PASSPHRASE
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
 
 SPEED = 20.0

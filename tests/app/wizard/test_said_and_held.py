@@ -119,7 +119,7 @@ def test_a_recording_that_nobody_ended_is_seen(held: HeldLibrary, alter: Alter) 
 
 
 @pytest.mark.endurance
-def test_two_lives_of_random_keys_find_nothing(tmp_path: Path) -> None:
+def test_a_minute_of_random_keys_finds_nothing(tmp_path: Path) -> None:
     outcome = play(60.0, 5, tmp_path)
     assert outcome.faults == []
     assert outcome.did["steps"] > 100
