@@ -13,6 +13,7 @@ from contextlib import suppress
 import numpy as np
 
 from app.acquisition.heard_sensor import SensorStatus
+from app.acquisition.heartbeat import Heartbeat, Standstill
 from app.acquisition.preview import LiveWork, Preview
 from app.acquisition.reader import Reader
 from app.storage.journal.writer import JournalSummary, JournalWriter
@@ -36,6 +37,7 @@ class Acquisition:
         self.now_ns, self._begin_ns = now_ns, now_ns()
         self._readers = [Reader(source, now_ns) for source in sources]
         self._preview = Preview(self._readers)
+        self._heartbeat = Heartbeat(lambda: self.now_s, self.lost)
         self._writer: JournalWriter | None = None
         self._stopping = threading.Lock()
 
@@ -60,11 +62,13 @@ class Acquisition:
         for reader in self._readers:
             reader.start()
         self._preview.start()
+        self._heartbeat.start()
 
     def close(self) -> None:
         """Stop reading, and a recording that is being made; close all sources."""
         with suppress(RuntimeError):
             self.stop_recording()
+        self._heartbeat.close()
         self._preview.close()
         for reader in self._readers:
             reader.close()
@@ -95,6 +99,19 @@ class Acquisition:
         """How each sensor is doing."""
         now_s = self.now_s
         return {one.sensor: one for k, reader in enumerate(self._readers) for one in reader.status(k, now_s)}
+
+    def lost(self) -> Mapping[str, int]:
+        """How many samples each sensor lacks so far; nought also where its rate is not known."""
+        return {name: count for reader in self._readers for name, count in reader.lost().items()}
+
+    @property
+    def standstills(self) -> tuple[Standstill, ...]:
+        """When this process stood still since `start`, and heard nobody."""
+        return self._heartbeat.standstills
+
+    def awake_s(self) -> float:
+        """A clock that stands still with this process, give or take half a second."""
+        return self._heartbeat.awake_s()
 
     def latest(self, sensor: str, seconds: float) -> ImuBlock:
         """A sensor's samples of the last `seconds`, 30 at most; none of one that is not known."""

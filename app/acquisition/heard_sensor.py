@@ -76,6 +76,11 @@ class HeardSensor:
         self._count(step_s)
         self.ring.add(time_s, block.gyr_rad_s, block.acc_m_s2)
 
+    @property
+    def lost(self) -> int:
+        """How many samples are missing since it was first heard; none of a sensor whose rate is not known."""
+        return self._lost
+
     def status(self, source: int, told: SensorTold, now_s: float) -> SensorStatus:
         return SensorStatus(
             sensor=self.name,

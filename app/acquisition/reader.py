@@ -82,6 +82,11 @@ class Reader:
         with self._lock:
             return self._sensors[sensor].ring.since(time_s)
 
+    def lost(self) -> Mapping[str, int]:
+        """How many samples each sensor lacks so far."""
+        with self._lock:
+            return {name: heard.lost for name, heard in self._sensors.items()}
+
     def totals(self) -> Mapping[str, int]:
         """How many samples each sensor has sent."""
         with self._lock:

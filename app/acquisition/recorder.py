@@ -20,7 +20,7 @@ from app.storage.bringing_home import bring_home
 from app.storage.exchange import recording_with_samples
 from app.storage.journal.disk import ROOM, Room, Trouble
 from app.storage.journal.payloads import Belonging
-from app.storage.journal.writer import JournalSummary, JournalWriter, State
+from app.storage.journal.writer import JournalStatus, JournalSummary, JournalWriter, State
 from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
@@ -94,6 +94,7 @@ class Recorder:
                 on_trouble=on_trouble,
                 now_ns=acquisition.now_ns,
                 shelter=opened.shelter,
+                awake_s=acquisition.awake_s,
             )
         except BaseException:
             entry.withdraw()
@@ -102,6 +103,11 @@ class Recorder:
         acquisition.record(writer)
         entry.add(writer)
         return cls(acquisition, writer, entry)
+
+    @property
+    def status(self) -> JournalStatus:
+        """How its journal is doing, or was when it was closed."""
+        return self._writer.status
 
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""

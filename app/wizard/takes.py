@@ -1,6 +1,6 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, NamedTuple
@@ -8,8 +8,9 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
-from app.storage.journal.disk import TOLD, Trouble
+from app.storage.journal.disk import Trouble
 from app.storage.stored import RecordingState, StoredRecording, StoredSession
+from app.wizard.losses import NOTHING, Message
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from core.body import Side
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 READ_AGAIN_MS = 2000  # after the library did not answer
 WAITED_MS = 3000  # for a recording to be read back, before the next may begin without it
 MOST_READINGS = 15
-ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +86,11 @@ class Takes(QObject):
         self.ongoing: Ongoing | None = None
         self.every: tuple[Take, ...] = ()
         self._recorder: Recorder | None = None
+        self._latest: Recorder | None = None  # the same, also once it has been stopped
+        self._trouble: Trouble | None = None  # of the latest
+        self._is_without_row = False
+        self._acquisition: Acquisition | None = None
+        self._lost_before: Mapping[str, int] = {}
         self._unread: list[_Unread] = []  # oldest first
         self._readings = 0  # of the oldest
         self._is_reading = False
@@ -196,6 +201,8 @@ class Takes(QObject):
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
         self._must_stop, self._must_keep, self._strides = False, True, None
+        self._latest, self._trouble, self._is_without_row = None, None, False
+        self._acquisition, self._lost_before = acquisition, acquisition.lost()
         session_id = self.session.id
 
         def start(opened: "OpenedLibrary", turn: "Future[None]") -> "Recorder":
@@ -228,6 +235,45 @@ class Takes(QObject):
         if not self._again.isActive():
             self._read_back()
         self.changed.emit()
+
+    def trouble_message(self) -> Message:
+        """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
+        from app.wizard.journal_words import no_row_message, trouble_message
+
+        if self._latest is None:
+            return NOTHING
+        if self._trouble is Trouble.MOVED or (self._trouble is None and self._latest.is_away):
+            return self._moved()
+        if self._trouble is not None:
+            return trouble_message(self._trouble, self._latest.status, self._lost())
+        if self._is_without_row and not self._latest.has_row:
+            return no_row_message(self._latest.status)
+        return NOTHING
+
+    def standstill_message(self, worn: Collection[str]) -> Message:
+        """What it cost that the process stood still amid what is recorded, of the sensors that are worn."""
+        from app.wizard.journal_words import standstill_message
+
+        acquisition, ongoing = self._acquisition, self.ongoing
+        if acquisition is None or ongoing is None or not acquisition.standstills:
+            return NOTHING
+        latest, now_s, lost = acquisition.standstills[-1], acquisition.now_s, acquisition.lost()
+        status = {name: one for name, one in acquisition.status().items() if name in worn}
+        return standstill_message(
+            latest,
+            ongoing.began_s,
+            now_s,
+            {name: count for name, count in lost.items() if name in status},
+            all(one.silent_s < now_s - latest.ended_s for one in status.values()),
+            all(one.told.rate_hz is not None for one in status.values()),
+        )
+
+    def _lost(self) -> int:
+        """How many samples did not come since the latest recording began."""
+        if self._acquisition is None:
+            return 0
+        now = self._acquisition.lost()
+        return sum(max(count - self._lost_before.get(name, 0), 0) for name, count in now.items())
 
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
@@ -309,30 +355,28 @@ class Takes(QObject):
 
     @Slot(str)
     def _on_met(self, met: str) -> None:
-        what, remedy = TOLD[trouble := Trouble(met)]
-        if trouble is Trouble.MOVED:
-            self.troubled.emit(*self._moved())
-        else:
-            self.troubled.emit(f"{tr(what)}.", f"{tr(remedy)}.")
-        if trouble in ENDS:
+        from app.wizard.journal_words import ENDS
+
+        self._trouble = Trouble(met)
+        if self._latest is not None:
+            self.troubled.emit(*self.trouble_message())
+        if self._trouble in ENDS:
             self.stop()
 
     def _on_started(self, recorder: "Recorder") -> None:
-        self._recorder = recorder
+        self._recorder = self._latest = recorder
         self._is_restrapped = False
+        self._is_without_row = not recorder.has_row
         self.begun.emit()
-        if recorder.is_away:
-            self.troubled.emit(*self._moved())
-        elif not recorder.has_row:
-            self.troubled.emit(
-                tr("The library does not answer."),
-                tr("The recording goes on, safe on the disk; it is added as soon as the library answers."),
-            )
+        if self.trouble_message() != NOTHING:
+            self.troubled.emit(*self.trouble_message())
         if self._must_stop:
             self.stop(self._strides, is_kept=self._must_keep)
 
-    def _moved(self) -> tuple[str, str]:
+    def _moved(self) -> Message:
         """Say where the recording is kept while its library is gone, or cannot be written."""
+        from app.storage.journal.disk import TOLD
+
         what, remedy = TOLD[Trouble.MOVED]
         shelter = self._desk.state.library.shelter if self._desk.state is not None else None
         place = shelter.folder if shelter is not None else ""
@@ -354,7 +398,7 @@ class Takes(QObject):
     def _on_waited(self) -> None:
         self._go_on()
         self.changed.emit()
-        self.refused.emit(tr("The library does not answer yet."), _safe())
+        self.refused.emit(tr("The library does not answer yet."), self._where(is_tried_again=True))
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
         """Whoever reads it back meets the same, and tells."""
@@ -381,17 +425,20 @@ class Takes(QObject):
             self._again.start()
             self.changed.emit()
             if is_first:
-                self.refused.emit(what, _safe())
+                self.refused.emit(what, self._where(is_tried_again=True))
             return
+        where = self._where(is_tried_again=False)
         self._unread.pop(0)
         self._readings = 0
         self.changed.emit()
-        self.refused.emit(what, tr("The recording is safe on the disk; it is found when Gaitwright starts again."))
+        self.refused.emit(what, where)
         self._read_back()
 
+    def _where(self, *, is_tried_again: bool) -> str:
+        """Where the oldest is that has not been read back."""
+        from app.wizard.journal_words import unread_message
 
-def _safe() -> str:
-    return tr("The recording is safe on the disk; it is read back as soon as that can be.")
+        return unread_message(self._unread[0].recorder.status, is_tried_again=is_tried_again)
 
 
 def counted(takes: Sequence[Take]) -> tuple[Recording, ...]:

@@ -273,7 +273,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if "malformed" in words:
         return LibraryFaultError("The library's file is damaged", "Restore it from a backup")
     if "is full" in words:
-        return LibraryFaultError("The disk is full, so nothing was saved", "Make room, then try again")
+        return LibraryFaultError("The disk is full, so the library could not take this", "Make room, then try again")
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library's file cannot be opened for writing", "See to the rights of its folder")
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:

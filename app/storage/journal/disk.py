@@ -17,7 +17,10 @@ FULL_RATE_BYTES_S = 200_000.0  # six sensors at 200 Hz with orientation and magn
 
 
 class Trouble(StrEnum):
-    """What went wrong while recording. `TOLD` has the words; those of `MOVED` name the shelter."""
+    """What went wrong while recording. `TOLD` has the words; those of `MOVED` name the shelter.
+
+    What is kept in spite of it the journal's status knows.
+    """
 
     LITTLE_ROOM = "little_room"
     NO_ROOM = "no_room"
@@ -34,16 +37,16 @@ TOLD = {
         later("Stop soon, and delete or move files that are not needed"),
     ),
     Trouble.NO_ROOM: (
-        later("The disk is almost full, so the recording was stopped and closed"),
-        later("What was recorded is kept. Delete or move files, then record again"),
+        later("The disk is almost full, so the recording was stopped"),
+        later("Delete or move files, then try again"),
     ),
     Trouble.DISK_FULL: (
         later("The disk is full, so the recording was stopped"),
-        later("What was recorded is kept. Delete or move files, then record again"),
+        later("Delete or move files, then try again"),
     ),
     Trouble.DISK_GONE: (
         later("The recording can no longer be written, so it was stopped"),
-        later("What was recorded until then is kept. Check the disk, then record again"),
+        later("Check the disk, then try again"),
     ),
     Trouble.MOVED: (
         later("The library can no longer be written where it was, and the recording goes on"),
@@ -54,11 +57,11 @@ TOLD = {
     ),
     Trouble.DISK_SLOW: (
         later("The disk answers late"),
-        later("Nothing is lost yet. Close programs that copy or download to it"),
+        later("Close programs that copy or download to it"),
     ),
     Trouble.DROPPED: (
         later("The disk has not answered for too long, and samples had to be dropped"),
-        later("They are counted and stay gaps. Check the disk before recording again"),
+        later("Check the disk before recording again"),
     ),
 }
 

@@ -21,8 +21,15 @@ class Inlet:
     is dropped and counted; before its source's next record the source is told of anew, with how many it lacks.
     """
 
-    def __init__(self, limit_bytes: int, now_ns: Callable[[], int], opened_ns: int) -> None:
-        self._limit_bytes, self._now_ns, self._last_ns = limit_bytes, now_ns, opened_ns
+    def __init__(
+        self,
+        limit_bytes: int,
+        now_ns: Callable[[], int],
+        opened_ns: int,
+        awake_s: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """`awake_s` tells by what clock records wait: one that stands still with the process blames no disk for it."""
+        self._limit_bytes, self._now_ns, self._last_ns, self._awake_s = limit_bytes, now_ns, opened_ns, awake_s
         self._change = threading.Condition()
         self._waiting: deque[Waiting] = deque()
         self.waiting_bytes = 0
@@ -83,7 +90,7 @@ class Inlet:
             for _ in range(count):
                 _, _, payload = self._waiting.popleft()
                 self.waiting_bytes -= len(payload) + OVERHEAD_BYTES
-            self._stuck_since_s = time.monotonic() if self._waiting else None
+            self._stuck_since_s = self._awake_s() if self._waiting else None
             self._change.notify_all()
 
     def close(self) -> None:
@@ -115,7 +122,7 @@ class Inlet:
     def stuck_s(self) -> float:
         """For how long records have been waiting and none was written."""
         since_s = self._stuck_since_s
-        return 0.0 if since_s is None else time.monotonic() - since_s
+        return 0.0 if since_s is None else self._awake_s() - since_s
 
     def _append(self, kind: Kind, payload: bytes) -> bool:
         if len(payload) > MAX_PAYLOAD:
@@ -127,7 +134,7 @@ class Inlet:
         self._waiting.append((kind, self._last_ns, payload))
         self.waiting_bytes += len(payload) + OVERHEAD_BYTES
         if self._stuck_since_s is None:
-            self._stuck_since_s = time.monotonic()
+            self._stuck_since_s = self._awake_s()
         return True
 
     def _tell_anew(self, entry: SourceEntry) -> None:

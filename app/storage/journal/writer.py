@@ -50,13 +50,25 @@ class State(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class JournalStatus:
-    """`stuck_s`: for how long records have waited and none was written. `left_s`: until there is no more room."""
+    """How the journal is doing.
+
+    Attributes
+    ----------
+    stuck_s
+        For how long records have waited and none was written, while the process ran.
+    left_s
+        Until there is no more room.
+    written_s, synced_s
+        When the last record that was written, or is known to be on the disk, came, since the journal was opened.
+    """
 
     state: State
     records: int
     bytes: int
     stuck_s: float
     left_s: float
+    written_s: float
+    synced_s: float
     dropped_records: int
     dropped_bytes: int
     troubles: frozenset[Trouble]
@@ -114,6 +126,7 @@ class JournalWriter:
         self._troubles: set[Trouble] = set()
         self._number = FIRST_NUMBER
         self._records = 0
+        self._written_s = self._known_s = 0.0
         self._left_s = float("inf")
         self._reason = "stopped"
         self._state = State.RECORDING
@@ -137,6 +150,7 @@ class JournalWriter:
         wall_ns: Callable[[], int] = time.time_ns,
         queue_bytes: int = QUEUE_BYTES,
         shelter: Shelter | None = None,
+        awake_s: Callable[[], float] = time.monotonic,
     ) -> Self:
         """Open the next segment of a recording, under a key of its own.
 
@@ -150,6 +164,8 @@ class JournalWriter:
             What the sources are expected to send, for the question whether there is room.
         shelter
             None: where `folder` cannot be written any more, the recording ends.
+        awake_s
+            By what clock the disk is late: one that stands still with the process blames no disk for it.
 
         Raises
         ------
@@ -182,7 +198,7 @@ class JournalWriter:
                     raise
                 _log.warning("the library's folder cannot be written: the recording is begun in the shelter")
                 segment, file = begun(shelter.made(), is_held=True)
-        inlet = Inlet(queue_bytes, now_ns, opened_ns)
+        inlet = Inlet(queue_bytes, now_ns, opened_ns, awake_s)
         return cls(file, segment, bytes_per_s, room, on_trouble, inlet, shelter, following)
 
     def source(self, info: SourceInfo, layout: SampleLayout | None = None) -> int:
@@ -257,6 +273,8 @@ class JournalWriter:
             bytes=self._file.size,
             stuck_s=self._inlet.stuck_s,
             left_s=self._left_s,
+            written_s=self._written_s,
+            synced_s=self._known_s,
             dropped_records=self._inlet.dropped_records,
             dropped_bytes=self._inlet.dropped_bytes,
             troubles=frozenset(self._troubles.copy()),
@@ -336,8 +354,7 @@ class JournalWriter:
                 time.sleep(WRITE_EVERY_S)  # a tenth of the cost of waiting for an event, fifty times a second
             self._write_batch()
             if time.monotonic() - self._synced_s >= SYNC_EVERY_S:
-                self._file.sync()
-                self._synced_s = time.monotonic()
+                self._sync()
                 if self._next is not None and self._shelter is not None and not self._shelter.is_home():
                     raise _LibraryGoneError
         self._inlet.close()
@@ -353,8 +370,13 @@ class JournalWriter:
             self._file.append(out)
             self._records += len(batch)
             self._last_ns = batch[-1][1]
+            self._written_s = (self._last_ns - self.header.opened_ns) / 1e9
             self._inlet.written(len(batch))
             self._note_sources(batch)
+
+    def _sync(self) -> None:
+        self._file.sync()
+        self._synced_s, self._known_s = time.monotonic(), self._written_s
 
     def _sealed(self, kind: Kind, time_ns: int, payload: bytes) -> bytes:
         # a number is spent when it is used, not when it is written: its nonce must not come again
@@ -425,7 +447,7 @@ class JournalWriter:
         # of a segment that is gone on with: what still waits is the next one's, and as old as it is
         now_ns = self._last_ns if reason == Trouble.MOVED else self._inlet.last_ns()
         self._file.append(self._sealed(Kind.FOOTER, now_ns, footer.packed()))
-        self._file.sync()
+        self._sync()
         self._dropped_before, self._dropped_bytes_before = records, size
 
     def _give_up(self, trouble: Trouble) -> None:

@@ -53,7 +53,7 @@ class WalkingStep(Step):
         self._is_in_sight = self._is_ankle_asked = False
         self._ticks = 0
         self._losses = Losses()
-        self._trouble: Message = NOTHING
+        self._is_troubled = False
         self._discarded: UUID | None = None
         visit.takes.begun.connect(self._on_begun)
         visit.takes.ended.connect(self._on_ended)
@@ -240,7 +240,7 @@ class WalkingStep(Step):
         acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
         assert acquisition is not None
         self._is_ankle_asked = False
-        self._trouble = NOTHING
+        self._is_troubled = False
         self._shown = self._at_stop = None
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)
@@ -344,7 +344,8 @@ class WalkingStep(Step):
         takes = self._visit.takes
         is_recording = takes.is_recording
         lost = self._losses.message(is_recording, self._visit.sensors.joints, now_s)
-        for message in (self._trouble, lost):
+        trouble = takes.trouble_message() if self._is_troubled else NOTHING
+        for message in (trouble, takes.standstill_message(self._visit.sensors.site_of), lost):
             if message != NOTHING:
                 return message
         if is_recording:
@@ -453,9 +454,9 @@ class WalkingStep(Step):
             self._label = label_after(self._visit.patient.told, self._used)
             self._show()
 
-    @Slot(str, str)
-    def _on_troubled(self, what: str, then: str) -> None:
-        self._trouble = what, then
+    @Slot()
+    def _on_troubled(self) -> None:
+        self._is_troubled = True  # the words change with what the counters tell
 
     @Slot(str)
     def _on_label_chosen(self, label: str) -> None:

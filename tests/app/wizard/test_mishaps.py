@@ -10,6 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.recorder import Recorder
 from app.storage.journal.disk import Trouble
+from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import Look
@@ -53,6 +54,18 @@ def failing(times: int, error: Exception, otherwise: Callable[..., object]) -> C
     return call
 
 
+def failing_once_halted(times: int) -> Callable[..., object]:
+    """A recorder that has written all, and whose library is too busy to hear of it."""
+    for_real = Recorder.stop
+    busy = failing(times, BUSY, for_real)
+
+    def stop(recorder: Recorder, opened: OpenedLibrary) -> object:
+        recorder.halt()
+        return busy(recorder, opened)
+
+    return stop
+
+
 def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -74,7 +87,7 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
 ) -> None:
     monkeypatch.setattr(takes_module, "READ_AGAIN_MS", 20)
     looked_at.takes._again.setInterval(20)
-    monkeypatch.setattr(Recorder, "stop", failing(2, BUSY, Recorder.stop))
+    monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
     told: list[tuple[str, str]] = []
     looked_at.takes.refused.connect(lambda *words: told.append(words))
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)

@@ -139,6 +139,39 @@ def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, di
     assert report.is_whole
 
 
+def test_a_process_that_stood_still_blames_no_disk(tmp_path: Path, disk: Disk) -> None:
+    """By a clock that stands still with the process the disk is not late, by the wall's it is."""
+    said: list[Trouble] = []
+    for is_awake, expected in ((False, []), (True, [Trouble.DISK_SLOW])):
+        awake_s = 0.0
+        with JournalWriter.create(
+            tmp_path, ID, KEY, room=NO_ROOM_ASKED, on_trouble=said.append, awake_s=lambda: awake_s
+        ) as journal:
+            source = journal.source(LINES)
+            wait_for(lambda journal=journal: journal.status.records == 1)
+            disk.answers.clear()
+            journal.received(source, line(0))
+            awake_s = 20.0 if is_awake else 0.5
+            journal.received(source, line(1))
+            assert said == expected
+            disk.answers.set()
+
+
+def test_status_tells_up_to_when_records_are_written_and_synced(tmp_path: Path, disk: Disk) -> None:
+    now_ns = 5_000_000_000
+    with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED, now_ns=lambda: now_ns) as journal:
+        source = journal.source(LINES)
+        now_ns += 3_000_000_000
+        journal.received(source, line(0))
+        wait_for(lambda: journal.status.synced_s == 3.0)
+        disk.answers.clear()
+        now_ns += 4_000_000_000
+        journal.received(source, line(1))
+        assert (journal.status.written_s, journal.status.synced_s) == (3.0, 3.0)
+        disk.answers.set()
+    assert (journal.status.written_s, journal.status.synced_s) == (7.0, 7.0)
+
+
 def test_ten_seconds_of_six_sensors_fit_into_the_queue(tmp_path: Path, disk: Disk) -> None:
     with JournalWriter.create(tmp_path, ID, KEY, room=NO_ROOM_ASKED) as journal:
         walker = journal.source(WALKER, LAYOUT)

@@ -1,0 +1,112 @@
+"""What is said of a recording's journal and of what befell it, every fact of it from the counters of both."""
+
+from collections.abc import Mapping
+
+from app.acquisition.heartbeat import Standstill
+from app.storage.journal.disk import TOLD, Trouble
+from app.storage.journal.writer import SLOW_S, JournalStatus, State
+from app.wizard.losses import NOTHING, Message
+from app.wizard.walk_messages import clock
+from app.wording import tr, tr_n
+
+ENDS = frozenset((Trouble.NO_ROOM, Trouble.DISK_FULL, Trouble.DISK_GONE))  # with these the journal has closed itself
+STANDSTILL_TOLD_S = 15.0
+SETTLED_S = 1.0  # until what waited at the sources has been read, and what is missing is counted
+
+
+def trouble_message(trouble: Trouble, status: JournalStatus, lost: int = 0) -> Message:
+    """Say what is the matter with the disk, what is written in spite of it, and what to do.
+
+    `lost` counts samples of all sensors that did not come since the recording began.
+    """
+    what, remedy = (f"{tr(words)}." for words in TOLD[trouble])
+    if trouble is Trouble.DISK_SLOW and not status.dropped_records:
+        return _late_message(status, lost, remedy)
+    if trouble in (Trouble.DISK_SLOW, Trouble.DROPPED):
+        what, remedy = (f"{tr(words)}." for words in TOLD[Trouble.DROPPED])
+        dropped = tr_n(
+            "{count} packet of samples was dropped so far, and stays a gap.",
+            "{count} packets of samples were dropped so far, and stay gaps.",
+            status.dropped_records,
+        )
+        return what, f"{dropped.format(count=status.dropped_records)} {remedy}"
+    if trouble in ENDS:
+        return what, f"{_written(trouble, status)} {remedy}"
+    return what, remedy
+
+
+def _late_message(status: JournalStatus, lost: int, remedy: str) -> Message:
+    """Nothing has been dropped: say so of all samples only where none was lost on its way here either."""
+    nothing = tr("Nothing is lost yet.") if not lost else tr("What comes waits, and nothing of it was dropped.")
+    if status.stuck_s > SLOW_S:
+        return tr("The disk answers late."), f"{nothing} {remedy}"
+    kept = tr("Nothing was lost by it.") if not lost else tr("Nothing was dropped because of it.")
+    return tr("The disk answered late, and answers again."), kept
+
+
+def _written(trouble: Trouble, status: JournalStatus) -> str:
+    """Up to where the recording is kept: on a disk that is gone only what it had confirmed."""
+    if trouble is Trouble.DISK_GONE:
+        return tr("The disk has confirmed the first {time} of it.").format(time=clock(status.synced_s))
+    if status.dropped_records:
+        said = tr("Its first {time} are written; what came after that is lost.")
+    else:
+        said = tr("Its first {time} are written.")
+    return said.format(time=clock(status.written_s))
+
+
+def unread_message(status: JournalStatus, *, is_tried_again: bool) -> str:
+    """Say where a recording is that has been stopped and is not in the library yet."""
+    if status.state is State.RECORDING:
+        return tr("The recording is still being written; it is read back as soon as that can be.")
+    is_whole = status.state is State.CLOSED and not status.dropped_records
+    if is_tried_again:
+        whole = tr("The recording is safe on the disk; it is read back as soon as that can be.")
+        part = tr("The first {time} of the recording are on the disk; they are read back as soon as that can be.")
+    else:
+        whole = tr("The recording is safe on the disk; it is found when Gaitwright starts again.")
+        part = tr("The first {time} of the recording are on the disk; they are found when Gaitwright starts again.")
+    return whole if is_whole else part.format(time=clock(status.synced_s))
+
+
+def no_row_message(status: JournalStatus) -> Message:
+    """Say of a recording that goes on where the library did not take its row."""
+    what = tr("The library does not answer.")
+    if status.dropped_records or status.state is not State.RECORDING:
+        return what, tr("The recording is added as soon as the library answers.")
+    return what, tr("The recording is written to the disk all the same; it is added as soon as the library answers.")
+
+
+def standstill_message(
+    standstill: Standstill, began_s: float, now_s: float, lost: Mapping[str, int], are_heard: bool, are_counted: bool
+) -> Message:
+    """Say that the process stood still amid a recording, and what that cost; nothing once it is long past.
+
+    Parameters
+    ----------
+    began_s, now_s
+        The recording's beginning, and now, on the acquisition's clock.
+    lost
+        How many samples each worn sensor lacks now.
+    are_heard, are_counted
+        Whether all of them have sent since; whether all tell their rate, so that what is missing can be counted.
+    """
+    if standstill.ended_s < began_s or now_s - standstill.ended_s > STANDSTILL_TOLD_S:
+        return NOTHING
+    said = tr("Gaitwright stood still for {seconds:.0f} s, {time} into the recording.")
+    if standstill.was_asleep:
+        said = tr("The computer slept for {seconds:.0f} s, {time} into the recording.")
+    what = said.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
+    if not are_heard or now_s - standstill.ended_s < SETTLED_S:
+        return what, tr("What is missing of it is being counted.")
+    missing = sum(max(count - standstill.lost_before.get(name, 0), 0) for name, count in lost.items())
+    if missing:
+        gap = tr_n(
+            "{count} sample was lost and stays a gap; strides in it are left out.",
+            "{count} samples were lost and stay gaps; strides in them are left out.",
+            missing,
+        )
+        return what, gap.format(count=missing)
+    if not are_counted:
+        return what, tr("What is missing is counted when the recording has been read back.")
+    return what, tr("No sample is missing: what the sensors sent meanwhile was read afterwards.")

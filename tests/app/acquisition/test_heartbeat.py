@@ -1,0 +1,87 @@
+"""A standstill of the process is told from a disk that is late, and sleep from being stopped."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from app.acquisition.heartbeat import STOOD_S, Heartbeat
+
+STOPPED = """
+import time
+from app.acquisition.heartbeat import Heartbeat
+heartbeat = Heartbeat(time.monotonic, dict)
+heartbeat.start()
+time.sleep(0.5)
+print("beats", flush=True)
+input()
+time.sleep(0.5)
+heartbeat.close()
+(standstill,) = heartbeat.standstills
+print(standstill.lasted_s, standstill.asleep_s, heartbeat.awake_s())
+"""
+
+
+class Clocks:
+    def __init__(self) -> None:
+        self.now_s, self.clock_s, self.running_s = 0.0, 100.0, 7.0
+        self.lost = {"a": 0}
+        self.heartbeat = Heartbeat(
+            lambda: self.now_s, lambda: dict(self.lost), lambda: self.clock_s, lambda: self.running_s
+        )
+
+    def go_on(self, seconds: float, asleep_s: float = 0.0) -> None:
+        self.now_s, self.clock_s = self.now_s + seconds, self.clock_s + seconds
+        self.running_s += seconds - asleep_s
+        self.heartbeat.beat()
+
+
+def test_a_process_that_beats_has_not_stood_still() -> None:
+    clocks = Clocks()
+    for _ in range(50):
+        clocks.go_on(0.3)
+    assert clocks.heartbeat.standstills == ()
+    assert clocks.heartbeat.awake_s() == pytest.approx(15.0)
+
+
+@pytest.mark.parametrize("asleep_s", [0.0, 19.5])
+def test_a_standstill_is_told_with_what_was_lost_before_it(asleep_s: float) -> None:
+    clocks = Clocks()
+    clocks.lost["a"] = 3
+    clocks.go_on(0.1)
+    clocks.lost["a"] = 9  # counted by a reader that was woken before the heart
+    clocks.go_on(20.0, asleep_s)
+    clocks.go_on(0.1)
+    (standstill,) = clocks.heartbeat.standstills
+    assert (standstill.began_s, standstill.lasted_s) == (pytest.approx(0.1), pytest.approx(20.0))
+    assert standstill.was_asleep is (asleep_s > 0)
+    assert standstill.lost_before == {"a": 3}
+    assert clocks.heartbeat.awake_s() == pytest.approx(0.2 + STOOD_S)
+
+
+def test_before_the_first_beat_after_it_a_standstill_counts_no_more_than_after() -> None:
+    clocks = Clocks()
+    clocks.now_s = clocks.clock_s = 120.0
+    assert clocks.heartbeat.awake_s() == STOOD_S
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no signals to stop a process by")
+@pytest.mark.endurance
+def test_a_stopped_process_knows_for_how_long() -> None:
+    process = subprocess.Popen(
+        [sys.executable, "-c", STOPPED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+    )
+    with process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "beats\n"
+        os.kill(process.pid, signal.SIGSTOP)
+        time.sleep(3.0)
+        os.kill(process.pid, signal.SIGCONT)
+        told, _ = process.communicate("\n", timeout=60)
+    lasted_s, asleep_s, awake_s = map(float, told.split())
+    assert 2.9 < lasted_s < 10.0
+    assert asleep_s < 0.5
+    assert awake_s < lasted_s

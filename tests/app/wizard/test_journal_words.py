@@ -1,0 +1,118 @@
+"""What is said of a journal comes when its counters say so, and not when they do not."""
+
+from dataclasses import replace
+
+import pytest
+
+from app.acquisition.heartbeat import Standstill
+from app.storage.journal.disk import Trouble
+from app.storage.journal.writer import JournalStatus, State
+from app.wizard.journal_words import (
+    ENDS,
+    STANDSTILL_TOLD_S,
+    no_row_message,
+    standstill_message,
+    trouble_message,
+    unread_message,
+)
+from app.wizard.losses import NOTHING
+
+FINE = JournalStatus(
+    state=State.RECORDING,
+    records=100,
+    bytes=10_000,
+    stuck_s=0.0,
+    left_s=1000.0,
+    written_s=62.0,
+    synced_s=61.0,
+    dropped_records=0,
+    dropped_bytes=0,
+    troubles=frozenset(),
+)
+LATE, AGAIN = replace(FINE, stuck_s=3.0), FINE
+DROPPING = replace(LATE, dropped_records=7)
+CLOSED = replace(FINE, state=State.CLOSED)
+STOOD = Standstill(began_s=51.0, ended_s=71.0, lasted_s=20.0, asleep_s=0.0, lost_before={"a": 5, "b": 0})
+
+
+@pytest.mark.parametrize(
+    ("status", "lost", "is_said"), [(LATE, 0, True), (LATE, 1, False), (DROPPING, 0, False), (AGAIN, 0, False)]
+)
+def test_nothing_is_lost_yet_only_while_the_disk_is_late_and_every_counter_is_nought(
+    status: JournalStatus, lost: int, is_said: bool
+) -> None:
+    said = " ".join(trouble_message(Trouble.DISK_SLOW, status, lost))
+    assert ("Nothing is lost yet" in said) is is_said
+    assert ("answers late" in said) is (status is LATE)
+
+
+def test_a_late_disk_that_answers_again_says_what_it_cost() -> None:
+    assert trouble_message(Trouble.DISK_SLOW, AGAIN) == (
+        "The disk answered late, and answers again.",
+        "Nothing was lost by it.",
+    )
+    _, then = trouble_message(Trouble.DISK_SLOW, AGAIN, lost=90)
+    assert then == "Nothing was dropped because of it."
+
+
+@pytest.mark.parametrize("trouble", [Trouble.DISK_SLOW, Trouble.DROPPED])
+def test_what_was_dropped_is_counted(trouble: Trouble) -> None:
+    what, then = trouble_message(trouble, DROPPING)
+    assert "had to be dropped" in what
+    assert then.startswith("7 packets of samples were dropped so far, and stay gaps. ")
+
+
+@pytest.mark.parametrize("trouble", sorted(ENDS))
+def test_a_disk_that_ended_the_recording_says_up_to_where_it_is_kept(trouble: Trouble) -> None:
+    _, then = trouble_message(trouble, CLOSED)
+    assert ("Its first 1:02 are written." in then) is (trouble is not Trouble.DISK_GONE)
+    assert ("The disk has confirmed the first 1:01 of it." in then) is (trouble is Trouble.DISK_GONE)
+    _, then = trouble_message(trouble, replace(CLOSED, dropped_records=2))
+    assert ("what came after that is lost" in then) is (trouble is not Trouble.DISK_GONE)
+
+
+@pytest.mark.parametrize("is_tried_again", [True, False])
+def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool) -> None:
+    def said(status: JournalStatus) -> str:
+        return unread_message(status, is_tried_again=is_tried_again)
+
+    assert "safe on the disk" in said(CLOSED)
+    assert "still being written" in said(FINE)
+    for status in (replace(CLOSED, dropped_records=1), replace(CLOSED, state=State.BROKEN)):
+        assert "safe" not in said(status)
+        assert said(status).startswith("The first 1:01 of the recording are on the disk")
+
+
+def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
+    assert "written to the disk all the same" in no_row_message(FINE)[1]
+    assert "written" not in no_row_message(DROPPING)[1]
+
+
+def standstill(lost: dict[str, int], now_s: float = 75.0, *, are_heard: bool = True, are_counted: bool = True) -> str:
+    return " ".join(standstill_message(STOOD, 10.0, now_s, lost, are_heard, are_counted)).strip()
+
+
+def test_a_standstill_is_told_with_the_samples_that_it_cost() -> None:
+    assert standstill({"a": 4005, "b": 2000}) == (
+        "Gaitwright stood still for 20 s, 0:41 into the recording. "
+        "6000 samples were lost and stay gaps; strides in them are left out."
+    )
+    assert standstill({"a": 5, "b": 1}).endswith("1 sample was lost and stays a gap; strides in it are left out.")
+
+
+def test_no_sample_is_missing_only_where_all_sensors_are_heard_counted_and_whole() -> None:
+    none = "No sample is missing"
+    whole = {"a": 5, "b": 0}
+    assert none in standstill(whole)
+    assert none not in standstill({"a": 6, "b": 0})
+    assert none not in standstill(whole, are_heard=False)
+    assert none not in standstill(whole, are_counted=False)
+    assert none not in standstill(whole, now_s=71.5)  # what waited is still being read
+    assert standstill(whole, are_heard=False).endswith("What is missing of it is being counted.")
+
+
+def test_a_standstill_of_before_or_long_ago_is_not_told_and_sleep_is_called_so() -> None:
+    assert standstill_message(STOOD, 72.0, 75.0, {}, True, True) == NOTHING
+    assert standstill_message(STOOD, 10.0, 72.0 + STANDSTILL_TOLD_S, {}, True, True) == NOTHING
+    asleep = replace(STOOD, asleep_s=19.0)
+    assert standstill_message(asleep, 10.0, 75.0, {}, True, True)[0].startswith("The computer slept for 20 s")
