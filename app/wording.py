@@ -206,7 +206,10 @@ SENTENCES = {
     ),
     # what the session is made of
     "recording_discarded": "this recording was discarded. It is kept in the folder and not analysed.",
-    "recording_recovered": "the program was closed while this was recorded. All is kept up to the last 0.1 s.",
+    "recording_recovered": (
+        "the program was closed while this was recorded. It is kept up to the last record on the disk; ending the "
+        "program costs 0.1 s at most in 99 of 100 cases, a power cut up to 0.5 s and what the disk still held back."
+    ),
     "recording_changed": (
         "its file is not what it was when the recording was stopped. What is proved in it was used; restore it from "
         "a backup."

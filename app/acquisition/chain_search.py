@@ -90,13 +90,9 @@ class ChainSearch:
         return Chains(tuple(legs), chains.margin, lead_s)
 
     def _moved_at_s(self, leg: Chain) -> float | None:
-        at_s = [self._lifted_at_s[name] for name in _worn(leg) if name in self._lifted_at_s]
+        at_s = [self._lifted_at_s[name] for name in leg.sensors if name in self._lifted_at_s]
         return min(at_s, default=None)
 
 
-def _worn(leg: Chain) -> tuple[str, ...]:
-    return (leg.thigh, leg.shank) if leg.foot is None else (leg.thigh, leg.shank, leg.foot)
-
-
 def _legs(chains: Chains) -> set[tuple[str, ...]]:
-    return {_worn(leg) for leg in chains.legs}
+    return {leg.sensors for leg in chains.legs}

@@ -39,7 +39,7 @@ class FreeMotionView:
     chains
         What is known of the legs where the placement is left to the motion.
     is_side_open
-        The legs are certain, and which is left is not: both began together, or there is only one. `name_first` of
+        The legs are certain, and which is left is not: both began together, or there is only one. `name_leg` of
         `UnplacedFreeMotionWork` settles it.
     """
 
@@ -120,7 +120,7 @@ class FreeMotionWork:
 class UnplacedFreeMotionWork:
     """The motion of sensors whose sites it has to tell itself: it is held back until it has, and then made up for.
 
-    Where both legs began together, or only one wears sensors, `name_first` settles what the motion cannot tell.
+    Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot tell.
 
     Parameters
     ----------
@@ -144,13 +144,13 @@ class UnplacedFreeMotionWork:
         self._placed: FreeMotionWork | None = None
         self._held: list[dict[str, ImuBlock]] = []
         self._first_s, self._now_s = np.inf, -np.inf
-        self._answer: Side | None = None
+        self._answer: tuple[str, Side] | None = None
         self._wish: Side | None = None
         self.state = FreeMotionView()
 
-    def name_first(self, side: Side) -> None:
-        """Say which leg the first of the chains is; it counts once they are certain. From any thread."""
-        self._answer = side
+    def name_leg(self, told: tuple[str, Side] | None) -> None:
+        """Say which leg a sensor is worn on; it counts once the chains are certain. None: undone. From any thread."""
+        self._answer = told
 
     def repeat(self, side: Side) -> None:
         """As of `FreeMotionWork`; nothing before it is known who is where. From any thread."""
@@ -198,7 +198,12 @@ class UnplacedFreeMotionWork:
         if chains is None or not self._search.is_sure:
             return {}
         if self._answer is not None:
-            return chains.sites(self._answer)
+            sensor, side = self._answer
+            if sensor in chains.legs[0].sensors:
+                return chains.sites(side)
+            if any(sensor in leg.sensors for leg in chains.legs[1:]):
+                return chains.sites(side.other)
+            return {}
         if self._first_moved is None or not chains.is_first_certain:  # never of a single leg: it has no other to lead
             return {}
         return chains.sites(self._first_moved)

@@ -109,6 +109,10 @@ class Recorder:
         """How its journal is doing, or was when it was closed."""
         return self._writer.status
 
+    @property
+    def kind(self) -> RecordingKind:
+        return self._entry.kind
+
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
         self._writer.mark(text)
@@ -167,6 +171,10 @@ class _Entry:
         except BaseException:
             self._thread.shutdown()
             raise
+
+    @property
+    def kind(self) -> RecordingKind:
+        return self._told.kind
 
     @property
     def has_row(self) -> bool:

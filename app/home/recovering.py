@@ -14,6 +14,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from app.home.words import length
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
+from app.wizard.walk_messages import recovery_costs
 from app.wording import capitalised, tr, tr_n
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, OpenedState
@@ -198,13 +199,34 @@ def _still_undecided(opened: "OpenedLibrary") -> _Outcome:
 def _heard_messages(heard: "Sequence[Recovered]") -> list[_Message]:
     if not heard:
         return []
+    is_whole = all(report.is_whole for one in heard for report in one.reports)
     if len(heard) == 1:
         what = tr("The program was closed while recording. {time} of {name} was recovered.").format(
             time=length(heard[0].recorded_s), name=heard[0].stored.told.name
         )
-        return [_Message(what, tr("It is kept up to the last 0.1 s. Look at it, then keep or discard."))]
-    what = tr("The program was closed while recording. {count} recordings were recovered.").format(count=len(heard))
-    return [_Message(what, tr("They are kept up to the last 0.1 s. Look at them, then keep or discard."))]
+        whole, cut = tr("It is whole."), tr("It is kept up to the last record on the disk.")
+        look = tr("Look at it, then keep or discard.")
+    else:
+        several = tr("The program was closed while recording. {count} recordings, {time} in all, were recovered.")
+        what = several.format(count=len(heard), time=length(sum(one.recorded_s for one in heard)))
+        whole, cut = tr("They are whole."), tr("They are kept up to the last record on the disk.")
+        look = tr("Look at them, then keep or discard.")
+    kept = [whole, look] if is_whole else [cut, _missing(heard), look, recovery_costs()]
+    return [_Message(what, " ".join(filter(None, kept)))]
+
+
+def _missing(heard: "Sequence[Recovered]") -> str:
+    """Say how many records are missing before the last; empty where none is."""
+    reports = [report for one in heard for report in one.reports]
+    missing = sum(report.missing_records for report in reports)
+    if missing:
+        said = tr_n(
+            "{count} record before it is missing and stays a gap.",
+            "{count} records before it are missing and stay gaps.",
+            missing,
+        )
+        return said.format(count=missing)
+    return ""
 
 
 def _adopted_messages(adopted: "Sequence[Recovered]") -> list[_Message]:

@@ -72,8 +72,9 @@ class FreeMotionPage(QWidget):
 
     def focus(self) -> None:
         """Give the focus to the choice there is; without one the bar has it."""
-        if not self.question.isHidden():
-            self.question.buttons[0].setFocus()
+        shown = [button for button in self.question.buttons if not button.isHidden()]
+        if not self.question.isHidden() and shown:
+            shown[0].setFocus()
 
     def set_from_behind(self, is_from_behind: bool) -> None:
         """Turn figure and gauges: from behind, the patient's left stands at the left."""
@@ -89,9 +90,12 @@ class FreeMotionPage(QWidget):
         self.figure.setVisible(not is_compact)
         self._on_look_changed()
 
-    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = ()) -> None:
-        """Say what the motion contradicts, or cannot tell, and offer one or two answers; empty takes it back."""
-        self.question.ask(what, then, answers)
+    def ask(self, what: str, then: str = "", answers: tuple[str, ...] = (), *, is_understood: bool = False) -> None:
+        """Say what the motion contradicts, or cannot tell, and offer one or two answers; empty takes it back.
+
+        `is_understood`: it is no question but what was answered to one, and the second button takes that back.
+        """
+        self.question.ask(what, then, answers, is_understood=is_understood)
 
     def show_state(self, view: FreeMotionView) -> None:
         """Show how far the motion has come; only what reads otherwise is painted anew."""
@@ -143,6 +147,7 @@ class _Question(QWidget):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
+        self._is_understood = False
         self.notice = Notice(look, size=14)
         self.buttons = (Button(look, "", Kind.PRIMARY, height=44), Button(look, "", Kind.SECONDARY, height=44))
         self._row = QHBoxLayout(self)
@@ -155,22 +160,26 @@ class _Question(QWidget):
         self._on_look_changed()
         self.hide()
 
-    def ask(self, what: str, then: str, answers: tuple[str, ...]) -> None:
+    def ask(self, what: str, then: str, answers: tuple[str, ...], *, is_understood: bool) -> None:
+        offered = dict(enumerate(answers, start=int(is_understood)))
         for number, button in enumerate(self.buttons):
-            button.setVisible(number < len(answers))
-            if number < len(answers):
-                button.setText(answers[number])
-                button.setAccessibleName(answers[number])
+            button.setVisible(number in offered)
+            if number in offered:
+                button.setText(offered[number])
+                button.setAccessibleName(offered[number])
                 button.updateGeometry()
         self.setVisible(bool(what))
-        self.notice.tell(Icon.WARNING, what, then)
+        self._is_understood = is_understood
+        self.notice.tell(Icon.CHECK if is_understood else Icon.WARNING, what, then)
+        self.update()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.caution_edge, 1))
-        painter.setBrush(QColor(theme.colours.caution))
+        colours = theme.colours
+        painter.setPen(theme.pen(colours.control if self._is_understood else colours.caution_edge, 1))
+        painter.setBrush(QColor(colours.surface if self._is_understood else colours.caution))
         radius = theme.px(8)
         painter.drawRoundedRect(self.rect().adjusted(0, 0, -1, -1), radius, radius)
 

@@ -57,8 +57,10 @@ def _written(trouble: Trouble, status: JournalStatus) -> str:
 
 def unread_message(status: JournalStatus, *, is_tried_again: bool) -> str:
     """Say where a recording is that has been stopped and is not in the library yet."""
-    if status.state is State.RECORDING:
+    if status.state is State.RECORDING and is_tried_again:
         return tr("The recording is still being written; it is read back as soon as that can be.")
+    if status.state is State.RECORDING:
+        return tr("The recording is still being written; what is written is found when Gaitwright starts again.")
     is_whole = status.state is State.CLOSED and not status.dropped_records
     if is_tried_again:
         whole = tr("The recording is safe on the disk; it is read back as soon as that can be.")

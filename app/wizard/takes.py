@@ -174,6 +174,10 @@ class Takes(QObject):
         strapped = [number for number, take in enumerate(self.every) if take.told.is_restrapped_before]
         return self.every[strapped[-1] if strapped else 0 :]
 
+    def awaits(self, kind: RecordingKind) -> bool:
+        """Whether one of a kind that counts has been stopped, and is still to be read back."""
+        return any(unread.recorder.kind is kind and unread.is_kept for unread in self._unread)
+
     def take_over(self, session: StoredSession, takes: tuple[Take, ...]) -> None:
         """Go on with a session of the library."""
         self.session, self.every = session, takes

@@ -153,6 +153,15 @@ class Visit(QObject):
         return is_demonstration or self.patient.told.code.startswith(DEMO)
 
     @property
+    def cannot_record(self) -> str:
+        """Why nothing is kept of what the open sensors send; empty where it is."""
+        acquisition = self.sensors.acquisition
+        if acquisition is None or not acquisition.is_simulated or self.may_simulate:
+            return ""
+        said = tr("These sensors are simulated, and {code} is no demonstration patient: nothing would be recorded.")
+        return said.format(code=self.patient.told.code)
+
+    @property
     def choices(self) -> tuple[SourceChoice, ...]:
         """What this patient's sensors can be heard through."""
         return tuple(choice for choice in self._choices if self.may_simulate or not choice.is_simulated)
@@ -221,7 +230,7 @@ class Visit(QObject):
             for recordings in worn.values():
                 placement = recordings[0].placement
                 assert placement is not None  # only such were gathered
-                other = {_opposite(site): sensor for site, sensor in placement.sensors.items()}
+                other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
                 library.sessions.correct_placement(recordings, other)
             session = library.sessions.get(session_id)
             return session, read_takes(opened, session)
@@ -435,10 +444,9 @@ def _by_hand(told: Session) -> tuple[dict[Joint, float], dict[Joint, int]]:
     return dict(told.zero_rad), dict(told.turned_sign)
 
 
-def _opposite(site: Site) -> Site:
+def opposite(site: Site) -> Site:
     """The same place on the other leg."""
-    other = Side.RIGHT if site.side is Side.LEFT else Side.LEFT
-    return Site(f"{other}_{site.segment}")
+    return Site(f"{site.side.other}_{site.segment}")
 
 
 def _now() -> str:

@@ -16,6 +16,7 @@ from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
 from app.wizard.keys import Action, Intent, Keys
+from app.wizard.losses import NOTHING, Message
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.sources import choices
 from app.wizard.steps.free_motion_step import FreeMotionStep
@@ -26,14 +27,16 @@ from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.steps.step import Step
 from app.wizard.steps.walking_step import WalkingStep
-from app.wizard.visit import Visit, patient_line
+from app.wizard.visit import DEMO, Visit, patient_line
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from app.workers.preload import is_preloaded
 from core.body import Site
+from core.samples import Patient
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
+    from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient
 
 PATIENT, SENSORS, STAND_STILL, FREE_MOTION, WALKING, RESULTS, REPORT = range(7)
@@ -41,6 +44,7 @@ TICK_MS = 33
 PREPARE_MS = 400  # between one page that is made ahead and the next: what the user does comes first
 DEAF_S = 0.4  # after a page turned by itself; a hand that was on its way arrives, one that answers takes longer
 SLOW_TICKS = 8  # tiles and stopwatch: four times a second
+DEMO_PATIENT = f"{DEMO}-1"
 MOVES_RAD_S = 0.1  # a sensor on a standing patient stays below
 
 
@@ -67,6 +71,7 @@ class Wizard(QWidget):
         self._current = PATIENT
         self._ticks = 0
         self._deaf_until_s = 0.0
+        self._told_of_recording: Message = NOTHING
         self.shell = WizardShell(look)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
@@ -170,6 +175,7 @@ class Wizard(QWidget):
             step.jumped.connect(self.go_to)
             step.told.connect(self._tell)
             step.offered.connect(self._on_offered)
+            step.demonstration_wanted.connect(self._on_demonstration_wanted)
         for signal in (visit.changed, visit.sensors.changed, visit.patient.changed, visit.evaluation.done):
             signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
@@ -256,6 +262,20 @@ class Wizard(QWidget):
             self._show_slow()
             if self.is_recording:
                 self.shell.bar.show_state(self._bar())
+            self._watch_recording()
+
+    def _watch_recording(self) -> None:
+        """Say what befalls a recording, as the counters have it by now; on its page a walk says it itself."""
+        if self._visit is None or not self.is_recording or self._current == WALKING:
+            self._told_of_recording = NOTHING
+            return
+        takes, sensors = self._visit.takes, self._visit.sensors
+        message = takes.trouble_message()
+        if message == NOTHING:
+            message = takes.standstill_message(sensors.site_of or sensors.status)
+        if message != self._told_of_recording:
+            self._told_of_recording = message
+            self._tell(*message)
 
     def _on_prepare(self) -> None:
         """Make the next page before somebody comes to it, who would wait for it then; not amid a recording."""
@@ -352,6 +372,21 @@ class Wizard(QWidget):
     def _on_offered(self, what: str) -> None:
         self.shell.toast.offer(what)
 
+    def _on_demonstration_wanted(self) -> None:
+        """Begin anew with the patient whom simulated recordings are kept for, found or made."""
+        self.begin(None)
+        self._desk.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
+
+    def _on_demonstration_found(self, stored: "StoredPatient | None") -> None:
+        if self._visit is None or self._visit.patient.told.code:
+            return  # somebody has typed another meanwhile
+        if stored is not None:
+            self._visit.patient.choose(stored)
+        else:
+            self._visit.patient.edit(Patient(code=DEMO_PATIENT))
+        self._steps[PATIENT].enter()
+        self._show()
+
     def _on_below_pressed(self, key: str) -> None:
         if key == "patients":
             self.leave()
@@ -406,6 +441,10 @@ class Wizard(QWidget):
             page.set_compact(is_compact)
         if hasattr(page, "set_room"):
             page.set_room(width, height)
+
+
+def _demonstration_patient(opened: "OpenedLibrary") -> "StoredPatient | None":
+    return opened.library.patients.find(DEMO_PATIENT)
 
 
 _STRIP = {

@@ -50,6 +50,10 @@ class Chain:
     moved_at_s: float | None
 
     @property
+    def sensors(self) -> tuple[str, ...]:
+        return (self.thigh, self.shank) if self.foot is None else (self.thigh, self.shank, self.foot)
+
+    @property
     def is_direction_certain(self) -> bool:
         return self.stature.uprightness > MIN_UPRIGHTNESS
 
@@ -81,9 +85,8 @@ class Chains:
 
     def sites(self, first_moved: Side) -> dict[str, Site]:
         """Name every sensor's site, given the side of the leg that was lifted first."""
-        other = Side.RIGHT if first_moved is Side.LEFT else Side.LEFT
         named = {}
-        for side, leg in zip((first_moved, other), self.legs, strict=False):
+        for side, leg in zip((first_moved, first_moved.other), self.legs, strict=False):
             for segment in Segment:
                 sensor = getattr(leg, segment.value)
                 if sensor is not None:

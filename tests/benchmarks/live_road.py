@@ -177,7 +177,7 @@ def run(seconds: float) -> None:
 def unplaced(sensors: Mapping[str, LiveSensor], standing: Mapping[str, FloatArray]) -> UnplacedFreeMotionWork:
     """Both legs begin together, so that somebody has to say which is which."""
     work = UnplacedFreeMotionWork(sensors, None, standing=standing)
-    work.name_first(Side.LEFT)
+    work.name_leg((next(iter(sensors)), Side.LEFT))
     return work
 
 

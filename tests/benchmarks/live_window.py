@@ -143,7 +143,7 @@ def _session(
     yield lambda: wizard._current == 3
     free = wizard._steps[3]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard._current == 4 or free._is_side_asked
+    yield lambda: wizard._current == 4 or free._side.asked is not None
     if wizard._current == 3:
         yield _after(PAUSE_S)
         free._on_answered(0)

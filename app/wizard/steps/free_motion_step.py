@@ -22,8 +22,10 @@ from app.wizard.hints import (
     unplaced_hint,
 )
 from app.wizard.keys import Action, Intent
+from app.wizard.side_question import SILENT, SideQuestion, Words
 from app.wizard.steps.step import Step
 from app.wizard.takes import Take
+from app.wizard.visit import opposite
 from app.wording import name_of, tr
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
@@ -66,7 +68,10 @@ class FreeMotionStep(Step):
         self._plays_s: float | None = None  # for how long a replayed patient moves
         self._plays_to_s = 0.0
         self._is_in_sight = self._goes_on = self._begins_again = self._must_correct = False
-        self._is_side_asked = self._is_refused = False
+        self._is_refused = False
+        self._side = SideQuestion()
+        self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
+        self._asked_words = SILENT
         self._ticks = 0
         self._settled = QTimer(self)
         self._settled.setSingleShot(True)
@@ -117,7 +122,7 @@ class FreeMotionStep(Step):
             return tr("Choose the source of the sensors first.")
         if not sensors.site_of and not sensors.is_left_to_motion:
             return tr("Say first which sensor is worn where.")
-        return ""
+        return self._visit.cannot_record
 
     @property
     def topic(self) -> str:
@@ -190,6 +195,10 @@ class FreeMotionStep(Step):
     def on_quiet(self, number: int) -> None:
         self._repeat(self._repeatable[number])
 
+    def undo(self) -> None:
+        if self._is_recording and self._side.told is not None and not self._doubted:
+            self._on_answered(1)
+
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is Action.RUN:
             if self._is_recording:
@@ -256,6 +265,7 @@ class FreeMotionStep(Step):
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
         self._goes_on = self._begins_again = self._is_refused = False
         self._again_side = None
+        self._side, self._doubted = SideQuestion(), ()
         self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if side is not None:
             self._visit.place_sensors(only=side)
@@ -284,6 +294,7 @@ class FreeMotionStep(Step):
         if sensors.is_left_to_motion and not sensors.site_of:
             live = live_sensors(acquisition.sensors, visit.rests, sensors.status)
             self._work = self._unplaced = UnplacedFreeMotionWork(live, Side.LEFT, prosthetic, without, standing)
+            self._unplaced.name_leg(self._side.told)
         else:
             self._unplaced = None
             site_of = {
@@ -301,6 +312,7 @@ class FreeMotionStep(Step):
         if view.site_of and not sensors.site_of:  # the motion has told it
             sensors.assign_all(view.site_of)
             self._must_correct = True
+            self._side.withdraw()
         had_joints, was_done = bool(self._motion.joints), self._is_done
         self._motion = self._joined(view.motion)
         if sensors.site_of:
@@ -375,49 +387,64 @@ class FreeMotionStep(Step):
 
     def _doubt(self, exchanged: tuple[tuple[Site, ...], ...]) -> None:
         """Say which labels the motion contradicts, until somebody has answered."""
-        doubted = next((group for group in exchanged if group not in self._kept_labels), ())
-        if doubted == self._doubted:
-            return
-        self._doubted = doubted
-        keep = tr("Keep as worn")
-        if not doubted:
-            self.page.ask("")
-        elif len(doubted) == 2:
-            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
-            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
-            self.page.ask(named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep))
-        else:
-            what = tr("{sites} seem mixed up: the legs move otherwise.")
-            named = what.format(sites=", ".join(name_of(site) for site in doubted))
-            self.page.ask(named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep))
+        self._doubted = next((group for group in exchanged if group not in self._kept_labels), ())
+        self._show_question()
 
     def _ask_for_side(self, chains: "Chains | None") -> None:
         """The motion does not tell left from right: both legs began together, or one alone wears sensors."""
-        if chains is None:
-            return
-        first = chains.legs[0].shank
-        if not self._is_side_asked and first is not None:
-            self._is_side_asked = True
-            both = tr("Both legs moved at once. Which one wears {sensor} on its shank?")
-            what = both if len(chains.legs) > 1 else tr("Which leg wears {sensor} on its shank?")
-            self.page.ask(what.format(sensor=first), "", (tr("Left"), tr("Right")))
+        if chains is not None:
+            session = self._visit.session
+            placed = session.placements[-1].site_of if session is not None and session.placements else {}
+            self._side.look(chains, {name: site.side for name, site in placed.items()} | self._sides_told)
+            self._show_question()
+
+    def _show_question(self) -> None:
+        """Show what is to be answered, or what was understood; the page is left alone where that stands there."""
+        words = self._question() if self._is_recording else SILENT
+        if words != self._asked_words:
+            self._asked_words = words
+            self.page.ask(*words, is_understood=self._side.told is not None and not self._doubted)
+
+    def _question(self) -> Words:
+        doubted, keep = self._doubted, tr("Keep as worn")
+        if not doubted:
+            return self._side.words
+        if len(doubted) == 2:
+            what = tr("{first} and {last} seem swapped: the legs move otherwise.")
+            named = what.format(first=name_of(doubted[0]), last=name_of(doubted[1]))
+            return named, tr("Swap them, or keep as worn."), (tr("Swap them"), keep)
+        what = tr("{sites} seem mixed up: the legs move otherwise.")
+        named = what.format(sites=", ".join(name_of(site) for site in doubted))
+        return named, tr("Place them anew, or keep as worn."), (tr("Go to Sensors"), keep)
 
     def _on_answered(self, number: int) -> None:
-        self.page.ask("")
-        if self._is_side_asked:
-            self._is_side_asked = False
-            if self._unplaced is not None:
-                self._unplaced.name_first(Side.LEFT if number == 0 else Side.RIGHT)
+        doubted, self._doubted = self._doubted, ()
+        sensors = self._visit.sensors
+        if not doubted:
+            self._side.answer(number)
+            self._take_side()
         elif number == 1:
-            self._kept_labels.add(self._doubted)
-        elif len(self._doubted) == 2:
-            sensors = self._visit.sensors
-            sensors.assign(sensors.sensor_at[self._doubted[0]], self._doubted[1])
+            self._kept_labels.add(doubted)
+        elif len(doubted) == 2:
+            sensors.assign(sensors.sensor_at[doubted[0]], doubted[1])
             self._must_correct = True
             self._watch()  # what the motion told was told of others
         else:
             self.jumped.emit(SENSORS)
-        self._doubted = ()
+        self._show_question()
+
+    def _take_side(self) -> None:
+        """Let the motion be that of the leg that was named; what was placed already changes legs."""
+        told, sensors = self._side.told, self._visit.sensors
+        if told is not None:
+            self._sides_told[told[0]] = told[1]
+        if not sensors.site_of:
+            if self._unplaced is not None:
+                self._unplaced.name_leg(told)
+        elif told is not None and told[0] in sensors.site_of and sensors.site_of[told[0]].side is not told[1]:
+            sensors.assign_all({name: opposite(site) for name, site in sensors.site_of.items()})
+            self._must_correct = True
+            self._watch()  # as with labels that are swapped
 
     # the page
 
@@ -427,6 +454,7 @@ class FreeMotionStep(Step):
         from app.pages.free_motion_page import FreeMotionView
         from app.wizard.motion_shown import gauge_faces, sensor_marks
 
+        self._show_question()
         asked = self._asked()
         self._page.show_state(
             FreeMotionView(

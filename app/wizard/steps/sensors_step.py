@@ -94,6 +94,8 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return ""
+        if self._visit.cannot_record:
+            return tr("not for this patient")
         if sensors.is_left_to_motion and not sensors.site_of:
             return tr("left to the motion")
         return tr("{count} of 6 worn").format(count=len(sensors.site_of))
@@ -103,7 +105,7 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return StepState.TODO
-        if self._silent_site is not None:
+        if self._silent_site is not None or self._visit.cannot_record:
             return StepState.ATTENTION
         return StepState.DONE if sensors.joints or sensors.is_left_to_motion else StepState.TODO
 
@@ -136,7 +138,7 @@ class SensorsStep(Step):
         if sensors.acquisition is not None:
             sensors.acquisition.set_work(None)
         self._work = None
-        if sensors.site_of and sensors.site_of != self._known_places:
+        if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
             # other places of the same sensors: they were told wrongly; other sensors: strapped on since
             if self._visit.takes.since_strapped and sensors.site_of.keys() == self._known_places.keys():
                 self._visit.correct_placement()
@@ -175,6 +177,10 @@ class SensorsStep(Step):
         go_on = tr("Stand still")
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
+        if reason := self._visit.cannot_record:
+            other = Verb(tr("Choose other sensors"), tr("Enter"), Icon.REPEAT)
+            demonstration = Verb(tr("Begin with a demonstration patient"), is_wished=False)
+            return BarState(primary=other, others=(demonstration,), note=reason)
         if (silent := self._silent_site) is not None:
             again = Verb(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
             lost = tr(" and ").join(name_of(one) for one in Joint if silent in (one.proximal, one.distal))
@@ -194,13 +200,19 @@ class SensorsStep(Step):
         elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
                 self._replay(session)
+        elif self._visit.cannot_record:
+            self._on_stop_pressed()
+            self.page.focus()
         elif self._silent_site is not None:
             self._reconnect()
         elif self._visit.sensors.acquisition is not None:
             self.done.emit()
 
     def on_other(self, number: int) -> None:
-        self.done.emit()
+        if self._visit.cannot_record:
+            self.demonstration_wanted.emit()
+        else:
+            self.done.emit()
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is Action.LABEL:

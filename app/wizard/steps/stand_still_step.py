@@ -66,13 +66,17 @@ class StandStillStep(Step):
     def note(self) -> str:
         if self._visit.has_skipped_standing:
             return tr("skipped, printed")
-        return tr("{seconds:.1f} s, zero set").format(seconds=self._stood_s) if self._has_stood else ""
+        if not self._has_stood:
+            return ""
+        said = tr("{seconds:.1f} s, zero set") if self._visit.takes.standing is not None else tr("being read back")
+        return said.format(seconds=self._stood_s)
 
     @property
     def state(self) -> StepState:
         if self._visit.has_skipped_standing:
             return StepState.SKIPPED
-        return StepState.DONE if self._has_stood else StepState.TODO
+        is_read = self._has_stood and self._visit.takes.standing is not None
+        return StepState.DONE if is_read else StepState.TODO
 
     @property
     def cannot_enter(self) -> str:
@@ -83,7 +87,7 @@ class StandStillStep(Step):
             return tr("Choose the source of the sensors first.")
         if not sensors.site_of and not sensors.is_left_to_motion:
             return tr("Say first which sensor is worn where.")
-        return ""
+        return self._visit.cannot_record
 
     @property
     def topic(self) -> str:
@@ -152,8 +156,10 @@ class StandStillStep(Step):
 
     @property
     def _has_stood(self) -> bool:
-        """For as long as it takes: what a crash cut short was recovered, and is not enough."""
-        return self._stood_s > WANTED_S - SLACK_S and not self._visit.takes.is_restrapped
+        """For as long as it takes, and recorded: what a crash cut short was recovered, and is not enough."""
+        takes = self._visit.takes
+        is_kept = takes.standing is not None or takes.awaits(RecordingKind.STANDING)
+        return is_kept and self._stood_s > WANTED_S - SLACK_S and not takes.is_restrapped
 
     @property
     def _stood_s(self) -> float:
@@ -248,7 +254,9 @@ class StandStillStep(Step):
         self.changed.emit()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
-        if self._phase is StandPhase.COUNTING and not self._is_recording:
+        is_given_up = self._phase is StandPhase.DONE and not self._has_stood
+        if is_given_up or (self._phase is StandPhase.COUNTING and not self._is_recording):
+            self._shown.stop()
             self._phase = self._settled_phase()
             self._show()
             self.changed.emit()

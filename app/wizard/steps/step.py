@@ -29,6 +29,8 @@ class Step(QObject):
         Another step, by its number from 0, is where to go on.
     offered
         Something was done that can be undone: what, for the toast; `undo` takes it back.
+    demonstration_wanted
+        A visit of the demonstration's patient is to begin in place of this one.
     """
 
     changed = Signal()
@@ -36,6 +38,7 @@ class Step(QObject):
     jumped = Signal(int)
     told = Signal(str, str)
     offered = Signal(str)
+    demonstration_wanted = Signal()
 
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)

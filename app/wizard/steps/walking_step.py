@@ -111,6 +111,8 @@ class WalkingStep(Step):
         sensors = self._visit.sensors
         if sensors.acquisition is None:
             return tr("Choose the source of the sensors first.")
+        if self._visit.cannot_record:
+            return self._visit.cannot_record
         if not sensors.site_of:
             return tr("Say first which sensor is worn where.")
         if self._visit.takes.must_move:

@@ -1,7 +1,6 @@
 """The step of free motion on a simulated patient: gauges close, it ends by itself, and one leg can be repeated."""
 
 from collections.abc import Callable, Iterator
-from types import SimpleNamespace
 
 import pytest
 from pytestqt.qtbot import QtBot
@@ -14,12 +13,13 @@ from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.free_motion_step import FreeMotionStep
-from app.wizard.visit import Visit
+from app.wizard.visit import Visit, opposite
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
 from tests.app.wizard.test_hints import motion, state
+from tests.app.wizard.test_side_question import chains
 from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -288,15 +288,45 @@ def test_two_legs_that_begin_together_are_told_apart_by_asking(
     visit.sensors.leave_to_motion(True)
     step.enter()
     ticks(qtbot, step, lambda: step._unplaced is not None)
-    together = SimpleNamespace(
-        legs=(SimpleNamespace(shank="0A22"), SimpleNamespace(shank="0A2C")), is_certain=True, is_first_certain=False
-    )
-    step._ask_for_side(together)  # type: ignore[arg-type]  # chains, as far as they are asked
-    assert step.page.question.notice.text == "Both legs moved at once. Which one wears 0A22 on its shank?"
+    shanks = [f"DEMO-{Site.LEFT_SHANK}", f"DEMO-{Site.RIGHT_SHANK}"]
+    together = chains(*shanks)
+    question, unplaced = step.page.question, step._unplaced
+    assert unplaced is not None
+    step._ask_for_side(together)
+    assert question.notice.text == f"Both legs moved at once. Which one wears {shanks[0]} on its shank?"
     step.page.answered.emit(1)
-    assert step._unplaced is not None
-    assert step._unplaced._answer is Side.RIGHT
-    assert step.page.question.isHidden()
+    assert step._side.told is None  # the library knows it of the left leg
+    assert question.notice.text == f"Earlier {shanks[0]} was worn on the left leg. Which leg wears it now?"
+    step.page.answered.emit(1)
+    assert unplaced._answer == (shanks[0], Side.RIGHT)
+    for _ in range(3):
+        step._ask_for_side(together)  # the estimator has not taken it yet
+    assert question.notice.text == f"Understood: {shanks[0]} is on the right leg."
+    assert [button.text() for button in question.buttons if not button.isHidden()] == ["Undo"]
+    step.page.answered.emit(1)
+    assert step._side.told is None
+    assert "Which one wears" in question.notice.text
+    step.page.answered.emit(0)
+    assert question.notice.text == f"Understood: {shanks[0]} is on the left leg."
+
+
+def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
+    qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
+) -> None:
+    visit.sensors.leave_to_motion(True)
+    step.enter()
+    ticks(qtbot, step, lambda: step._unplaced is not None)
+    shank = f"DEMO-{Site.LEFT_SHANK}"
+    step._ask_for_side(chains(shank, f"DEMO-{Site.RIGHT_SHANK}"))
+    for _ in range(2):  # the library knows it of the left leg
+        step.page.answered.emit(1)
+    visit.sensors.assign_all({sensor: opposite(site) for sensor, site in worn.items()})  # as the motion then tells
+    for number in (1, 0):
+        step.page.answered.emit(number)
+    assert visit.sensors.site_of == worn
+    assert step.page.question.notice.text == f"Understood: {shank} is on the left leg."
+    step._stop()
+    ticks(qtbot, step, step.page.question.isHidden)
 
 
 class Told:

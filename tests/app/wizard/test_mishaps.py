@@ -216,7 +216,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looke
     recovered = replace(walk.stored, state=RecordingState.RECOVERED)
     again.takes.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
-    assert "was recovered up to the last 0.1 s" in step.page.notice.text
+    assert "was recovered, up to the last record on the disk" in step.page.notice.text
     step._on_discard_pressed(str(walk.id))
     qtbot.waitUntil(lambda: not again.takes.walks[0].told.is_kept, timeout=WAIT_MS)
     step.leave()

@@ -11,8 +11,12 @@ from app.pages.sensors_page import Way
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
+from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
+from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site
 from core.samples import Session
@@ -193,3 +197,74 @@ def test_what_is_refused_is_said_in_the_users_language(qtbot: QtBot, visit: Visi
     what, remedy = refused.args
     assert what.startswith("[COM{7} ")
     assert (what[-2:], remedy[:1], remedy[-2:]) == ("].", "[", "].")
+
+
+@pytest.fixture
+def simulated_on_a_patient(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
+) -> Visit:
+    """Simulated sensors that a search found, on a patient who is none of the demonstration's."""
+    open_source(qtbot, visit, step)
+    visit.sensors.assign_all(worn)
+    monkeypatch.setattr("app.wizard.visit.DEMO", "NOBODY")
+    assert not visit.may_simulate
+    return visit
+
+
+def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
+    simulated_on_a_patient: Visit, step: SensorsStep
+) -> None:
+    visit = simulated_on_a_patient
+    bar = step.bar()
+    assert bar.note == "These sensors are simulated, and DEMO-7 is no demonstration patient: nothing would be recorded."
+    assert bar.primary is not None
+    assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Begin with a demonstration patient")
+    assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")
+    for other in (StandStillStep, FreeMotionStep, WalkingStep):
+        assert other(Look(), visit).cannot_enter == bar.note
+    step.on_primary()
+    assert visit.sensors.acquisition is None
+    assert step.page.nothing.isVisible()
+    assert not visit.cannot_record
+
+
+def test_simulated_sensors_are_not_refused_on_the_demonstrations_patient(
+    qtbot: QtBot, visit: Visit, step: SensorsStep, worn: dict[str, Site]
+) -> None:
+    open_source(qtbot, visit, step)
+    visit.sensors.assign_all(worn)
+    assert not visit.cannot_record
+    assert step.state is StepState.DONE
+    assert step.bar().primary is not None
+    assert "simulated" not in step.bar().note
+
+
+def test_who_has_simulated_sensors_is_led_to_a_demonstration_patient(
+    qtbot: QtBot, simulated_on_a_patient: Visit, step: SensorsStep
+) -> None:
+    with qtbot.waitSignal(step.demonstration_wanted):
+        step.on_other(0)
+    step.leave()
+    qtbot.wait(50)
+    session = simulated_on_a_patient.session
+    assert session is not None
+    assert session.placements == ()  # what sends nothing to be kept is worn nowhere
+
+
+@pytest.mark.parametrize("code", ["DEMO-1", "DEMO-2"])
+def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
+    qtbot: QtBot, wizard: Wizard, monkeypatch: pytest.MonkeyPatch, code: str
+) -> None:
+    monkeypatch.setattr("app.wizard.wizard.DEMO_PATIENT", code)
+    wizard.begin(None)
+    first = wizard.visit
+    wizard._on_demonstration_wanted()
+    assert wizard.visit is not first
+    assert wizard.visit is not None
+    patient = wizard.visit.patient
+    qtbot.waitUntil(lambda: patient.told.code == code, timeout=5000)
+    assert (patient.stored is not None) is (code == "DEMO-1")
+    assert wizard.visit.may_simulate
+    with qtbot.waitSignal(wizard.visit.changed, timeout=5000):
+        wizard._on_primary()
+    qtbot.waitUntil(lambda: isinstance(wizard.current, SensorsStep), timeout=5000)

@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.recorder import Recorder
 from app.pages.stand_still_page import StandPhase
+from app.storage.opened import OpenedLibrary
+from app.storage.stored import LibraryError
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
@@ -66,6 +69,27 @@ def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     assert set(visit.rests) == set(worn)
     assert step.state is StepState.DONE
     assert step.note.endswith("s, zero set")
+
+
+def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
+    qtbot: QtBot, step: StandStillStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What is still to be read back is called so; what the library refuses for good is a standing to be repeated."""
+
+    def refusing(recorder: Recorder, opened: OpenedLibrary) -> object:
+        recorder.halt()
+        raise LibraryError("This session is not in the library any more", "Reload the session")
+
+    monkeypatch.setattr(Recorder, "stop", refusing)
+    monkeypatch.setattr("app.wizard.takes.MOST_READINGS", 2)
+    visit.takes._again.setInterval(200)
+    assert step.on_intent(SPACE)
+    ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
+    assert (step.state, step.note) == (StepState.TODO, "being read back")
+    qtbot.waitUntil(lambda: visit.takes.is_idle, timeout=10_000)
+    assert visit.takes.standing is None
+    assert (step.state, step.note) == (StepState.TODO, "")
+    assert phase(step) is StandPhase.READY
 
 
 def test_who_moves_makes_the_count_begin_again(

@@ -110,12 +110,30 @@ def test_sensors_without_sites_are_placed_and_made_up_for(
 
 def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(worn: Worn) -> None:
     work = UnplacedFreeMotionWork(worn.live_sensors, None)
-    work.name_first(Side.RIGHT)
+    left = next(name for name, site in worn.site_of.items() if site is Site.LEFT_SHANK)
+    work.name_leg((left, Side.RIGHT))
     last = fed(work, dict(worn.free_motion))[-1]
     assert {name: site.segment for name, site in last.site_of.items()} == {
         name: site.segment for name, site in worn.site_of.items()
     }
     assert all(last.site_of[name].side is not site.side for name, site in worn.site_of.items())
+
+
+def test_a_word_about_the_leg_that_moved_second_names_the_first_the_other(worn: Worn) -> None:
+    """Whoever answers looks at a sensor, not at which leg the search has put first by then."""
+    work = UnplacedFreeMotionWork(worn.live_sensors, None)
+    right = next(name for name, site in worn.site_of.items() if site is Site.RIGHT_SHANK)
+    work.name_leg((right, Side.RIGHT))
+    assert fed(work, dict(worn.free_motion))[-1].site_of == worn.site_of
+
+
+def test_a_word_that_is_undone_places_nobody(worn: Worn) -> None:
+    work = UnplacedFreeMotionWork(worn.live_sensors, None)
+    work.name_leg((next(iter(worn.site_of)), Side.RIGHT))
+    work.name_leg(None)
+    last = fed(work, dict(worn.free_motion))[-1]
+    assert last.is_side_open
+    assert not last.site_of
 
 
 def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(worn: Worn) -> None:
@@ -124,7 +142,7 @@ def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(worn: Worn) -> Non
     streams = {name: between(worn.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
     assert fed(work, streams)[-1].is_side_open
     assert not work.state.site_of
-    work.name_first(Side.RIGHT)
+    work.name_leg((next(iter(right)), Side.RIGHT))
     later = {name: between(worn.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
     assert fed(work, later)[-1].site_of == {name: worn.site_of[name] for name in right}
 

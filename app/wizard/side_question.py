@@ -1,0 +1,76 @@
+"""Which leg is it, where the motion does not tell? Asked once; the answer is shown, can be undone, and is held to."""
+
+from collections.abc import Mapping
+
+from app.wording import side_name, tr
+from core.body import Side
+from core.placement.chains import Chains
+
+Words = tuple[str, str, tuple[str, ...]]
+SILENT: Words = "", "", ()
+
+
+class SideQuestion:
+    """Asks which leg wears a sensor, while both began together or one alone wears sensors.
+
+    Attributes
+    ----------
+    asked
+        The sensor that is asked about; None while none is.
+    told
+        The sensor and the side that were understood; None before, and once that is undone.
+    """
+
+    def __init__(self) -> None:
+        self.asked: str | None = None
+        self.told: tuple[str, Side] | None = None
+        self._are_both = False
+        self._earlier: dict[str, Side] = {}
+        self._contradicted: Side | None = None
+        self._is_undone = False
+
+    @property
+    def words(self) -> Words:
+        """What stands on the screen: a question, what was understood, or nothing."""
+        if self.asked is not None:
+            which = tr("Which leg wears {sensor} on its shank?")
+            if self._contradicted is not None:
+                which = tr("Earlier {sensor} was worn on the {side} leg. Which leg wears it now?")
+            elif self._are_both:
+                which = tr("Both legs moved at once. Which one wears {sensor} on its shank?")
+            side = "" if self._contradicted is None else side_name(self._contradicted)
+            return which.format(sensor=self.asked, side=side), "", (tr("Left"), tr("Right"))
+        if self.told is not None:
+            sensor, side = self.told
+            understood = tr("Understood: {sensor} is on the {side} leg.").format(sensor=sensor, side=side_name(side))
+            return understood, "", (tr("Undo"),)
+        return SILENT
+
+    def look(self, chains: Chains, earlier: Mapping[str, Side]) -> None:
+        """Ask, unless that was asked or answered of one of these legs. `earlier` is what was said of sensors before."""
+        self._earlier = dict(earlier)
+        known = self.asked or (self.told[0] if self.told is not None else None)
+        if any(known in leg.sensors for leg in chains.legs):
+            return
+        self.told, self._contradicted = None, None
+        self.asked = chains.legs[0].shank
+        self._are_both = chains.lead_s is not None
+
+    def answer(self, number: int) -> None:
+        """Take the answer of this number, as `words` offers them; what contradicts an earlier one is asked again."""
+        if self.asked is None:
+            if self.told is not None:  # undone
+                self.asked, self.told, self._is_undone = self.told[0], None, True
+            return
+        sensor, side = self.asked, (Side.LEFT, Side.RIGHT)[number]
+        before = self._earlier.get(sensor, side)
+        if before is not side and self._contradicted is None and not self._is_undone:
+            self._contradicted = before
+            return
+        self.asked, self._contradicted, self._is_undone = None, None, False
+        self.told = sensor, side
+
+    def withdraw(self) -> None:
+        """Ask no longer, for the motion has told it itself; an answer that was undone is still wanted."""
+        if not self._is_undone:
+            self.asked, self._contradicted = None, None
