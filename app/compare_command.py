@@ -2,7 +2,7 @@
 
 import argparse
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,6 +12,8 @@ from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
     from app.reports.comparison import Comparison, Part
+    from core.results import Analysis
+    from core.samples import Session
 
 DIFFERENCES = "differences.csv"
 FLAGS = {  # as core.verdicts.measurement_error has them
@@ -53,7 +55,7 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
     OSError
         The table cannot be written.
     """
-    from app.reports.differences import comparisons_of, rows_of, write_differences
+    from app.reports.differences import comparisons_of, rows_of, without_common_condition, write_differences
     from app.reports.result_folder import written_beside
     from core.analysis import analyse
 
@@ -68,8 +70,11 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         visits.append((session, analyse(session, progress=told)))
     comparisons = comparisons_of(visits)
     rows = [row for comparison in comparisons for row in rows_of(comparison)]
+    alone = [_not_compared(wanted.sessions[number - 1], visits) for number in without_common_condition(visits)]
     if not rows:
         names = ", ".join(one_line(str(place)) for place in wanted.sessions)
+        if alone:
+            raise FileRefusedError(names, " ".join(alone), "Name sessions that were walked under the same condition")
         what = "there are no two conditions, nor two sessions, with strides in both"
         raise FileRefusedError(names, what, "Name two sessions, or one with two conditions")
     with written_beside(wanted.out) as folder:
@@ -77,10 +82,21 @@ def compare(wanted: argparse.Namespace, report: Report) -> list[str]:
         report(1.0, "writing")
     return [
         *(line for comparison in comparisons for line in _table(comparison)),
+        *(["", *alone] if alone else []),
         *(["", DAGGER_MEANS] if any(row.difference.is_unverified for row in rows) else []),
         "",
         f"{wanted.out / DIFFERENCES}: {len(rows)} differences. Research use. Not a medical device.",
     ]
+
+
+def _not_compared(place: object, visits: "Sequence[tuple[Session, Analysis]]") -> str:
+    from app.reports.visits import conditions_in_words
+
+    walked = [
+        (f"session {number}", analysis, session.recordings) for number, (session, analysis) in enumerate(visits, 1)
+    ]
+    name = one_line(str(place))
+    return f"{name} has no condition in common with the first, so they are not compared. {conditions_in_words(walked)}"
 
 
 def _check_place(out: Path) -> None:

@@ -37,6 +37,7 @@ from app.reports.comparison import (
     sources_in_words,
 )
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
+from app.reports.visits import ComparedVisits, condition_in_words
 from app.reports.walk_figures import SideCycle
 from app.theme import Look
 from app.widgets.card import Card
@@ -64,6 +65,9 @@ ERROR = later("Grey: measurement error. It holds {sources}.")
 BORROWED = later("For the ankle the knee's figure is borrowed.")
 UNVERIFIED = later("\N{DAGGER} rests on a figure whose source could not be verified.")
 OTHER_ZERO = later("No common zero: range and shape hold, height does not. 0° is the mean of the stride.")
+NO_COMMON_CONDITION = later(
+    "This visit has no condition in common with an earlier one, so they are not compared. {walked}"
+)
 NOTHING = {
     Kind.CONDITIONS: later("One walk has strides. Record a second one to compare."),
     Kind.VISITS: later("No earlier visit of this patient has a walk to compare."),
@@ -86,7 +90,8 @@ class ComparePage(QWidget):
         super().__init__()
         self._look = look
         self._conditions: tuple[Part, ...] = ()
-        self._visits: tuple[Part, ...] | None = None
+        self._visits: tuple[ComparedVisits, ...] | None = None
+        self._walked = ""  # under which conditions each visit was
         self._affected: Side | None = None
         self._affected_words = ""
         self._analysis: Analysis | None = None
@@ -139,11 +144,10 @@ class ComparePage(QWidget):
         self._has_visits = has_visits
         self._offer_kinds()
 
-    def show_visits(self, parts: Sequence[Part]) -> None:
-        """Show the visits up to this one, in the order of time; letters are the screen's own."""
-        self._visits, self._is_reading = tuple(parts), False
-        if self.kind is Kind.VISITS:
-            self._on_kind_changed()
+    def show_visits(self, visits: Sequence[ComparedVisits], walked: str = "") -> None:
+        """Show the conditions that visits up to this one share; `walked` says which of them each visit has."""
+        self._visits, self._walked, self._is_reading = tuple(visits), walked, False
+        self._offer_kinds()
 
     def set_band_shown(self, is_shown: bool) -> None:
         for frame in self.frames.values():
@@ -165,7 +169,13 @@ class ComparePage(QWidget):
 
     @property
     def kind(self) -> Kind:
-        return Kind(self.kinds.currentData() or Kind.CONDITIONS)
+        return Kind((self.kinds.currentData() or Kind.CONDITIONS).split()[0])
+
+    @property
+    def _of_visits(self) -> ComparedVisits | None:
+        """The condition whose visits are compared."""
+        number = self.kinds.currentIndex() - self.kinds.findData(Kind.VISITS)
+        return self._visits[number] if self._visits and self.kind is Kind.VISITS else None
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -266,8 +276,11 @@ class ComparePage(QWidget):
         self.kinds.blockSignals(True)
         self.kinds.clear()
         self.kinds.addItem(tr("Walks of this visit"), Kind.CONDITIONS)
-        if self._has_visits:
+        if self._has_visits and not self._visits:
             self.kinds.addItem(tr("Visits"), Kind.VISITS)
+        for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
+            said = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
+            self.kinds.addItem(said, f"{Kind.VISITS} {number}" if number else Kind.VISITS)
         self.kinds.addItem(self._affected_words, Kind.SIDES)
         first = Kind.CONDITIONS if len(self._conditions) > 1 else Kind.SIDES
         self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
@@ -285,7 +298,9 @@ class ComparePage(QWidget):
         self._show()
 
     def _parts(self) -> tuple[Part, ...]:
-        return (self._visits or ()) if self.kind is Kind.VISITS else self._conditions
+        if self.kind is Kind.VISITS:
+            return self._of_visits.parts if self._of_visits is not None else ()
+        return self._conditions
 
     def _make_chips(self, parts: Sequence[Part]) -> None:
         chips = Chips(
@@ -332,6 +347,8 @@ class ComparePage(QWidget):
         parts = self._parts()
         if self.kind is Kind.SIDES:
             return "" if any(len(part.sides) > 1 for part in parts) else tr(NOTHING[Kind.SIDES])
+        if self.kind is Kind.VISITS and not parts and self._walked:
+            return tr(NO_COMMON_CONDITION).format(walked=self._walked)
         return tr(NOTHING[self.kind]) if len(parts) < 2 else ""
 
     def _show_comparison(self) -> None:
@@ -354,7 +371,10 @@ class ComparePage(QWidget):
             frame.show_lines(lines, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
             frame.setVisible(side in found.sides)
         letter = found.against.letter
-        self.title.setText(tr("Change from {letter}").format(letter=letter))
+        visits = self._of_visits
+        title = tr("Change from {letter}") if visits is None else tr("Change from {letter}, {condition}")
+        condition = "" if visits is None else condition_in_words(visits.condition)
+        self.title.setText(title.format(letter=letter, condition=condition))
         told = [row.difference for row in found.rows if row.is_told]
         is_borrowed = any(found.error_kind(part) is not ComparisonKind.ATTACHED for part in found.others)
         self._say_error(told, is_borrowed=is_borrowed and any(not joint.is_knee for joint in found.joints))
@@ -442,6 +462,9 @@ class ComparePage(QWidget):
             said.append(tr("No difference is larger than its error."))
         elif (not worth and self.comparison is None) or (self.comparison is not None and self.comparison.others):
             said += [] if worth else [tr("No difference could be judged.")]
+        if self.comparison is not None and self._of_visits is not None and self._of_visits.without:
+            without = tr("Not compared, for want of a walk of this condition: {visits}.")
+            said.append(without.format(visits=", ".join(self._of_visits.without)))
         if by_hand := left_out_of_parts(parts):
             said.append(by_hand)
         self.conclusion.setText("\n".join(said))

@@ -120,7 +120,7 @@ class Reservation(StrEnum):
 
 @dataclass(frozen=True)
 class Part:
-    """One condition, walk or visit: its walks, whose strides are taken together.
+    """One condition or walk, of this visit or another: its walks, whose strides are taken together.
 
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
     """
@@ -406,12 +406,6 @@ def conditions_of(analysis: Analysis, recordings: Sequence[Recording], prefix: s
         Part(prefix + letter, name, tuple(walks), analysis.calibrated_for(walks[0]), at)
         for letter, ((name, at), walks) in zip(LETTERS, found.items(), strict=False)
     )
-
-
-def visit_of(letter: str, name: str, analysis: Analysis) -> Part | None:
-    """All walks of one visit that have strides; None without any."""
-    walks = tuple(_walks(analysis))
-    return Part(letter, name, walks, analysis.calibrated_for(walks[0])) if walks else None
 
 
 def _walks(analysis: Analysis) -> list[RecordingAnalysis]:

@@ -5,13 +5,14 @@ report show some of them.
 """
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_legs, conditions_of
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.status import status_of
+from app.reports.visits import by_condition
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.gait.spatiotemporal import MeanAndSd
@@ -61,8 +62,9 @@ class Row:
 def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Comparison]:
     """Within each visit its conditions, then each later visit against the first.
 
-    Between visits a condition is told against the same one of the first; where they share none, the last ones are.
-    Letters of several visits have the visit's number before them.
+    Between visits a condition is told against the same one of the first, and never against another; what is not
+    compared for that reason `without_common_condition` tells. Letters of several visits have the visit's number before
+    them.
     """
     of_visits = []
     for number, (session, analysis) in enumerate(visits, start=1):
@@ -74,13 +76,29 @@ def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Compariso
         for parts, is_simulated in zip(of_visits, are_simulated, strict=True)
         if len(parts) > 1
     ]
-    of_first = of_visits[0] if of_visits else ()
-    for parts, is_simulated in list(zip(of_visits, are_simulated, strict=True))[1:]:
-        names = {part.name: part for part in reversed(of_first)}
-        shared = [(names[part.name], part) for part in parts if part.name in names]
-        for pair in shared or zip(of_first[-1:], parts[-1:], strict=False):
+    walked = _by_condition(visits)
+    for of_visit, is_simulated in list(zip(walked, are_simulated, strict=True))[1:]:
+        for condition in [condition for condition in of_visit if condition in walked[0]]:
+            pair = (walked[0][condition], of_visit[condition])
             found.append(Comparison(Kind.VISITS, pair, is_simulated=is_simulated or are_simulated[0]))
     return found
+
+
+def without_common_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[int]:
+    """Numbers, from 1, of the later visits that have strides, but under no condition of the first."""
+    walked = _by_condition(visits)
+    return [
+        number
+        for number, of_visit in enumerate(walked, start=1)
+        if number > 1 and of_visit and not of_visit.keys() & walked[0].keys()
+    ]
+
+
+def _by_condition(visits: Sequence[tuple[Session, Analysis]]) -> list[Mapping[str, Part]]:
+    return [
+        by_condition(analysis, session.recordings, str(number))
+        for number, (session, analysis) in enumerate(visits, start=1)
+    ]
 
 
 def rows_of(comparison: Comparison) -> Iterator[Row]:

@@ -37,8 +37,11 @@ def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
     return Resumed(opened.library.patients.get(session.patient_id), session, takes, known)
 
 
-def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "Analysis":
-    """What came of a session: as it is kept, else computed now, and kept; without the strides left out by hand."""
+def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "tuple[Session, Analysis]":
+    """Read a session without its samples, and what came of it: as that is kept, else computed now, and kept.
+
+    Strides left out by hand are left out.
+    """
     from app.storage.kept_analyses import bare, find_analysis, keep_analysis
     from core.analysis import analyse
     from core.chosen_strides import leave_out
@@ -49,7 +52,8 @@ def analysis_of(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "A
     if known is None:
         known = analyse(bare(told), progress=report)
         keep_analysis(results, session_id, told, known)
-    return leave_out(known, told.recordings)
+    without_samples = tuple(replace(recording, imu={}) for recording in told.recordings)
+    return replace(told, recordings=without_samples), leave_out(known, told.recordings)
 
 
 def evaluated(session: StoredSession, takes: Sequence[Take]) -> Session:

@@ -17,7 +17,7 @@ from app.logs import version_of
 from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
-from app.wizard.resuming import Resumed, analysis_of, evaluated, read_session, read_takes, rests_of, with_limits
+from app.wizard.resuming import Resumed, evaluated, read_analysed, read_session, read_takes, rests_of, with_limits
 from app.wizard.reviewing import Reviewing
 from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
@@ -49,7 +49,7 @@ class Visit(QObject):
     resumed
         A session of the library has been read, with its recordings.
     earlier_read
-        The patient's visits before this one, each as when it began and its analysis, in the order of time.
+        The patient's visits before this one, each as the session without samples and its analysis, in order of time.
     refused
         What the library or a source refused, and what to do.
     """
@@ -296,10 +296,10 @@ class Visit(QObject):
             return
         session = self.session
 
-        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[str, Analysis]]":
+        def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Session, Analysis]]":
             lines = opened.library.sessions.list(session.patient_id)  # latest first
             before = [line for line in lines if line.id != session.id and line.started < session.told.started]
-            return [(line.started, analysis_of(opened, line.id, report)) for line in reversed(before[:MOST_EARLIER])]
+            return [read_analysed(opened, line.id, report) for line in reversed(before[:MOST_EARLIER])]
 
         self._desk.run_long(work, self._on_earlier_read, self._on_refused, None, self)
 
@@ -367,7 +367,7 @@ class Visit(QObject):
         self.changed.emit()
         self.evaluate()
 
-    def _on_earlier_read(self, found: "list[tuple[str, Analysis]]") -> None:
+    def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         self.earlier_read.emit(found)
 
     def _on_computed(self, session: Session, analysis: "Analysis") -> None:

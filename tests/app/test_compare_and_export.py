@@ -10,7 +10,8 @@ import pytest
 
 from app.cli import main
 from app.compare_command import DIFFERENCES, FLAGS, _table
-from app.reports.differences import Row, comparisons_of, rows_of
+from app.reports.comparison import Kind
+from app.reports.differences import Row, comparisons_of, rows_of, without_common_condition
 from core.analysis import analyse
 from core.body import Side
 from core.results import Analysis, ZeroKind
@@ -64,9 +65,26 @@ def test_conditions_are_told_against_the_first_and_visits_by_condition(visits: l
     renamed = replace(
         session, recordings=(*session.recordings[:-1], replace(session.recordings[-1], condition="shoes"))
     )
-    last = comparisons_of([visits[0], (renamed, analysis)])[-1]
-    assert [part.name for part in last.parts] == ["AFO", "shoes"]
+    assert [found.kind for found in comparisons_of([visits[0], (renamed, analysis)])] == [Kind.CONDITIONS]
+    assert without_common_condition([visits[0], (renamed, analysis)]) == [2]
+    assert without_common_condition(visits) == []
     assert comparisons_of(visits[1:]) == []
+
+
+def test_sessions_without_a_common_condition_are_refused_and_told(
+    visits: list[Visit], folders: list[Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    session, _ = visits[1]
+    renamed = tuple(replace(one, condition="shoes") if one.condition else one for one in session.recordings)
+    write_session(replace(session, recordings=renamed), tmp_path / "3")
+    arguments = ["compare", str(folders[1]), str(tmp_path / "3"), "--out", str(tmp_path / "out")]
+    assert main(arguments) == 2
+    said = capsys.readouterr().err
+    assert "no condition in common with the first, so they are not compared" in said
+    assert "session 1: AFO. session 2: shoes." in said
+    assert not (tmp_path / "out").exists()
+    assert main(["compare", str(folders[0]), *arguments[2:]]) == 0  # the first has two of its own
+    assert "session 2: shoes." in capsys.readouterr().out
 
 
 def test_within_a_session_the_error_is_that_of_sensors_that_stay_on(visits: list[Visit]) -> None:

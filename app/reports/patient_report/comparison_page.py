@@ -38,6 +38,7 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.visits import by_condition, condition_in_words
 from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import capitalised, joined, tr
 from core.body import Side
@@ -52,16 +53,15 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
     """What the report compares: with an earlier visit, else the conditions chosen; None where neither is.
 
     A walk stands for all walks of its condition, as on the screen, unless another of them was chosen beside it. Of an
-    earlier visit the same condition counts, or its last where it has no such.
+    earlier visit the same condition counts, as it was walked last; where it has no such, nothing is compared.
     """
     visit, is_simulated = request.visit, request.visit.analysis.is_simulated
     if request.earlier is not None:
         name = visit.recording(request.shown).condition
-        before = conditions_of(request.earlier.analysis, request.earlier.session.recordings)
-        same = [part for part in before if name and part.name == name] or list(before[-1:])
-        pair = [*same[-1:], _condition(visit, request.shown, (request.shown,))]
-        if len(pair) < 2:
+        same = by_condition(request.earlier.analysis, request.earlier.session.recordings).get(name)
+        if same is None:
             return None
+        pair = same, _condition(visit, request.shown, (request.shown,))
         names = tr("Earlier visit, {day}"), tr("This visit, {day}")
         parts = [
             replace(part, letter=str(k + 1), name=names[k].format(day=_day_of(of.session.started)))
@@ -73,6 +73,29 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
     conditions = [_condition(visit, name, request.walks) for name in request.walks]
     lettered = [replace(part, letter=letter) for letter, part in zip("ABC", conditions, strict=False)]
     return Comparison(Kind.CONDITIONS, tuple(lettered), is_simulated=is_simulated)
+
+
+def not_compared_page(request: ReportRequest) -> list[Block]:
+    """Say why an earlier visit that was chosen is not compared with; nothing where it is, or none was chosen."""
+    earlier, visit = request.earlier, request.visit
+    if earlier is None or comparison_of(request) is not None:
+        return []
+    before = list(by_condition(earlier.analysis, earlier.session.recordings))
+    said = tr("The visit of {day} has no walk that can be compared.")
+    if before:
+        said = tr(
+            "The visit of {day} has no walk of this condition ({condition}), so it is not compared; it has {others}."
+        )
+    words = said.format(
+        day=_day_of(earlier.session.started),
+        condition=_condition_typed(visit.recording(request.shown).condition),
+        others=", ".join(map(_condition_typed, before)),
+    )
+    return [heading(tr("Comparison of visits")), paragraph(words)]
+
+
+def _condition_typed(condition: str) -> str:
+    return typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
 
 
 def _condition(visit: Visit, name: str, chosen: Sequence[str]) -> Part:

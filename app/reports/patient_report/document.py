@@ -10,7 +10,7 @@ import typst
 
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block
-from app.reports.patient_report.comparison_page import comparison_of, comparison_page
+from app.reports.patient_report.comparison_page import comparison_of, comparison_page, not_compared_page
 from app.reports.patient_report.consistency_page import consistency_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
@@ -102,6 +102,7 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         curves_page(facts, condition),
         peaks_page(facts),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
+        *([alone] if (alone := not_compared_page(request)) else []),
         consistency_page(facts),
         words_page(request, facts),
     ]

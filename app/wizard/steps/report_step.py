@@ -267,13 +267,9 @@ class ReportStep(Step):
 
         def read(opened: "OpenedLibrary", report: Report) -> "tuple[UUID, ReportVisit]":
             from app.reports.patient_report.request import Visit as ReportVisit
-            from app.wizard.resuming import analysis_of, evaluated, read_takes
+            from app.wizard.resuming import read_analysed
 
-            stored = opened.library.sessions.get(session_id)
-            told = evaluated(stored, read_takes(opened, stored))
-            without_samples = tuple(replace(recording, imu={}) for recording in told.recordings)
-            analysis = analysis_of(opened, session_id, report)
-            return session_id, ReportVisit(replace(told, recordings=without_samples), analysis)
+            return session_id, ReportVisit(*read_analysed(opened, session_id, report))
 
         self._desk.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
         self.changed.emit()

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from app.wizard.visit import Visit
     from app.workers.how_found_desk import HowFoundDesk
     from core.results import Analysis
-    from core.samples import Recording
+    from core.samples import Recording, Session
 
 
 class ResultsStep(Step):
@@ -325,16 +325,16 @@ class ResultsStep(Step):
 
     # earlier visits
 
-    def _on_earlier_read(self, found: "list[tuple[str, Analysis]]") -> None:
+    def _on_earlier_read(self, found: "list[tuple[Session, Analysis]]") -> None:
         """Show the visits in the order of time, this one last."""
-        if self._shown is None or self._frame is None:
+        session = self._visit.evaluation.session
+        if self._shown is None or self._frame is None or session is None:
             return
-        from app.reports.comparison import visit_of
+        from app.reports.visits import conditions_in_words, visits_by_condition
 
-        visits = [*found, (self._visit.told.started, self._shown)]
-        named = [(started[:10], analysis) for started, analysis in visits]
-        parts = [visit_of(str(k + 1), day, analysis) for k, (day, analysis) in enumerate(named)]
-        self.page.results().compare.show_visits([part for part in parts if part is not None])
+        visits = [*found, (session, self._shown)]
+        named = [(told.started[:10], analysis, told.recordings) for told, analysis in visits]
+        self.page.results().compare.show_visits(visits_by_condition(named), conditions_in_words(named))
 
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()

@@ -23,6 +23,7 @@ from app.reports.differences import (
     write_differences,
     write_sides,
 )
+from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
@@ -212,12 +213,90 @@ def test_visits_are_asked_for_once_and_told_when_there_are_none(
     with qtbot.waitSignal(compare.visits_wished):
         compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
     assert compare.nothing.isVisible()
-    compare.show_visits(parts[:1])
+    compare.show_visits([])
     assert "No earlier visit" in compare.nothing.text()
-    compare.show_visits(parts)
+    compare.show_visits([ComparedVisits("AFO", parts, ())])
     assert compare.comparison is not None
     assert compare.comparison.kind is Kind.VISITS
     assert compare.plot.isVisible()
+
+
+def walked(visit: str, analysis: Analysis, session: Session, **conditions: str) -> WalkedVisit:
+    """A visit whose walks 1 to 3 had these conditions; a walk that is not named was not recorded."""
+    names = {name.replace("_", " "): condition for name, condition in conditions.items()}
+    recordings = [replace(one, condition=names[one.name]) for one in session.recordings if one.name in names]
+    found = replace(analysis, recordings=tuple(one for one in analysis.recordings if one.name in names))
+    return visit, found, recordings
+
+
+def test_visits_are_compared_condition_by_condition_and_never_pooled(analysis: Analysis, session: Session) -> None:
+    """Alignment B of the first visit is no part of what A or C is told against."""
+    visits = [
+        walked("May", analysis, session, walk_1="A", walk_2="A", walk_3="B"),
+        walked("June", analysis, session, walk_1="C"),
+        walked("July", analysis, session, walk_1="C", walk_2="A", walk_3="D"),
+    ]
+    found = {one.condition: one for one in visits_by_condition(visits)}
+    told = {
+        condition: [(part.letter, part.name, [walk.name for walk in part.walks]) for part in one.parts]
+        for condition, one in found.items()
+    }
+    assert told == {
+        "C": [("2", "June", ["walk 1"]), ("3", "July", ["walk 1"])],
+        "A": [("1", "May", ["walk 1", "walk 2"]), ("3", "July", ["walk 2"])],
+    }
+    assert {condition: one.without for condition, one in found.items()} == {"C": ("May",), "A": ("June",)}
+
+
+def test_walks_without_a_condition_are_told_against_such_only_and_not_taken_together(
+    analysis: Analysis, session: Session
+) -> None:
+    stated = walked("May", analysis, session, walk_1="walk 1")  # as a condition of that name
+    unstated = walked("June", analysis, session, walk_1="", walk_2="")
+    assert visits_by_condition([stated, unstated]) == ()
+    (only,) = visits_by_condition([unstated, unstated])
+    assert [[walk.name for walk in part.walks] for part in only.parts] == [["walk 2"], ["walk 2"]]
+
+
+def test_one_condition_after_the_other_is_chosen_on_the_screen(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    compare = page.compare
+    compare.set_has_visits(True)
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    visits = [
+        walked("May", analysis, session, walk_1="A", walk_3="B"),
+        walked("June", analysis, session, walk_1="B"),
+        walked("July", analysis, session, walk_1="A", walk_2="B"),
+    ]
+    compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
+    words = [compare.kinds.itemText(k) for k in range(compare.kinds.count())]
+    assert words[1:3] == ["Visits, A", "Visits, B"]
+    assert (compare.kind, compare.title.text()) == (Kind.VISITS, "Change from 1, A")
+    assert "Not compared, for want of a walk of this condition: June." in compare.conclusion.text()
+    compare.kinds.setCurrentIndex(2)
+    assert (compare.kind, compare.title.text()) == (Kind.VISITS, "Change from 1, B")
+    assert compare.comparison is not None
+    assert [part.name for part in compare.comparison.parts] == ["May", "June", "July"]
+    assert "Not compared" not in compare.conclusion.text()
+    compare.kinds.setCurrentIndex(0)
+    assert "Not compared" not in compare.conclusion.text()
+
+
+def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    compare = page.compare
+    compare.set_has_visits(True)
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    visits = [walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")]
+    compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
+    assert compare.nothing.text() == (
+        "This visit has no condition in common with an earlier one, so they are not compared. "
+        "May: A, no condition stated. July: B."
+    )
+    assert not compare.plot.isVisible()
+    assert compare.kinds.itemText(compare.kinds.currentIndex()) == "Visits"
 
 
 @pytest.mark.parametrize("room", [(1064, 672), (1680, 952), (736, 432)])

@@ -11,6 +11,7 @@ import pikepdf
 import pypdf
 import pytest
 
+from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import Preview, make_report
 from app.reports.patient_report.request import ReportRequest, Visit, default_walks
 
@@ -137,7 +138,8 @@ def test_nothing_of_a_page_is_left_for_the_next(
     request_of_alignments: ReportRequest, request_of_demonstration: ReportRequest, paper: str
 ) -> None:
     """Every page holds its heading and all that belongs to it: conditions or visits compared, peaks with windows."""
-    two_visits = replace(request_of_demonstration, earlier=request_of_alignments.visit, paper=paper)
+    before = walked_under(request_of_alignments.visit, request_of_demonstration)
+    two_visits = replace(request_of_demonstration, earlier=before, paper=paper)
     for wanted in (replace(request_of_alignments, paper=paper), two_visits):
         pages = texts(make_report(wanted))
         assert len(pages) == 6
@@ -160,7 +162,8 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
     assert "Measured in walking: knee and ankle of both legs, with 6 motion sensors." in first
     assert "Compared, C shown on this page: A alignment A · B alignment B · C alignment C" in first
     assert "Speed A: 1.05, B: 1.16, C: 1.20 m/s: part of a difference can come from speed." in first
-    with_one_leg_before = replace(request_of_alignments, earlier=request_of_one_leg.visit)
+    before = walked_under(request_of_one_leg.visit, request_of_alignments)
+    with_one_leg_before = replace(request_of_alignments, earlier=before)
     first = first_page(with_one_leg_before)
     assert "No difference is so much larger than its error that it is told here" in first
     first = first_page(request_of_one_leg)
@@ -174,15 +177,38 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
     request_of_alignments: ReportRequest, alignments: Visit
 ) -> None:
-    recordings = alignments.session.recordings[:-2]  # up to alignment A, which is then its last condition
+    page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[3]
+    assert "Comparison of visits" in page
+    assert "sensors put on anew" in page
+    assert "9.2" in page
+
+
+def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
+    request_of_alignments: ReportRequest, alignments: Visit
+) -> None:
+    """C of this visit is told against C of the earlier one; where that has only A, against nothing."""
+    recordings = alignments.session.recordings[:-2]  # up to alignment A
     before = Visit(
         replace(alignments.session, recordings=recordings),
         replace(alignments.analysis, recordings=alignments.analysis.recordings[:-2]),
     )
-    page = texts(make_report(replace(request_of_alignments, earlier=before)))[3]
-    assert "Comparison of visits" in page
-    assert "sensors put on anew" in page
-    assert "9.2" in page
+    request = replace(request_of_alignments, earlier=before)
+    assert comparison_of(request) is None
+    pages = texts(make_report(request))
+    said = "has no walk of this condition (alignment C), so it is not compared; it has alignment A."
+    assert said in " ".join(pages[3].split())
+    assert "sensors put on anew" not in pages[3]
+    same = comparison_of(replace(request, earlier=alignments))
+    assert same is not None
+    assert [[walk.name for walk in part.walks] for part in same.parts] == [["walk 3"], ["walk 3"]]
+    assert not any("so it is not compared" in page for page in texts(make_report(replace(request, earlier=alignments))))
+
+
+def walked_under(visit: Visit, request: ReportRequest) -> Visit:
+    """A visit whose last walk is of the condition that a report shows."""
+    condition = request.visit.recording(request.shown).condition
+    *others, last = visit.session.recordings
+    return Visit(replace(visit.session, recordings=(*others, replace(last, condition=condition))), visit.analysis)
 
 
 def test_a_long_comment_is_printed_whole(request_of_demonstration: ReportRequest) -> None:

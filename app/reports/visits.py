@@ -1,0 +1,74 @@
+"""Which conditions do visits share? They are compared condition by condition, and never pooled.
+
+What a patient walks with is set by hand: two alignments of one prosthesis are two conditions, and their mean is
+nobody's gait.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from app.reports.comparison import Part, conditions_of
+from app.wording import tr
+from core.results import Analysis
+from core.samples import Recording
+
+WalkedVisit = tuple[str, Analysis, Sequence[Recording]]
+"""A visit's name, what came of it, and its recordings in order of time, whose conditions count."""
+
+
+@dataclass(frozen=True)
+class ComparedVisits:
+    """One condition of a patient's visits.
+
+    Attributes
+    ----------
+    condition
+        Empty: none was stated.
+    parts
+        The visits that have it, two or more, in order of time.
+    without
+        Names of those that have not.
+    """
+
+    condition: str
+    parts: tuple[Part, ...]
+    without: tuple[str, ...]
+
+
+def by_condition(analysis: Analysis, recordings: Sequence[Recording], prefix: str = "") -> Mapping[str, Part]:
+    """Each condition of a visit as it was walked last: of several strappings the last, and so of walks without one."""
+    stated = {recording.name: recording.condition for recording in recordings}
+    parts = conditions_of(analysis, recordings, prefix)
+    return {stated.get(part.walks[0].name, ""): part for part in parts}
+
+
+def visits_by_condition(visits: Sequence[WalkedVisit]) -> tuple[ComparedVisits, ...]:
+    """The conditions of the last visit that an earlier one has as well; visits are lettered 1, 2 and so on."""
+    each = [
+        (str(number), name, by_condition(analysis, recordings))
+        for number, (name, analysis, recordings) in enumerate(visits, start=1)
+    ]
+    found = []
+    for condition in each[-1][2] if each else ():
+        parts = [
+            replace(walked[condition], letter=letter, name=name) for letter, name, walked in each if condition in walked
+        ]
+        without = tuple(name for _, name, walked in each if condition not in walked)
+        if len(parts) > 1:
+            found.append(ComparedVisits(condition, tuple(parts), without))
+    return tuple(found)
+
+
+def conditions_in_words(visits: Sequence[WalkedVisit]) -> str:
+    """Say of each visit that has strides under which conditions it was walked."""
+    pattern = tr("{visit}: {conditions}.")
+    walked = [(name, by_condition(analysis, recordings)) for name, analysis, recordings in visits]
+    return " ".join(
+        pattern.format(visit=name, conditions=", ".join(map(condition_in_words, found)))
+        for name, found in walked
+        if found
+    )
+
+
+def condition_in_words(condition: str) -> str:
+    return condition or tr("no condition stated")
