@@ -467,9 +467,25 @@ class Home(QWidget):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_stop(self) -> None:
-        self._desk.stop_long()
-        self._go_to(self.import_page if self._to_import is not None else self.page)
-        self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
+        if self._to_import is None:  # a folder was being read, and no more
+            self._desk.stop_long()
+            self._go_to(self.page)
+            self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
+        else:
+            self._desk.stop_long(self._on_import_stopped)
+            self._go_to(self.import_page)
+            self.banner.tell(tr("The import is being stopped."), tr("What was added of it is taken back."))
+
+    def _on_import_stopped(self, is_done: bool) -> None:
+        if is_done:
+            self._to_import = None
+            self._go_to(self.page)
+            self.banner.tell(
+                tr("The import was done before it could be stopped."), tr("The session is in the library.")
+            )
+        else:
+            self.banner.tell(tr("The import was stopped."), tr("No session was added to the library."))
+        self.refresh()
 
     def _on_work_refused(self, what: str, remedy: str) -> None:
         self._go_to(self.page)

@@ -208,8 +208,12 @@ class SettingsDesk(QObject):
         self.page.show_backup(f"{what} {remedy}", self._backup_folder)
 
     def _on_stop_wished(self) -> None:
-        self._desk.stop_long()
-        self.page.show_backup(tr("Stopped. There is no new backup."), self._backup_folder)
+        self._desk.stop_long(self._on_backup_stopped)
+        self.page.show_backup(tr("Stopping"), self._backup_folder)
+
+    def _on_backup_stopped(self, is_done: bool) -> None:
+        stopped, done = tr("Stopped. There is no new backup."), tr("The backup was done before it could be stopped.")
+        self.page.show_backup(done if is_done else stopped, self._backup_folder)
 
     def _on_clinic_read(self, name: str) -> None:
         self.page.show_clinic(name)

@@ -54,6 +54,8 @@ class StandStillView:
         Who is not heard.
     restarts
         How often it began anew by itself.
+    is_read_back
+        Once it is done: whether what was recorded has been read back, and counts.
     """
 
     phase: StandPhase = StandPhase.READY
@@ -64,6 +66,7 @@ class StandStillView:
     moved: tuple[str, ...] = ()
     silent: tuple[str, ...] = ()
     restarts: int = 0
+    is_read_back: bool = True
 
     @property
     def tells_moved(self) -> bool:
@@ -353,7 +356,10 @@ def instruction(view: StandStillView) -> str:
     if view.phase is StandPhase.SKIPPED:
         return tr("The patient cannot stand: angles will be given as range only, without absolute values.")
     if view.phase is StandPhase.DONE:
-        return tr("{still:.1f} s still. Bias and zero are known.").format(still=view.still_s)
+        said = tr("{still:.1f} s still. Bias and zero are known.")
+        if not view.is_read_back:
+            said = tr("{still:.1f} s still. The recording is being read back.")
+        return said.format(still=view.still_s)
     return tr("Both feet flat, looking ahead. Holding a rail is fine.")
 
 

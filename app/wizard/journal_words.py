@@ -55,6 +55,11 @@ def _written(trouble: Trouble, status: JournalStatus) -> str:
     return said.format(time=clock(status.written_s))
 
 
+def is_written(status: JournalStatus) -> bool:
+    """Whether a journal takes all that comes in: nothing of it waits for long, and nothing was dropped."""
+    return status.state is State.RECORDING and not status.dropped_records and status.stuck_s <= SLOW_S
+
+
 def unread_message(status: JournalStatus, *, is_tried_again: bool) -> str:
     """Say where a recording is that has been stopped and is not in the library yet."""
     if status.state is State.RECORDING and is_tried_again:

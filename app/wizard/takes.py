@@ -279,6 +279,13 @@ class Takes(QObject):
         now = self._acquisition.lost()
         return sum(max(count - self._lost_before.get(name, 0), 0) for name, count in now.items())
 
+    @property
+    def is_written(self) -> bool:
+        """Whether the journal takes all that comes in, and nothing of it waits for long or was dropped."""
+        from app.wizard.journal_words import is_written
+
+        return self._recorder is not None and is_written(self._recorder.status)
+
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
         if self._recorder is not None:

@@ -23,13 +23,14 @@ class Stopped(Exception):  # noqa: N818  being stopped is no error
 class Background(QObject):
     """Runs one piece of work at a time; a newer one takes the older one's place.
 
-    Signals of a piece that was stopped or replaced never arrive. Its thread ends at its next report; `idle` tells when
-    the last thread has.
+    Signals of a piece that was stopped or replaced never arrive, but for `stopped`, once it has ended: whether it came
+    to its end all the same, before its next report could stop it. `idle` tells when the last thread has ended.
     """
 
     progressed = Signal(float, str)
     done = Signal(object)
     failed = Signal(object)
+    stopped = Signal(bool)
     idle = Signal()
 
     def __init__(self, parent: QObject | None = None) -> None:
@@ -63,6 +64,7 @@ class Background(QObject):
         """Let the running work end at its next report. Nothing more is heard of it."""
         if self._current is not None:
             self._current.requestInterruption()
+            self._current.is_stopped = True
             self._current = None
 
     def finish(self) -> None:
@@ -90,6 +92,8 @@ class Background(QObject):
         thread.wait()  # it has left run(); only its last few instructions are awaited
         self._threads.discard(thread)
         thread.deleteLater()
+        if thread.is_stopped:
+            self.stopped.emit(thread.is_done)
         if self.is_idle:
             self.idle.emit()
 
@@ -104,6 +108,7 @@ class _WorkThread(QThread):
         super().__init__(parent)
         self._work = work
         self._told_s, self._told = 0.0, ""
+        self.is_stopped = self.is_done = False
 
     def run(self) -> None:
         try:
@@ -114,6 +119,7 @@ class _WorkThread(QThread):
             _log.info("work in the background ended early", exc_info=error)
             self.failed.emit(self, error)
         else:
+            self.is_done = True
             self.done.emit(self, result)
         self.ended.emit(self)
 

@@ -145,7 +145,9 @@ def saved_from_library(opened: "OpenedLibrary", session_id: UUID, folder: Path, 
 
 def cannot_write(folder: Path) -> tuple[str, str]:
     """What is said of a folder that takes no files."""
-    return tr("{folder} cannot be written").format(folder=folder.name), tr("Choose another folder; nothing is lost")
+    return tr("{folder} cannot be written").format(folder=folder.name), tr(
+        "Choose another folder; the recordings are untouched"
+    )
 
 
 def _finding(session: "Session", calibration: JointCalibration, recording: str) -> Work:

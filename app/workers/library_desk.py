@@ -107,6 +107,8 @@ class LibraryDesk(QObject):
         self._long.done.connect(self._on_long_done)
         self._long.failed.connect(self._on_long_failed)
         self._long_job: _Job | None = None
+        self._long.stopped.connect(self._on_long_stopped)
+        self._long_ended: WeakMethod[Callable[[bool], object]] | None = None
         self._long_progressed: WeakMethod[Callable[[float, str], object]] | None = None
 
     @property
@@ -178,7 +180,10 @@ class LibraryDesk(QObject):
 
         self._long.start(locked)
 
-    def stop_long(self) -> None:
+    def stop_long(self, ended: Callable[[bool], object] | None = None) -> None:
+        """End what takes long; `ended` is told, once it has ended, whether it was done before it could be stopped."""
+        if self._long.is_busy:
+            self._long_ended = _weak(ended)
         self._long.stop()
         self._long_job = None
 
@@ -331,6 +336,11 @@ class LibraryDesk(QObject):
         job, self._long_job = self._long_job, None
         if job is not None and (done := job.listening(job.done)):
             done(result)
+
+    def _on_long_stopped(self, is_done: bool) -> None:
+        ended, self._long_ended = self._long_ended, None
+        if ended is not None and (call := ended()) is not None:
+            call(is_done)
 
     def _on_long_failed(self, error: Exception) -> None:
         job, self._long_job = self._long_job, None

@@ -69,6 +69,30 @@ def test_work_that_reports_without_end_leaves_the_screen_in_peace(qtbot: QtBot, 
     assert told == sorted(told)
 
 
+@pytest.mark.parametrize("is_done", [False, True])
+def test_what_was_stopped_tells_once_it_has_ended_whether_it_was_done(
+    qtbot: QtBot, background: Background, is_done: bool
+) -> None:
+    """Work whose last report is behind it comes to its end all the same."""
+    go_on = Event()
+
+    def work(report: Report) -> None:
+        assert go_on.wait(WAIT_S)
+        if not is_done:
+            report(1.0, "")
+
+    background.start(work)
+    background.stop()
+    with qtbot.waitSignal(background.stopped) as told:
+        go_on.set()
+    assert told.args == [is_done]
+
+
+def test_what_comes_to_its_end_is_not_told_as_stopped(qtbot: QtBot, background: Background) -> None:
+    with qtbot.assertNotEmitted(background.stopped), qtbot.waitSignal(background.idle):
+        background.start(lambda _report: 7)
+
+
 def test_a_stop_ends_the_work_at_its_next_report(qtbot: QtBot, background: Background) -> None:
     stopped = Event()
 

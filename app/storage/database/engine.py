@@ -263,9 +263,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if isinstance(error, IntegrityError):
         return LibraryError("This contradicts what the library holds already", "Reload what is shown, then try again")
     if _is_locked(error):
-        return LibraryBusyError(
-            "Another program keeps the library busy", "Wait a moment and try again; recordings go on meanwhile"
-        )
+        return LibraryBusyError("Another program keeps the library busy", "Wait a moment, then try again")
     if "not a database" in words:
         return LibraryFaultError(
             "The library does not open with this key, or its first page is damaged", "Restore it from a backup"
@@ -277,7 +275,7 @@ def _sentence(error: DBAPIError | PoolTimeoutError | sqlite.Error) -> LibraryErr
     if "readonly" in words or "unable to open" in words:
         return LibraryFaultError("The library's file cannot be opened for writing", "See to the rights of its folder")
     if (isinstance(error, DBAPIError) and error.connection_invalidated) or "connection" in words:
-        return LibraryFaultError("The clinic's server does not answer", "Recordings go on; try again when it is back")
+        return LibraryFaultError("The clinic's server does not answer", "Try again when it is back")
     if "disk I/O" in words:
         return LibraryFaultError("The library's file cannot be read or written", "Check the disk, then try again")
     return LibraryFaultError(

@@ -78,7 +78,9 @@ class PatientStep(Step):
 
     def bar(self) -> BarState:
         has_code = bool(self._visit.patient.told.code)
-        note = tr("Saved as you type.") if has_code else tr("Type the patient's code to go on.")
+        note = tr("Type the patient's code to go on.")
+        if has_code:
+            note = tr("Saved as you type.") if self._visit.patient.is_saved else tr("Not saved yet.")
         if self._taken_code:
             note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
         can_go_on = has_code and not self._taken_code

@@ -209,7 +209,7 @@ class ReportStep(Step):
 
     def _on_preview_failed(self, error: Exception) -> None:
         _log.error("the report could not be set", exc_info=error)
-        self.told.emit(tr("The report cannot be shown."), tr("The results can be saved all the same."))
+        self.told.emit(tr("The report cannot be shown."), tr("The log holds the details."))
 
     def _on_comment_edited(self, comment: str) -> None:
         self._comment = comment
@@ -333,7 +333,7 @@ class ReportStep(Step):
                 raise LibraryError(capitalised(what), remedy) from refusal
             except OSError as problem:
                 what = tr("{folder} cannot be written").format(folder=out.name)
-                raise LibraryError(what, tr("Choose another folder; nothing is lost")) from problem
+                raise LibraryError(what, tr("Choose another folder; the recordings are untouched")) from problem
             return out
 
         self._desk.run_long(save, self._on_saved, self._on_refused, None, self)

@@ -237,6 +237,7 @@ class StandStillStep(Step):
                 moved=placed(self._moved),
                 silent=placed(standing.silent),
                 restarts=standing.restarts if is_counting else 0,
+                is_read_back=self._visit.takes.standing is not None,
             )
         )
 

@@ -170,7 +170,7 @@ class WalkingStep(Step):
                 primary=Verb(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
                     tr("Recording {label}").format(label=takes.ongoing.told.condition),
-                    tr("Saved as it comes in. The space bar stops it, with a sound."),
+                    " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
                     elapsed_s,
                     sounds.is_on(),
                 ),
@@ -189,6 +189,13 @@ class WalkingStep(Step):
         if not takes.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")
         return BarState(primary=start, note=self._cannot_start or note)
+
+    def _saved(self) -> str:
+        """Say that what comes in is saved, only while the journal has it so."""
+        takes = self._visit.takes
+        if not takes.has_begun:
+            return tr("It begins in a moment.")
+        return tr("Saved as it comes in.") if takes.is_written else ""
 
     def on_primary(self) -> None:
         takes = self._visit.takes
@@ -345,7 +352,7 @@ class WalkingStep(Step):
         """Give the gravest of what is to be said."""
         takes = self._visit.takes
         is_recording = takes.is_recording
-        lost = self._losses.message(is_recording, self._visit.sensors.joints, now_s)
+        lost = self._losses.message(takes.has_begun, self._visit.sensors.joints, now_s)
         trouble = takes.trouble_message() if self._is_troubled else NOTHING
         for message in (trouble, takes.standstill_message(self._visit.sensors.site_of), lost):
             if message != NOTHING:

@@ -1,7 +1,8 @@
 """Home with a library of its own: patients found, sessions listed, deleted and had back, imported, recovered."""
 
 import shutil
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from uuid import UUID
@@ -17,6 +18,7 @@ from app.home.home import Home
 from app.pages.home_lists import PatientLine, SessionLine
 from app.settings import Scheme, Settings
 from app.storage.database.ids import uuid7
+from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
@@ -219,6 +221,36 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
     qtbot.waitUntil(lambda: home.current is home.page and "P-0200" in codes(home), timeout=WAIT_MS)
     assert home.bar.primary.text() == "New session for P-0200"
     qtbot.waitUntil(lambda: [line.amount for line in sessions(home)] == ["1 recording"], timeout=WAIT_MS)
+
+
+@pytest.mark.parametrize("is_done", [False, True])
+def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
+    qtbot: QtBot, home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_done: bool
+) -> None:
+    block = ImuBlock("LT-1", np.arange(300) / 100, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
+    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
+    write_session(Session((recording,), Patient(code="P-0200"), started="2026-11-02T10:00:00"), tmp_path / "visit")
+    go_on = threading.Event()
+
+    def held(opened: OpenedLibrary, session: Session, report: Callable[[float, str], None], code: str) -> object:
+        assert go_on.wait(WAIT_MS / 1000)
+        return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
+
+    monkeypatch.setattr("app.storage.exchange.import_session", held)
+    home.read_folder(tmp_path / "visit")
+    qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
+    home._import()
+    home._on_stop()
+    assert "being stopped" in home.banner.text
+    assert "added to the library" not in home.banner.text
+    go_on.set()
+    what = "was done before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
+    qtbot.waitUntil(lambda: what in home.banner.text, timeout=WAIT_MS)
+    assert home._desk.state is not None
+    library = home._desk.state.library.library
+    patient = library.patients.find("P-0200")
+    assert patient is not None
+    assert len(library.sessions.list(patient.id)) == int(is_done)
 
 
 def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:

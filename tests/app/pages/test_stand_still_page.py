@@ -1,6 +1,7 @@
 """Standing still on the page: the count, who moved, what follows without it, and the angles typed beside it."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import Qt
@@ -68,6 +69,12 @@ def test_before_the_count_the_ring_says_which_key_starts_it() -> None:
 def test_the_ring_closes_with_a_check_mark() -> None:
     face = ring_face(StandStillView(StandPhase.DONE, 3.0, movement_deg_s=STILL))
     assert (face.share, face.icon) == (1.0, Icon.CHECK)
+
+
+def test_bias_and_zero_are_known_once_the_recording_has_been_read_back() -> None:
+    done = StandStillView(phase=StandPhase.DONE, still_s=3.0)
+    assert instruction(done) == "3.0 s still. Bias and zero are known."
+    assert instruction(replace(done, is_read_back=False)) == "3.0 s still. The recording is being read back."
 
 
 def test_who_moved_is_named_until_a_second_is_still_again() -> None:

@@ -10,6 +10,7 @@ from app.storage.journal.writer import JournalStatus, State
 from app.wizard.journal_words import (
     ENDS,
     STANDSTILL_TOLD_S,
+    is_written,
     no_row_message,
     standstill_message,
     trouble_message,
@@ -86,6 +87,12 @@ def test_only_a_journal_that_is_closed_whole_is_called_safe(is_tried_again: bool
 def test_a_recording_without_a_row_is_called_written_only_while_all_of_it_is() -> None:
     assert "written to the disk all the same" in no_row_message(FINE)[1]
     assert "written" not in no_row_message(DROPPING)[1]
+
+
+def test_what_comes_in_is_called_saved_only_while_the_journal_takes_all_of_it() -> None:
+    assert is_written(FINE)
+    for status in (LATE, replace(FINE, dropped_records=1), CLOSED, replace(FINE, state=State.BROKEN)):
+        assert not is_written(status)
 
 
 def standstill(lost: dict[str, int], now_s: float = 75.0, *, are_heard: bool = True, are_counted: bool = True) -> str:

@@ -66,10 +66,14 @@ def test_a_code_in_use_stops_and_offers_that_patient(
 
 def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, step: PatientStep) -> None:
     type_in(step, Patient(code="DEMO-9"))
+    assert step.bar().note == "Not saved yet."  # half a code is nobody's
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
         step.page.code_committed.emit()
+    assert step.bar().note == "Saved as you type."
     type_in(step, Patient(code="DEMO-9", mass_kg=82.0))
+    assert step.bar().note == "Not saved yet."
     qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=5000)
+    assert step.bar().note == "Saved as you type."
     assert visit.patient.stored is not None
     assert visit.patient.stored.told.mass_kg == 82.0
 
