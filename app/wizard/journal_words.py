@@ -106,14 +106,9 @@ def standstill_message(
     what = said.format(seconds=standstill.lasted_s, time=clock(standstill.began_s - began_s))
     if not are_heard or now_s - standstill.ended_s < SETTLED_S:
         return what, tr("What is missing of it is being counted.")
-    missing = sum(max(count - standstill.lost_before.get(name, 0), 0) for name, count in lost.items())
-    if missing:
-        gap = tr_n(
-            "{count} sample was lost and stays a gap; strides in it are left out.",
-            "{count} samples were lost and stay gaps; strides in them are left out.",
-            missing,
-        )
-        return what, gap.format(count=missing)
+    if any(count > standstill.lost_before.get(name, 0) for name, count in lost.items()):
+        # without a figure: live clocks are still settling, and were up to a tenth off the journal's own count
+        return what, tr("Samples were lost and stay gaps, counted when the recording is read back.")
     if not are_counted:
         return what, tr("What is missing is counted when the recording has been read back.")
     return what, tr("No sample is missing: what the sensors sent meanwhile was read afterwards.")

@@ -1,28 +1,11 @@
 """A standstill of the process is told from a disk that is late, and sleep from being stopped."""
 
-import os
 import signal
-import subprocess
-import sys
-import time
 
 import pytest
 
 from app.acquisition.heartbeat import STOOD_S, Heartbeat
-
-STOPPED = """
-import time
-from app.acquisition.heartbeat import Heartbeat
-heartbeat = Heartbeat(time.monotonic, dict)
-heartbeat.start()
-time.sleep(0.5)
-print("beats", flush=True)
-input()
-time.sleep(0.5)
-heartbeat.close()
-(standstill,) = heartbeat.standstills
-print(standstill.lasted_s, standstill.asleep_s, heartbeat.awake_s())
-"""
+from tests.safety.standstill import faults_of, stop_once
 
 
 class Clocks:
@@ -71,18 +54,8 @@ def test_before_the_first_beat_after_it_a_standstill_counts_no_more_than_after()
 
 @pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="no signals to stop a process by")
 @pytest.mark.endurance
-def test_a_stopped_process_knows_for_how_long() -> None:
-    process = subprocess.Popen(
-        [sys.executable, "-c", STOPPED], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
-    )
-    with process:
-        assert process.stdout is not None
-        assert process.stdout.readline() == "beats\n"
-        os.kill(process.pid, signal.SIGSTOP)
-        time.sleep(3.0)
-        os.kill(process.pid, signal.SIGCONT)
-        told, _ = process.communicate("\n", timeout=60)
-    lasted_s, asleep_s, awake_s = map(float, told.split())
-    assert 2.9 < lasted_s < 10.0
-    assert asleep_s < 0.5
-    assert awake_s < lasted_s
+def test_a_recording_whose_process_was_stopped_blames_no_disk_and_counts_what_was_lost() -> None:
+    """Longer and more often: tests/safety/standstill.py."""
+    told = stop_once(4.0)
+    assert faults_of(told, 4.0) == []
+    assert told["lost"]  # terminals hold a second or two

@@ -1,0 +1,131 @@
+"""Is a process that stood still told from a disk that is late, and is what that cost said as the journal has it?
+
+    python -m tests.safety.standstill --count 10 --seconds 20
+
+Six emulated x-IMU3s at 200 Hz, each at a pseudo-terminal, send to another process, which records them and is stopped
+(SIGSTOP) and continued in each round. What does not fit into a terminal meanwhile is lost.
+"""
+
+import argparse
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+
+from app.acquisition.acquisition import Acquisition
+from app.library_commands import DECODERS
+from app.storage.journal.decoding import decode
+from app.storage.journal.disk import Trouble
+from app.wizard.journal_words import standstill_message
+from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.ximu3 import Ximu3Voice
+from devices.ports import PortInfo, SerialPort
+from devices.stream import ByteSource
+from devices.ximu3 import Ximu3
+from tests.safety.journal_material import ID, KEY
+from tests.safety.live_material import open_journal
+from tests.safety.port_vanishes import RATE_HZ, SENSORS, motion
+
+BEFORE_S, AFTER_S = 3.0, 3.0
+
+
+def record(folder: Path, places: list[str]) -> None:
+    """The process that is stopped: say when it records, then, once it goes on, what it would say and what it kept."""
+    troubles: list[Trouble] = []
+    acquisition = Acquisition([ByteSource(Ximu3(), SerialPort(PortInfo(place))) for place in places])
+    acquisition.start()
+    try:
+        time.sleep(1.0)
+        began_s, before = acquisition.now_s, sum(acquisition.lost().values())
+        acquisition.record(open_journal(folder, ID, on_trouble=troubles.append, awake_s=acquisition.awake_s))
+        time.sleep(BEFORE_S)
+        print("records", flush=True)
+        sys.stdin.readline()
+        time.sleep(AFTER_S)
+        latest = acquisition.standstills[-1:]
+        lost = acquisition.lost()
+        words = [standstill_message(one, began_s, acquisition.now_s, lost, True, True) for one in latest]
+    finally:
+        summary = acquisition.stop_recording()
+        acquisition.close()
+    sensors = decode([summary.path], KEY, DECODERS).sensors.values()
+    told = {
+        "troubles": [str(trouble) for trouble in troubles],
+        "words": [" ".join(message) for message in words],
+        "lost_live": sum(lost.values()) - before,
+        "lost": sum(sensor.counts.lost for sensor in sensors),
+        "received": sum(sensor.counts.received for sensor in sensors),
+    }
+    print(json.dumps(told), flush=True)
+
+
+def faults_of(told: dict[str, object], seconds: float) -> list[str]:
+    faults = []
+    words = told["words"]
+    if told["troubles"]:
+        faults.append(f"blamed the disk: {told['troubles']}")
+    if not isinstance(words, list) or len(words) != 1 or not words[0].startswith("Gaitwright stood still for"):
+        return [*faults, f"{words} of a standstill of {seconds} s"]
+    if told["lost"] and "Samples were lost" not in words[0]:
+        faults.append(f"{words[0]!r} where the journal lacks {told['lost']}")
+    if not told["lost"] and "No sample is missing" not in words[0]:
+        faults.append(f"{words[0]!r} where the journal lacks none")
+    return faults
+
+
+def stop_once(seconds: float) -> dict[str, object]:
+    """One round: what the process that was stopped has to say."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        emulations = [
+            Emulation(Ximu3Voice(f"EMU{k:05d}", motion, rate_hz=RATE_HZ), partial(Terminal, folder / f"port{k}"))
+            for k in range(SENSORS)
+        ]
+        command = [sys.executable, "-m", "tests.safety.standstill", "--record", name]
+        process = subprocess.Popen(
+            [*command, *(emulation.place for emulation in emulations)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+        try:
+            with process:
+                assert process.stdout is not None
+                assert process.stdout.readline() == "records\n"
+                os.kill(process.pid, signal.SIGSTOP)
+                time.sleep(seconds)
+                os.kill(process.pid, signal.SIGCONT)
+                said, _ = process.communicate("\n", timeout=120)
+        finally:
+            for emulation in emulations:
+                emulation.close()
+    told: dict[str, object] = json.loads(said)
+    return told
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--count", type=int, default=10)
+    parser.add_argument("--seconds", type=float, default=20.0)
+    parser.add_argument("--record", metavar="FOLDER", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("places", nargs="*", help=argparse.SUPPRESS)
+    wanted = parser.parse_args()
+    if wanted.record is not None:
+        record(wanted.record, wanted.places)
+        return 0
+    faults = []
+    for _ in range(wanted.count):
+        told = stop_once(wanted.seconds)
+        faults += faults_of(told, wanted.seconds)
+        print(told, flush=True)
+    print(f"{wanted.count} standstills of {wanted.seconds:.0f} s: {len(faults)} faults", *faults, sep="\n")
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
