@@ -3,11 +3,13 @@
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from types import SimpleNamespace
 from uuid import uuid4
 
 import pytest
 from pytestqt.qtbot import QtBot
 
+from app.acquisition.heartbeat import Standstill
 from app.acquisition.recorder import Recorder
 from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
@@ -19,12 +21,13 @@ from app.wizard import wizard as wizard_module
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.walking_step import WalkingStep
+from app.wizard.takes import Ongoing
 from app.wizard.visit import Visit
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
-from core.samples import Patient, RecordingKind, Session
+from core.samples import Patient, Recording, RecordingKind, Session
 from tests.app.wizard.test_visit import begin, record
 
 BUSY = LibraryBusyError("Another program keeps the library busy", "Wait a moment")
@@ -131,6 +134,69 @@ def test_a_full_disk_ends_the_recording_on_the_screen_too(
     if ends:
         qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
         assert len(takes.walks) == 1
+
+
+def test_what_is_said_of_a_late_disk_follows_its_counters(
+    qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
+    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    assert acquisition is not None
+    step = WalkingStep(Look(), looked_at)
+    qtbot.addWidget(step.page)
+    step.enter()
+    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
+        takes.begin(acquisition, RecordingKind.WALKING)
+    assert takes._latest is not None
+    fine = takes._latest.status
+    now = [replace(fine, stuck_s=3.0)]
+    monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
+    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as told:
+        takes._on_trouble(Trouble.DISK_SLOW)
+    assert told.args == ["The disk answers late.", "Nothing is lost yet. Close programs that copy or download to it."]
+
+    def said() -> str:
+        step._watch_sensors()
+        return step.page.notice.text
+
+    recording = step.bar().recording
+    assert recording is not None
+    assert "Nothing is lost yet" in said()
+    assert "Saved" not in recording.note
+    monkeypatch.setattr(acquisition, "lost", lambda: {"DEMO-left_foot": 400})
+    assert "Nothing is lost" not in said()
+    now[0] = replace(fine, stuck_s=3.0, dropped_records=5)
+    assert "5 packets of samples were dropped so far" in said()
+    now[0] = fine
+    monkeypatch.setattr(acquisition, "lost", dict)
+    assert said() == "The disk answered late, and answers again. Nothing was lost by it."
+    recording = step.bar().recording
+    assert recording is not None
+    assert "Saved as it comes in." in recording.note
+    step.leave()
+    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS):
+        takes.stop()
+    step.deleteLater()
+
+
+@pytest.mark.parametrize(("is_before", "is_said"), [(False, True), (True, False)])
+def test_a_standstill_amid_a_recording_is_said_on_every_step_that_records(
+    qtbot: QtBot, wizard: Wizard, is_before: bool, is_said: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    wizard.begin(None)
+    visit = wizard.visit
+    assert visit is not None
+    ended_s = 99.0 if is_before else 121.0
+    standstill = Standstill(ended_s - 20.0, ended_s, 20.0, 0.0, {"a": 0})
+    acquisition = SimpleNamespace(
+        standstills=(standstill,), now_s=125.0, lost=lambda: {"a": 9}, status=dict, trouble=None, is_simulated=False
+    )
+    told = Recording("free motion", RecordingKind.FREE_MOTION, "free_motion", {})
+    monkeypatch.setattr(visit.takes, "ongoing", Ongoing(told, 100.0))
+    monkeypatch.setattr(visit.takes, "_acquisition", acquisition)
+    wizard._watch_recording()
+    assert ("Gaitwright stood still for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
+    monkeypatch.setattr(visit.takes, "ongoing", None)
 
 
 def test_a_free_motion_that_is_refused_waits_for_a_word(
