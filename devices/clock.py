@@ -357,7 +357,8 @@ def _is_too_early(late_s: FloatArray) -> BoolArray:
     for k in range(1, AGREEING + 1):
         around_s[k:] = np.minimum(around_s[k:], late_s[:-k])
         around_s[:-k] = np.minimum(around_s[:-k], late_s[k:])
-    too_early: BoolArray = np.isfinite(around_s) & (late_s < around_s - EARLY_S)
+    too_early: BoolArray = late_s < around_s - EARLY_S
+    too_early[:1] = False  # those after it may all have been held up
     return too_early & (len(late_s) > AGREEING)
 
 

@@ -167,6 +167,14 @@ def test_a_stamp_that_is_a_little_ahead_moves_no_other(ahead_s: float) -> None:
     assert np.nanmax(np.abs(live_s - true_s)) < 0.001
 
 
+def test_a_sample_that_came_in_time_before_all_were_held_up_is_kept() -> None:
+    device_s = 10.0 + np.arange(400) / RATE_HZ
+    host_s = device_s + 100.0
+    host_s[1:100] = host_s[100]
+    ordered = put_in_order(device_s, host_s, 1 / RATE_HZ)
+    assert (ordered.counts.received, ordered.counts.damaged, ordered.counts.lost) == (400, 0, 0)
+
+
 def test_live_a_start_that_was_held_up_is_left_behind_once_samples_come_in_time() -> None:
     device_s = 10.0 + np.arange(600) / RATE_HZ
     true_s = device_s + 100.0
