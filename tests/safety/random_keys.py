@@ -78,8 +78,10 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
     environment = {**os.environ, **{home: str(place / home.lower()) for home in HOMES}}
     environment.pop("DISPLAY", None)
     errors, began = place / "errors.txt", datetime.now().astimezone().isoformat(timespec="seconds")
-    with errors.open("w") as told:
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=told, text=True, env=environment)
+    with (
+        errors.open("w") as told,
+        subprocess.Popen(command, stdout=subprocess.PIPE, stderr=told, text=True, env=environment) as process,
+    ):
         watchdog_s = time.monotonic() + seconds + ENDS_WITHIN_S
         assert process.stdout is not None
         for line in process.stdout:
@@ -88,7 +90,6 @@ def live(place: Path, seed: str, outcome: Outcome, seconds: float, end: str) -> 
             code = process.wait(timeout=max(1.0, watchdog_s - time.monotonic()))
         except subprocess.TimeoutExpired:
             process.kill()
-            code = process.wait()
             outcome.note({"fault": "does not end", "seed": seed, "what": errors.read_text()[-TAIL:]})
             return
     wanted = -signal.SIGKILL if end == "kill" else 0

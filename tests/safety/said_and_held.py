@@ -86,8 +86,8 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     page = home.page
     if isinstance(home.current, SettingsPage):
         yield from _of_settings(home.current, held)
-    if home.current is not page:
-        return
+    if home.current is not page or page._patients is None:
+        return  # of what is still to be read nothing is said
     if not page.search.text():
         lines = [line for line in page.patients.lines.lines if isinstance(line, PatientLine)]
         said = Counter((line.code, _number(line.sessions)) for line in lines)

@@ -25,6 +25,7 @@ from app.wizard.steps.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
 from app.workers.library_desk import LibraryDesk
+from core.samples import RecordingKind
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
@@ -153,8 +154,11 @@ class ReportStep(Step):
         return self._has_results() and self._reading is None
 
     def _has_results(self) -> bool:
+        """Whether there is a walk to report: of a free motion alone no report can be made."""
         evaluation = self._visit.evaluation
-        return evaluation.analysis is not None and not evaluation.is_busy and bool(evaluation.analysis.recordings)
+        if evaluation.analysis is None or evaluation.is_busy:
+            return False
+        return any(recording.kind is RecordingKind.WALKING for recording in evaluation.analysis.recordings)
 
     def _show(self) -> None:
         if self._frame is None or not self._frame.isVisible():

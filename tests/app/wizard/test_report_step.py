@@ -21,7 +21,7 @@ from app.workers.library_desk import LibraryDesk
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
-from core.samples import Session
+from core.samples import RecordingKind, Session
 from tests.app.wizard.test_visit import begin
 
 WAIT_MS = 60_000  # on a busy machine
@@ -40,14 +40,20 @@ def step(
     worn: dict[str, Site],
     simulated_session: Session,
     analysis: Analysis,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> Iterator[ReportStep]:
+    """On its page, the library's earlier visits read."""
     begin(qtbot, visit, worn)
     visit.evaluation.session, visit.evaluation.analysis = simulated_session, analysis
     step = ReportStep(Look(), visit, desk)
     qtbot.addWidget(step.page)
     step.page.resize(1016, 600)
     step.page.show()
+    read: list[object] = []
+    show_visits = step.page.report.show_visits
+    monkeypatch.setattr(step.page.report, "show_visits", lambda visits: (read.append(visits), show_visits(visits)))
     step.enter()
+    qtbot.waitUntil(lambda: bool(read), timeout=WAIT_MS)
     yield step
     step.leave()
 
@@ -128,6 +134,16 @@ def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, st
     assert step._dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     step._dialog.close()
+
+
+def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Visit, analysis: Analysis) -> None:
+    assert step.bar().primary.is_enabled  # type: ignore[union-attr]  # it is always there
+    moved = tuple(one for one in analysis.recordings if one.kind is RecordingKind.FREE_MOTION)
+    assert moved
+    visit.evaluation.analysis = replace(analysis, recordings=moved)
+    step._show()
+    assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # it is always there
+    assert step.page.currentWidget() is step.page.sentence
 
 
 def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
