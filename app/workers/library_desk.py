@@ -309,8 +309,11 @@ class LibraryDesk(QObject):
         self.gone_words = None
         then = tr("Nothing had to be added to it.")
         if brought:
-            one = "{count} recording that was made meanwhile is in it now."
-            then = tr_n(one, "{count} recordings that were made meanwhile are in it now.", brought)
+            then = tr_n(
+                "{count} recording that was made meanwhile is in it now.",
+                "{count} recordings that were made meanwhile are in it now.",
+                brought,
+            )
         self.back.emit(tr("The library is back."), then.format(count=brought))
 
     def _on_left_away(self, why: str) -> None:
