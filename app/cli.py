@@ -254,9 +254,9 @@ def _read(wanted: argparse.Namespace, progress: Progress) -> "Session":
         from app.library_commands import read_library_session
 
         return read_library_session(wanted, wanted.session, progress)
-    from devices.files.session_folder import read_session
+    from app.foreign_files import read_foreign_session
 
-    return read_session(wanted.session)
+    return read_foreign_session(wanted.session, lambda: progress(0.0, str(wanted.session)))
 
 
 def _recover(wanted: argparse.Namespace) -> None:

@@ -62,11 +62,11 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
         The files cannot be written.
     """
     from app.exports.exports import Format, export_from_folder, export_from_library
+    from app.foreign_files import read_foreign_session
     from app.reports.patient_report.report_file import session_of
     from app.reports.result_folder import written_beside
     from app.storage.pseudonyms import Typed
     from core.analysis import analyse
-    from devices.files.session_folder import read_session
 
     formats = [Format(name) for name in _chosen("--as", wanted.formats, FORMATS, "is no format")]
     kept = [Typed(name) for name in _chosen("--keep", wanted.keep, TYPED, "is not among what is typed")]
@@ -86,7 +86,7 @@ def export(wanted: argparse.Namespace, report: Report) -> list[str]:
                     opened, session_id, formats, folder, DECODERS, report, kept=kept, is_identified=identified
                 )
         else:
-            session = read_session(session_of(wanted.session))
+            session = read_foreign_session(session_of(wanted.session), lambda: report(0.0, str(wanted.session)))
             analysis = analyse(session, progress=report)
             export_from_folder(session, analysis, formats, folder, kept=kept, is_identified=wanted.identified)
         count = sum(path.is_file() for path in folder.rglob("*"))

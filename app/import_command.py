@@ -3,14 +3,10 @@
 import argparse
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.terminal import finding_lines, one_of, positive
 
-if TYPE_CHECKING:
-    from devices.files.imports import Imported
-
-# as core.samples.RecordingKind and importers() have them, whose imports would cost half a second here
+# as core.samples.RecordingKind and devices.files.child.IMPORTERS have them, whose imports would cost half a second here
 KINDS = ("standing", "free_motion", "walking")
 FORMATS = ("xsens-mtmanager",)
 
@@ -45,32 +41,20 @@ def import_files(wanted: argparse.Namespace, progress: Report) -> list[str]:
     OSError
         The session cannot be written.
     """
+    from app.foreign_files import import_foreign, read_foreign_session, write_over_session
     from core.samples import Recording, RecordingKind, Session
     from devices.files.imports import add_recording, folder_for, free_name, parse_map
-    from devices.files.refusal import FileRefusedError
-    from devices.files.session_folder import read_session, write_session
 
     kind = RecordingKind(wanted.kind)
     placement = parse_map(wanted.map)
     is_new = not wanted.out.exists() or (wanted.out.is_dir() and not any(wanted.out.iterdir()))
-    session = Session(()) if is_new else read_session(wanted.out)
+    session = Session(()) if is_new else read_foreign_session(wanted.out, lambda: progress(0.0, str(wanted.out)))
     name = wanted.recording or free_name(session, kind)
     progress(0.0, name)
-    try:
-        imported = importers()[wanted.format](wanted.files, placement, name, wanted.rate)
-    except OSError as problem:
-        what = f"this cannot be read ({problem.strerror})"
-        raise FileRefusedError(str(problem.filename), what, "Check its permissions") from problem
+    imported = import_foreign(wanted.format, wanted.files, placement, name, wanted.rate, lambda: progress(0.0, name))
     recording = Recording(name, kind, folder_for(name), imported.imu)
     session = add_recording(session, recording, imported.sensors, imported.findings)
     progress(0.5, str(wanted.out))
-    write_session(session, wanted.out)
+    write_over_session(session, wanted.out)
     held = f"{wanted.out} now holds {name}, with {len(imported.imu)} of 6 sites."
     return [held, *finding_lines(imported.findings, lowest="info")]
-
-
-def importers() -> dict[str, Callable[..., "Imported"]]:
-    """What reads each of FORMATS."""
-    from devices.files.xsens_mtmanager import import_mtmanager
-
-    return {"xsens-mtmanager": import_mtmanager}

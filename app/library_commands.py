@@ -144,10 +144,10 @@ def read_place(wanted: argparse.Namespace, place: Path | LibrarySession, report:
     """
     if isinstance(place, LibrarySession):
         return read_library_session(wanted, place, report)
+    from app.foreign_files import read_foreign_session
     from app.reports.patient_report.report_file import session_of
-    from devices.files.session_folder import read_session
 
-    return read_session(session_of(place))
+    return read_foreign_session(session_of(place), lambda: report(0.0, str(place)))
 
 
 def recover(wanted: argparse.Namespace, report: Report) -> Iterator[str]:

@@ -406,10 +406,10 @@ class Home(QWidget):
         """Read a session folder, to be imported once it is said whose it is."""
 
         def read(_opened: "OpenedLibrary", report: Report) -> "Session":
-            from devices.files.session_folder import read_session
+            from app.foreign_files import read_foreign_session
 
             report(0.0, folder.name)
-            return read_session(folder)
+            return read_foreign_session(folder, lambda: report(0.0, folder.name))
 
         self._folder = folder
         self._work(tr("Reading {folder}").format(folder=folder.name))

@@ -24,7 +24,7 @@ from app.reports.differences import (
     write_sides,
 )
 from app.reports.gait_csv import peak_table, write_gait
-from app.reports.summary import read_summary, write_summary
+from app.reports.summary import MOST_BYTES, read_summary, write_summary
 from core.results import Analysis
 from core.samples import Session
 from devices.files.refusal import FileRefusedError
@@ -182,8 +182,11 @@ def _refuse_recordings(out: Path, own: Path | None) -> None:
 
 
 def _is_simulated(session: Path) -> bool:
+    file = session / SESSION_FILE
     try:
-        about = tomllib.loads((session / SESSION_FILE).read_text(encoding="utf-8")).get("session")
-    except (OSError, ValueError):
+        if file.stat().st_size > MOST_BYTES:
+            return False
+        about = tomllib.loads(file.read_text(encoding="utf-8")).get("session")
+    except (OSError, ValueError, RecursionError):
         return False
     return isinstance(about, dict) and about.get("simulated") is True

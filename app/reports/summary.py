@@ -31,6 +31,7 @@ from core.verdicts.quantities import (
 )
 
 FORMAT = "gaitwright-analysis/1"
+MOST_BYTES = 50_000_000  # of a file that may be one: ours take a few hundred kilobytes
 BOTH = (*OF_BOTH, "symmetry_index_percent", "curve_difference_deg", "side_difference")
 KINDS = ("knee", "ankle")
 # positive figures only: the index means nothing for signed angles
@@ -61,8 +62,10 @@ def write_summary(analysis: Analysis, path: Path) -> None:
 def read_summary(path: Path) -> dict[str, Any] | None:
     """Read what `write_summary` wrote; None when there is no such file, or one of another program."""
     try:
+        if path.stat().st_size > MOST_BYTES:
+            return None
         summary = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError):  # ValueError: no JSON, or not even UTF-8
+    except (OSError, ValueError, RecursionError):  # ValueError: no JSON, or not even UTF-8
         return None
     is_ours = isinstance(summary, dict) and summary.get("format") == FORMAT
     return summary if is_ours else None

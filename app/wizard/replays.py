@@ -107,10 +107,10 @@ class Replays(QObject):
         """Read a session folder; `read` or `refused` follows."""
 
         def reading(_opened: "OpenedLibrary", report: Report) -> SourceChoice:
-            from devices.files.session_folder import read_session
+            from app.foreign_files import read_foreign_session
 
             report(0.0, folder.name)
-            return replay_of(read_session(folder), folder.name)
+            return replay_of(read_foreign_session(folder, lambda: report(0.0, folder.name)), folder.name)
 
         self._read(reading, folder.name)
 

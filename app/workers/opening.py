@@ -30,10 +30,11 @@ def opening_folder(folder: Path) -> Work:
     """Give the work that reads and analyses a session folder. It raises `FileRefusedError` as the reader does."""
 
     def work(report: Report) -> Opened:
-        report(0.0, tr("reading {folder}").format(folder=folder.name))
-        from devices.files.session_folder import read_session
+        what = tr("reading {folder}").format(folder=folder.name)
+        report(0.0, what)
+        from app.foreign_files import read_foreign_session
 
-        return _analysed(read_session(folder), report)
+        return _analysed(read_foreign_session(folder, lambda: report(0.0, what)), report)
 
     return work
 

@@ -1,5 +1,7 @@
 """What do we say when a file is not what it says it is?"""
 
+from collections.abc import Mapping
+
 
 class FileRefusedError(Exception):
     """A file that cannot be used: what is wrong, where, and what to do, as one line for the person who chose it.
@@ -14,6 +16,11 @@ class FileRefusedError(Exception):
         self.values = {key: one_line(str(value)) for key, value in values.items()}
         said = f"{self.what}. {self.remedy}."
         super().__init__(f"{self.where}: {said.format(**self.values) if values else said}")
+
+    @classmethod
+    def said_elsewhere(cls, where: str, what: str, remedy: str, values: Mapping[str, str]) -> "FileRefusedError":
+        """The refusal of another process, in its words."""
+        return cls(where, what, remedy, **values)
 
 
 def one_line(text: str) -> str:

@@ -10,19 +10,55 @@ import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Protocol
 
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, Recording, Session
 from devices.files.refusal import FileRefusedError
-from devices.files.session_toml import FILE_NAME, Plan, default_sensor, parse, render, unknown_keys
-from devices.files.site_files import Shelf, SiteFile, SitesOnDemand, sensor_changes, write_site
+from devices.files.session_toml import (
+    FILE_NAME,
+    Plan,
+    default_sensor,
+    parse_document,
+    parse_toml,
+    render,
+    unknown_keys,
+)
+from devices.files.site_files import ReadSite, Shelf, SiteFile, SitesOnDemand, sensor_changes, write_site
 
 HELD_BYTES = 500_000_000  # some nine hours of one sensor at 100 Hz as text; in memory half of that
+MOST_HELD_BYTES = 2_000_000_000  # in memory, where the files are not larger than `HELD_BYTES`
 SUFFIXES = (".csv", ".parquet")
 
 
-def read_session(folder: Path) -> Session:
+class SessionReader(Protocol):
+    """Who opens the files of a session folder: this process (`InThisProcess`), or a limited one."""
+
+    def read_toml(self, path: Path) -> Mapping[str, object]: ...
+
+    def read_site(self, file: SiteFile) -> ReadSite: ...
+
+
+class InThisProcess:
+    """For folders that we wrote ourselves, and for the limited process itself."""
+
+    def read_toml(self, path: Path) -> Mapping[str, object]:
+        try:
+            return parse_toml(path.read_bytes().decode("utf-8-sig"))
+        except UnicodeDecodeError as error:
+            raise FileRefusedError(
+                FILE_NAME, "this is not UTF-8 text", "Save {file} as UTF-8", file=FILE_NAME
+            ) from error
+
+    def read_site(self, file: SiteFile) -> ReadSite:
+        return file.read()
+
+
+IN_THIS_PROCESS = InThisProcess()
+
+
+def read_session(folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> Session:
     """Read a session folder.
 
     Everything the folder says and everything odd about it is in the result, its recordings in the file's order.
@@ -32,10 +68,11 @@ def read_session(folder: Path) -> Session:
     ------
     FileRefusedError
         The folder is not what it says it is: see `session_toml.parse` and `site_files.read_site`; a recording's folder
-        missing or outside of the session folder, a site there twice, no samples at all.
+        missing or outside of the session folder, a site there twice, no samples at all, more samples than their files
+        can hold.
     """
     try:
-        return _read(folder)
+        return _read(folder, reader)
     except OSError as error:
         raise FileRefusedError(
             str(error.filename or folder),
@@ -45,11 +82,11 @@ def read_session(folder: Path) -> Session:
         ) from error
 
 
-def write_session(session: Session, folder: Path) -> None:
+def write_session(session: Session, folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> None:
     """Write `session` into `folder`, whole or not at all: beside it first, then renamed.
 
     Samples are written as CSV and read back bit for bit. A session folder that is there is replaced; what it holds
-    beside its session (a reference, a note) is taken along.
+    beside its session (a reference, a note) is taken along. `reader` tells what belongs to the session that is there.
 
     Raises
     ------
@@ -60,7 +97,7 @@ def write_session(session: Session, folder: Path) -> None:
     """
     render(session, [Plan(recording, {}, frozenset()) for recording in session.recordings])  # refuses what it must
     folder = folder.resolve()
-    strays = _strays(folder)
+    strays = _strays(folder, reader)
     folder.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{folder.name}-", dir=folder.parent) as beside:
         new, old = Path(beside) / "new", Path(beside) / "old"
@@ -82,8 +119,8 @@ def write_session(session: Session, folder: Path) -> None:
             raise
 
 
-def _read(folder: Path) -> Session:
-    session, plans = parse(_read_toml(folder))
+def _read(folder: Path, reader: SessionReader) -> Session:
+    session, plans = parse_document(_read_toml(folder, reader))
     files = {plan.recording.name: _site_files(folder, plan, session) for plan in plans}
     if not any(files.values()):
         raise FileRefusedError(
@@ -91,10 +128,18 @@ def _read(folder: Path) -> Session:
             "no recording has a file named after a site",
             "Name the files left_thigh.csv, left_shank.csv and so on",
         )
-    shelf = Shelf() if _size(files) > HELD_BYTES else None
-    recordings, findings = [], []
+    shelf = Shelf(reader.read_site) if _size(files) > HELD_BYTES else None
+    recordings, findings, held_bytes = [], [], 0
     for plan in plans:
-        imu, noticed = _read_recording(files[plan.recording.name], shelf)
+        imu, noticed = _read_recording(files[plan.recording.name], reader, shelf)
+        if shelf is None:
+            held_bytes += sum(_bytes_of(block) for block in imu.values())
+            if held_bytes > MOST_HELD_BYTES:  # Parquet says in a kilobyte that a number stands there a billion times
+                raise FileRefusedError(
+                    plan.recording.name,
+                    "its files hold more samples than files of their size can",
+                    "Export the recordings again",
+                )
         recordings.append(replace(plan.recording, imu=imu))
         findings += [*_folder_findings(folder, plan), *noticed]
     session = replace(session, recordings=tuple(recordings))
@@ -102,7 +147,7 @@ def _read(folder: Path) -> Session:
     return replace(session, findings=(*unknown_keys(session), *findings, *changes))
 
 
-def _read_toml(folder: Path) -> str:
+def _read_toml(folder: Path, reader: SessionReader) -> Mapping[str, object]:
     path = folder / FILE_NAME
     if not path.is_file():
         raise FileRefusedError(
@@ -111,10 +156,8 @@ def _read_toml(folder: Path) -> str:
             "Choose the folder that holds {file}, or import the recordings first",
             file=FILE_NAME,
         )
-    try:
-        return path.read_bytes().decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise FileRefusedError(FILE_NAME, "this is not UTF-8 text", "Save {file} as UTF-8", file=FILE_NAME) from error
+    _check_inside(path, folder, FILE_NAME)
+    return reader.read_toml(path)
 
 
 def _site_files(folder: Path, plan: Plan, session: Session) -> dict[Site, SiteFile]:
@@ -165,13 +208,18 @@ def _size(files: Mapping[str, Mapping[Site, SiteFile]]) -> int:
     return sum(file.path.stat().st_size for sites in files.values() for file in sites.values())
 
 
+def _bytes_of(block: ImuBlock) -> int:
+    samples = (block.time_s, block.gyr_rad_s, block.acc_m_s2, block.q_earth_from_sensor, block.mag)
+    return sum(0 if array is None else array.nbytes for array in (*samples, *block.unknown.values()))
+
+
 def _read_recording(
-    files: Mapping[Site, SiteFile], shelf: Shelf | None
+    files: Mapping[Site, SiteFile], reader: SessionReader, shelf: Shelf | None
 ) -> tuple[Mapping[Site, ImuBlock], list[Finding]]:
     held: dict[Site, ImuBlock] = {}
     findings: list[Finding] = []
     for site, file in files.items():
-        block, noticed = shelf.fetch(file) if shelf else file.read()
+        block, noticed = shelf.fetch(file) if shelf else reader.read_site(file)
         findings += noticed
         if shelf is None:
             held[site] = block
@@ -190,7 +238,7 @@ def _folder_findings(folder: Path, plan: Plan) -> Iterator[Finding]:
             yield Finding("file_left_out", Severity.INFO, name, {"name": other})
 
 
-def _strays(folder: Path) -> Sequence[Path]:
+def _strays(folder: Path, reader: SessionReader) -> Sequence[Path]:
     """Files of the session folder to be replaced that are not part of its session."""
     if not folder.exists() or (folder.is_dir() and not any(folder.iterdir())):
         return []
@@ -198,7 +246,7 @@ def _strays(folder: Path) -> Sequence[Path]:
         raise FileRefusedError(
             str(folder), "this is there already and is not a session folder", "Choose another folder"
         )
-    session, plans = parse(_read_toml(folder))
+    session, plans = parse_document(_read_toml(folder, reader))
     sites = {file.path for plan in plans for file in _site_files(folder, plan, session).values()}
     return [
         path for path in sorted(folder.rglob("*")) if not path.is_dir() and path not in {*sites, folder / FILE_NAME}

@@ -25,6 +25,7 @@ FILE_NAME = "session.toml"
 CORRECT_IT = f"Correct {FILE_NAME}"
 SAYS_FORMAT = f'A session folder says format = "{FORMAT}" in its first line'
 SIDES = ("left", "right", "both", "none", "")
+DEEPEST = 50  # tables and lists within each other; ours need four
 
 Check = Callable[[object], Any]
 Known = tuple[str, Check]
@@ -176,13 +177,37 @@ def parse(text: str) -> tuple[Session, tuple[Plan, ...]]:
     Raises
     ------
     FileRefusedError
-        Not TOML, another format, no recording, a recording without name, kind or folder or with those of another, a
-        value of the wrong type or out of range.
+        What `parse_toml` and `parse_document` refuse.
+    """
+    return parse_document(parse_toml(text))
+
+
+def parse_toml(text: str) -> dict[str, object]:
+    """The tables of the file, whatever they say.
+
+    Raises
+    ------
+    FileRefusedError
+        Not TOML, or tables within tables without end.
     """
     try:
-        document = tomllib.loads(text)
+        document: dict[str, object] = tomllib.loads(text)
     except (ValueError, RecursionError) as error:
         raise FileRefusedError(FILE_NAME, "this is not TOML ({why})", CORRECT_IT, why=error) from error
+    if _is_deeper(document, DEEPEST):
+        raise FileRefusedError(FILE_NAME, "its tables lie too deep within each other", CORRECT_IT)
+    return document
+
+
+def parse_document(document: Table) -> tuple[Session, tuple[Plan, ...]]:
+    """What the tables say: a session without recordings, and the recordings to read.
+
+    Raises
+    ------
+    FileRefusedError
+        Another format, no recording, a recording without name, kind or folder or with those of another, a value of the
+        wrong type or out of range.
+    """
     _check_format(document)
     tables = {name: _table(document, name, f"[{name}]") for name in TABLES}
     session_values, session_unknown = _take(tables["session"], SESSION, "[session]")
@@ -255,6 +280,11 @@ def unknown_keys(session: Session) -> tuple[Finding, ...]:
 def default_sensor(session: Session, site: Site) -> str:
     """What a sensor is called when its recording does not say."""
     return session.sensors.get(site, SensorInfo()).serial or site.value
+
+
+def _is_deeper(value: object, most: int) -> bool:
+    inner = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return most == 0 or any(_is_deeper(one, most - 1) for one in inner)
 
 
 def _check_format(document: Table) -> None:

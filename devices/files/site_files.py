@@ -1,7 +1,8 @@
 """How does one sensor's file become a block of samples, and the other way round?"""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -127,16 +128,21 @@ class SitesOnDemand(Mapping[Site, ImuBlock]):
         return len(self._files)
 
 
+@dataclass(frozen=True, slots=True)
 class SiteFile:
-    """A file and what it takes to read it."""
+    """A file and what it takes to read it: the arguments of `read_site`."""
 
-    def __init__(self, path: Path, where: str, place: str, sensor: str, is_rate_derived: bool) -> None:
-        self.path = path
-        self.sensor = sensor
-        self._arguments = (path, where, place, sensor, is_rate_derived)
+    path: Path
+    where: str
+    place: str
+    sensor: str
+    is_rate_derived: bool
 
-    def read(self) -> tuple[ImuBlock, tuple[Finding, ...]]:
-        return read_site(*self._arguments)
+    def read(self) -> "ReadSite":
+        return read_site(self.path, self.where, self.place, self.sensor, self.is_rate_derived)
+
+
+ReadSite = tuple[ImuBlock, tuple[Finding, ...]]
 
 
 class Shelf:
@@ -144,15 +150,16 @@ class Shelf:
 
     PLACES = 2
 
-    def __init__(self) -> None:
-        self._read: dict[SiteFile, tuple[ImuBlock, tuple[Finding, ...]]] = {}
+    def __init__(self, read: Callable[[SiteFile], ReadSite]) -> None:
+        self._read_file = read
+        self._read: dict[SiteFile, ReadSite] = {}
 
-    def fetch(self, file: SiteFile) -> tuple[ImuBlock, tuple[Finding, ...]]:
+    def fetch(self, file: SiteFile) -> ReadSite:
         read = self._read.pop(file, None)
         if read is None:
             while len(self._read) >= self.PLACES:
                 del self._read[next(iter(self._read))]
-            read = file.read()
+            read = self._read_file(file)
         self._read[file] = read
         return read
 

@@ -131,6 +131,8 @@ def read_parquet(path: Path, where: str, numeric: Collection[str]) -> Table:
                 texts[name] = column.to_numpy()
             else:
                 texts[name] = _as_text(["" if v is None else str(v) for v in column.to_pylist()])
+    except pa.ArrowMemoryError:
+        raise
     except (pa.ArrowException, OSError, ValueError, OverflowError) as error:
         raise FileRefusedError(where, "this is not a readable Parquet file ({why})", COPY_AGAIN, why=error) from error
     return Table(numbers, texts, arrow.num_rows, lambda row: f"row {row + 1}")
@@ -196,6 +198,8 @@ def _read_body(file: BinaryIO, names: list[str], wanted: list[str], numeric: Col
                 column_types=types, include_columns=wanted, null_values=EMPTY_CELLS, strings_can_be_null=False
             ),
         )
+    except pa.ArrowMemoryError:
+        raise  # which says nothing of the file's lines
     except pa.ArrowException as error:
         return error
 

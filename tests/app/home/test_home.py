@@ -1,6 +1,8 @@
 """Home with a library of its own: patients found, sessions listed, deleted and had back, imported, recovered."""
 
+import os
 import shutil
+import signal
 import threading
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -14,6 +16,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.foreign_files import read_foreign_session, the_reader
 from app.home.home import Home
 from app.pages.home_lists import PatientLine, SessionLine
 from app.settings import Scheme, Settings
@@ -251,6 +254,33 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     patient = library.patients.find("P-0200")
     assert patient is not None
     assert len(library.sessions.list(patient.id)) == int(is_done)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals of this kind are not for Windows")
+def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_path: Path) -> None:
+    time_s = np.arange(300) / 100
+    block = ImuBlock("LT-1", time_s, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
+    recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
+    write_session(Session((recording,), Patient(code="P-0200")), tmp_path / "visit")
+    read_foreign_session(tmp_path / "visit", lambda: None)
+    process = the_reader()._process
+    assert process is not None
+    os.kill(process.pid, signal.SIGSTOP)
+    home.read_folder(tmp_path / "visit")
+    qtbot.wait(200)
+    assert home.working.isVisible()
+    assert process.poll() is None
+    home.working.stop.click()
+    assert home.page.isVisible()
+    assert home.banner.text.startswith("This was stopped.")
+    qtbot.waitUntil(lambda: process.poll() is not None, timeout=WAIT_MS)
+
+    def is_read() -> bool:
+        if home.page.isVisible():  # what was stopped has not ended yet
+            home.read_folder(tmp_path / "visit")
+        return home.import_page.isVisible()
+
+    qtbot.waitUntil(is_read, timeout=WAIT_MS)
 
 
 def test_a_folder_that_is_no_session_is_refused_in_words(qtbot: QtBot, home: Home, tmp_path: Path) -> None:

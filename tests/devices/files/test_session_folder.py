@@ -351,6 +351,11 @@ def test_links_out_of_the_session_are_refused(make_session: MakeSession, tmp_pat
     link = folder / "walk_1" / "left_thigh.csv"
     link.symlink_to(outside / "left_thigh.csv")
     assert "walk_1/left_thigh.csv: this leads outside" in refusal(folder)
+    (folder / "session.toml").rename(outside / "session.toml")
+    (folder / "session.toml").symlink_to(outside / "session.toml")
+    assert "session.toml: this leads outside" in refusal(folder)
+    (folder / "session.toml").unlink()
+    (outside / "session.toml").rename(folder / "session.toml")
     link.unlink()
     (folder / "walk_1").rmdir()
     (folder / "walk_1").symlink_to(outside)

@@ -129,3 +129,13 @@ def test_what_is_wrong_is_refused(toml: str, words: str) -> None:
         parse(toml)
     assert re.search(words, str(caught.value))
     assert str(caught.value).isprintable()
+
+
+@pytest.mark.parametrize(
+    "deep", ["a = " + "[" * 60 + "]" * 60, "a = " + "{b = " * 60 + "1" + "}" * 60, "[a" + ".a" * 60 + "]"]
+)
+def test_tables_without_end_within_each_other_are_refused(deep: str) -> None:
+    with pytest.raises(FileRefusedError, match="too deep within each other"):
+        parse(f"{deep}\n{TOML}" if deep.startswith("a") else f"{TOML}{deep}\n")
+    shallow = "a = " + "[" * 40 + "]" * 40
+    assert "a" in parse(f"{shallow}\n{TOML}")[0].unknown

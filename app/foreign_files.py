@@ -1,0 +1,82 @@
+"""How does the application read files that others made? All of them by one limited process, whatever asks for them.
+
+A file can at most end that process. Folders that this program has just written may be read directly.
+`waiting` is called while something is read, twenty times a second; what it raises ends the reading at once.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from core.body import Site
+    from core.samples import Session
+    from devices.files.imports import Imported
+    from devices.files.limited_reader import LimitedReader, Waiting
+
+
+def read_foreign_session(folder: Path, waiting: "Waiting") -> "Session":
+    """Read a session folder as `devices.files.session_folder.read_session` does.
+
+    Raises
+    ------
+    FileRefusedError
+        The folder is not what it says it is, or cannot be read within the limits.
+    """
+    from devices.files.limited_reader import LimitedReading
+    from devices.files.session_folder import read_session
+
+    reading = LimitedReading(the_reader(), waiting)
+    try:
+        return read_session(folder, reading)
+    finally:
+        reading.waiting = _nobody_waits  # a large session is read again later, when this is over
+
+
+def write_over_session(session: "Session", folder: Path) -> None:
+    """Write a session folder as `devices.files.session_folder.write_session` does, over one that others may have made.
+
+    Raises
+    ------
+    FileRefusedError
+        Something else is there.
+    OSError
+        The disk is full or cannot be written to.
+    """
+    from devices.files.limited_reader import LimitedReading
+    from devices.files.session_folder import write_session
+
+    write_session(session, folder, LimitedReading(the_reader(), _nobody_waits))
+
+
+def import_foreign(
+    format_name: str,
+    files: Sequence[Path],
+    placement: "Mapping[Site, str]",
+    recording: str,
+    rate_hz: float | None,
+    waiting: "Waiting",
+) -> "Imported":
+    """The samples of one recording of another program, as its importer in `devices.files` gives them.
+
+    Raises
+    ------
+    FileRefusedError
+        The files are not what they should be, or cannot be read within the limits.
+    """
+    from devices.files.limited_reader import LimitedReading
+
+    return LimitedReading(the_reader(), waiting).import_files(format_name, files, placement, recording, rate_hz)
+
+
+@cache
+def the_reader() -> "LimitedReader":
+    """The one process of this program that reads foreign files."""
+    from devices.files.limited_reader import LimitedReader
+
+    return LimitedReader()
+
+
+def _nobody_waits() -> None:
+    """Let it end in its own time: it has a deadline."""

@@ -1,0 +1,244 @@
+"""How does what a limited process read come back, so that nothing of it has to be trusted?
+
+An answer is JSON, then the arrays that it names by number, as raw bytes. Nothing is unpickled: whoever receives it
+builds every object anew, and refuses with `BrokenAnswerError` what has not the shape it should have.
+"""
+
+import datetime
+import json
+import math
+import re
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from string import Formatter
+from typing import IO, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.body import Site
+from core.findings import Finding, Severity
+from core.samples import ImuBlock, RateKind, SensorInfo
+from devices.files.imports import Imported
+from devices.files.refusal import FileRefusedError
+
+Array = NDArray[np.generic]
+Told = dict[str, Any]
+
+LENGTH = struct.Struct("<Q")  # of the JSON; the arrays' lengths stand in it
+PLAIN_NUMBERS = re.compile(r"[<>|][fiu][1248]")
+MOST_ANSWER_BYTES = 2_000_000_000  # of JSON, and of arrays: more than any file that is let through can hold
+MOST_REFUSAL = 20_000  # letters of each part
+TIMES: Mapping[str, Any] = {"datetime": datetime.datetime, "date": datetime.date, "time": datetime.time}
+OF_BLOCK = ("time_s", "gyr_rad_s", "acc_m_s2", "q_earth_from_sensor", "mag")
+TEXTS_OF_SENSOR = ("serial", "model", "firmware", "clock")
+
+
+class BrokenAnswerError(Exception):
+    """An answer that no reader of ours gives."""
+
+
+def send(stream: IO[bytes], told: Told, arrays: Sequence[Array] = ()) -> None:
+    shapes = [[array.dtype.str, list(array.shape)] for array in arrays]
+    message = json.dumps({"told": told, "arrays": shapes}).encode()
+    stream.write(LENGTH.pack(len(message)))
+    stream.write(message)
+    for array in arrays:
+        stream.write(np.ascontiguousarray(array).reshape(-1).view(np.uint8).data)
+    stream.flush()
+
+
+def receive(stream: IO[bytes]) -> tuple[Told, list[Array]]:
+    """What `send` sent.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is of another shape, or larger than any answer.
+    EOFError, OSError
+        Nobody is there any more.
+    """
+    (length,) = LENGTH.unpack(_exactly(stream, LENGTH.size))
+    if length > MOST_ANSWER_BYTES:
+        raise BrokenAnswerError(f"an answer of {length} bytes")
+    with _whatever_is_wrong():
+        message = json.loads(_exactly(stream, length))
+        told, shapes = message["told"], message["arrays"]
+        sizes = [_bytes_of(kind, shape) for kind, shape in shapes]
+        if not isinstance(told, dict) or sum(sizes) > MOST_ANSWER_BYTES:
+            raise BrokenAnswerError("an answer of another shape, or too large")
+        arrays = [np.empty(shape, kind) for kind, shape in shapes]
+    for array in arrays:
+        _fill(stream, array.reshape(-1).view(np.uint8).data)
+    return told, arrays
+
+
+def told_of_block(block: ImuBlock, arrays: list[Array]) -> Told:
+    """The block, its samples put into `arrays`."""
+
+    def put(array: Array) -> int:
+        arrays.append(array)
+        return len(arrays) - 1
+
+    values = {name: getattr(block, name) for name in OF_BLOCK}
+    columns = {
+        name: put(column) if PLAIN_NUMBERS.fullmatch(column.dtype.str) else [str(text) for text in column]
+        for name, column in block.unknown.items()
+    }
+    return {
+        **{name: None if value is None else put(value) for name, value in values.items()},
+        "sensor": block.sensor,
+        "is_rate_derived": block.is_rate_derived,
+        "unknown": columns,
+    }
+
+
+def block_from(told: Told, arrays: Sequence[Array]) -> ImuBlock:
+    """The block that `told_of_block` told of; raises `BrokenAnswerError`."""
+    with _whatever_is_wrong():
+        samples = {name: _samples(arrays[told[name]]) for name in OF_BLOCK if told[name] is not None}
+        columns = {
+            str(name): arrays[value] if isinstance(value, int) else np.array(value, dtype=np.dtypes.StringDType())
+            for name, value in told["unknown"].items()
+        }
+        n = len(arrays[told["time_s"]])
+        if any(column.shape != (n,) for column in columns.values()):
+            raise BrokenAnswerError("columns of different lengths")
+        return ImuBlock(
+            sensor=_text(told["sensor"]), is_rate_derived=told["is_rate_derived"] is True, unknown=columns, **samples
+        )
+
+
+def told_of_findings(findings: Sequence[Finding]) -> list[Told]:
+    return [{"key": f.key, "severity": f.severity, "where": f.where, "numbers": dict(f.numbers)} for f in findings]
+
+
+def findings_from(told: list[Told]) -> tuple[Finding, ...]:
+    with _whatever_is_wrong():
+        return tuple(_finding(one) for one in told)
+
+
+def told_of_import(imported: Imported, arrays: list[Array]) -> Told:
+    """What an importer brought; what it says of sensors is in the keys of `SensorInfo`."""
+    return {
+        "imu": {site: told_of_block(block, arrays) for site, block in imported.imu.items()},
+        "sensors": {
+            site: {name: getattr(info, name) for name in (*TEXTS_OF_SENSOR, "rate_hz", "rate_kind")}
+            for site, info in imported.sensors.items()
+        },
+        "findings": told_of_findings(imported.findings),
+    }
+
+
+def import_from(told: Told, arrays: Sequence[Array]) -> Imported:
+    with _whatever_is_wrong():
+        return Imported(
+            {Site(site): block_from(block, arrays) for site, block in told["imu"].items()},
+            {Site(site): _sensor(info) for site, info in told["sensors"].items()},
+            findings_from(told["findings"]),
+        )
+
+
+def told_of_document(value: object) -> object:
+    """A TOML document in JSON's own kinds, its times named as such."""
+    if isinstance(value, dict):
+        return ["table", {key: told_of_document(inner) for key, inner in value.items()}]
+    if isinstance(value, list):
+        return ["list", [told_of_document(inner) for inner in value]]
+    for kind, type_ in TIMES.items():
+        if isinstance(value, type_):
+            return [kind, value.isoformat()]
+    return value
+
+
+def document_from(told: object) -> object:
+    with _whatever_is_wrong():
+        match told:
+            case ["table", dict(inner)]:
+                return {key: document_from(value) for key, value in inner.items()}
+            case ["list", list(inner)]:
+                return [document_from(value) for value in inner]
+            case [str(kind), str(text)]:
+                return TIMES[kind].fromisoformat(text)
+            case str() | int() | float():
+                return told
+    raise BrokenAnswerError("no TOML")
+
+
+def told_of_refusal(refusal: FileRefusedError) -> Told:
+    return {"where": refusal.where, "what": refusal.what, "remedy": refusal.remedy, "values": refusal.values}
+
+
+def refusal_from(told: Told) -> FileRefusedError:
+    """The refusal as it was raised; only plain names stand in its braces, so that filling them can do nothing else."""
+    with _whatever_is_wrong():
+        parts = [_text(told[name]) for name in ("where", "what", "remedy")]
+        values = {str(name): _text(value) for name, value in told["values"].items()}
+        if any(len(text) > MOST_REFUSAL for text in (*parts, *values.values())):
+            raise BrokenAnswerError("a refusal without end")
+        if values:
+            for _, name, form, conversion in Formatter().parse(f"{parts[1]}{parts[2]}"):
+                if name is not None and (name not in values or form or conversion):
+                    raise BrokenAnswerError("a refusal with strange braces")
+        return FileRefusedError.said_elsewhere(*parts, values)
+
+
+@contextmanager
+def _whatever_is_wrong() -> Iterator[None]:
+    try:
+        yield
+    except (LookupError, TypeError, ValueError, AttributeError, RecursionError, MemoryError) as error:
+        raise BrokenAnswerError(f"an answer of another shape ({error})") from error
+
+
+def _exactly(stream: IO[bytes], length: int) -> bytearray:
+    content = bytearray(length)
+    _fill(stream, memoryview(content))
+    return content
+
+
+def _fill(stream: IO[bytes], content: memoryview) -> None:
+    while content:
+        got = stream.readinto(content)  # type: ignore[attr-defined]  # every binary stream has it, its type has not
+        if not got:
+            raise EOFError
+        content = content[got:]
+
+
+def _bytes_of(kind: str, shape: Sequence[int]) -> float:
+    is_plain = isinstance(kind, str) and PLAIN_NUMBERS.fullmatch(kind)
+    if not is_plain or not 1 <= len(shape) <= 2 or not all(type(size) is int and size >= 0 for size in shape):
+        raise BrokenAnswerError("an array of no numbers, or of no shape")
+    return math.prod(shape) * int(kind[-1])
+
+
+def _samples(array: Array) -> NDArray[np.float64]:
+    if array.dtype != np.float64:
+        raise BrokenAnswerError(f"samples of {array.dtype}")
+    return array.astype(np.float64, copy=False)
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str):
+        raise BrokenAnswerError(f"{type(value)}, expected a text")
+    return value
+
+
+def _finding(told: Told) -> Finding:
+    numbers: Mapping[str, object] = told["numbers"]
+    kept = {str(name): value for name, value in numbers.items() if isinstance(value, str | int | float)}
+    return Finding(_text(told["key"]), Severity(told["severity"]), _text(told["where"]), kept)
+
+
+def _sensor(told: Told) -> SensorInfo:
+    rate_hz, kind = told["rate_hz"], told["rate_kind"]
+    serial, model, firmware, clock = (_text(told[name]) for name in TEXTS_OF_SENSOR)
+    return SensorInfo(
+        serial=serial,
+        model=model,
+        firmware=firmware,
+        rate_hz=None if rate_hz is None else float(rate_hz),
+        rate_kind=None if kind is None else RateKind(kind),
+        clock=clock,
+    )

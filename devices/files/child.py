@@ -1,0 +1,101 @@
+"""What runs in the limited process: one foreign file, or the files of one recording, at a time.
+
+It is the only process in which bytes of others are parsed, and as little trusted as they are: it is limited before it
+imports what reads them, is told what to do in JSON, and answers as `answers` says.
+"""
+
+import os
+import signal
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from devices.files.limits import limit_processor_time, limit_this_process
+
+if TYPE_CHECKING:
+    from devices.files.answers import Array, Told
+
+TOML, SITE, IMPORT = "toml", "site", "import"
+IMPORTERS = ("xsens-mtmanager",)
+READ, REFUSED, MEMORY, UNFORESEEN = "read", "refused", "memory", "unforeseen"
+
+
+def main() -> None:
+    """Read what is asked for on the standard input until nobody asks any more; the argument is the memory in bytes."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl C reaches all of a terminal; who asks ends this process
+    asking, answering = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    nowhere = os.open(os.devnull, os.O_RDWR)
+    for stream in (0, 1, 2):  # what a library says before it aborts is no line for the user
+        os.dup2(nowhere, stream)
+    limit_this_process(int(sys.argv[1]))
+    from devices.files.answers import receive, send
+
+    while True:
+        try:
+            asked, _ = receive(asking)
+        except EOFError:
+            return
+        os.chdir(asked["cwd"])
+        limit_processor_time(asked["processor_s"])
+        arrays: list[Array] = []
+        send(answering, _answer(asked, arrays), arrays)
+
+
+def importers() -> "dict[str, Callable[..., Any]]":
+    """What reads each of `IMPORTERS`."""
+    from devices.files.xsens_mtmanager import import_mtmanager  # here: SciPy takes longer to import than most files
+
+    return {"xsens-mtmanager": import_mtmanager}
+
+
+def _answer(asked: "Told", arrays: "list[Array]") -> "Told":
+    from devices.files.answers import told_of_refusal
+    from devices.files.refusal import FileRefusedError
+
+    try:
+        return {"what": READ, "told": _read(asked, arrays)}
+    except FileRefusedError as refusal:
+        return {"what": REFUSED, "told": told_of_refusal(refusal)}
+    except OSError as problem:
+        why = problem.strerror or type(problem).__name__
+        where = str(problem.filename or asked["where"])
+        unread = FileRefusedError(where, "this cannot be read ({why})", "Check its permissions", why=why)
+        return {"what": REFUSED, "told": told_of_refusal(unread)}
+    except MemoryError:
+        arrays.clear()
+        return {"what": MEMORY}
+    except Exception as error:  # the edge of the process; what the file says stays out of the words
+        arrays.clear()
+        return {"what": UNFORESEEN, "told": f"{type(error).__name__}, {_last_line(error)}"}
+
+
+def _read(asked: "Told", arrays: "list[Array]") -> object:
+    from core.body import Site
+    from devices.files.answers import told_of_block, told_of_document, told_of_findings, told_of_import
+    from devices.files.session_folder import IN_THIS_PROCESS
+    from devices.files.site_files import read_site
+
+    task = asked["task"]
+    if task == TOML:
+        return told_of_document(IN_THIS_PROCESS.read_toml(Path(asked["path"])))
+    if task == SITE:
+        block, findings = read_site(
+            Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
+        )
+        return {"block": told_of_block(block, arrays), "findings": told_of_findings(findings)}
+    placement = {Site(site): value for site, value in asked["placement"].items()}
+    files = [Path(path) for path in asked["files"]]
+    imported = importers()[asked["format"]](files, placement, asked["recording"], asked["rate_hz"])
+    return told_of_import(imported, arrays)
+
+
+def _last_line(error: Exception) -> str:
+    frame = error.__traceback__
+    while frame is not None and frame.tb_next is not None:
+        frame = frame.tb_next
+    return "?" if frame is None else f"{Path(frame.tb_frame.f_code.co_filename).name}:{frame.tb_lineno}"
+
+
+if __name__ == "__main__":
+    main()

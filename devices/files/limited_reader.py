@@ -1,0 +1,297 @@
+"""How are files of others read without trusting them? By a process of its own, with limits, that may end at any time.
+
+One process reads all files of this program, one after the other. It is renewed after `FILES_EACH` files and whenever it
+ended: a file that takes too much memory or time, or that ends its reader, is refused like any other, in one line.
+"""
+
+import contextlib
+import logging
+import os
+import signal
+import subprocess
+import sys
+import threading
+import weakref
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from time import monotonic
+from typing import Any, TypeVar
+
+from core.body import Site
+from devices.files import child
+from devices.files.answers import (
+    Array,
+    BrokenAnswerError,
+    Told,
+    block_from,
+    document_from,
+    findings_from,
+    import_from,
+    receive,
+    refusal_from,
+    send,
+)
+from devices.files.imports import Imported
+from devices.files.refusal import FileRefusedError
+from devices.files.session_toml import FILE_NAME
+from devices.files.site_files import ReadSite, SiteFile
+
+FILES_EACH = 500
+MEMORY_BYTES = 4 * 1024**3  # half a gigabyte of text takes 1.9, most of it only reserved, the libraries 0.4 of them
+MOST_FILE_BYTES = 1_000_000_000  # some twenty hours of one sensor at 100 Hz as text
+MOST_TOML_BYTES = 4_000_000  # a session of ours takes some kilobytes
+DEADLINE_S = 60.0  # for any file, with the start of the process
+BYTES_A_SECOND = 5_000_000.0  # beyond that; a busy old machine reads four times as fast
+WAIT_S = 0.05  # between two looks at whether somebody still waits
+
+_log = logging.getLogger(__name__)
+T = TypeVar("T")
+
+Process = subprocess.Popen[bytes]
+Waiting = Callable[[], object]
+"""Called while a file is being read. What it raises ends the reading."""
+
+
+TIME, CRASH = "time", "crash"
+ENDINGS = {  # refusals that lack only their place
+    child.MEMORY: FileRefusedError(
+        "", "reading this takes more memory than a recording needs", "Export it again, or in shorter parts"
+    ),
+    TIME: FileRefusedError(
+        "", "reading this takes longer than a recording needs", "Export it again, or in shorter parts"
+    ),
+    CRASH: FileRefusedError(
+        "", "reading this ended early, as a damaged file can end it", "Copy the file again from where it was recorded"
+    ),
+    child.UNFORESEEN: FileRefusedError(
+        "",
+        "reading this ended early, for a reason that the log names",
+        "Copy the file again from where it was recorded",
+    ),
+}
+
+
+class ReadingEndedError(FileRefusedError):
+    """A file that could not be read to its end within the limits; `cause` is memory, time, crash or unforeseen."""
+
+    def __init__(self, where: str, cause: str) -> None:
+        self.cause = cause
+        super().__init__(where, ENDINGS[cause].what, ENDINGS[cause].remedy)
+
+
+class LimitedReader:
+    """The process that reads; started when first asked, by whichever thread. After `close` it may be asked again.
+
+    It ends with this program, and when a reading is given up.
+    """
+
+    def __init__(self, memory_bytes: int = MEMORY_BYTES) -> None:
+        self._memory_bytes = memory_bytes
+        self._lock = threading.Lock()
+        self._process: Process | None = None
+        self._ending: Callable[[], object] | None = None
+        self._files_left = 0
+
+    def ask(
+        self,
+        task: Told,
+        files: Sequence[Path],
+        where: str,
+        made_of: Callable[[Any, list[Array]], T],
+        waiting: Waiting,
+        most_bytes: int = MOST_FILE_BYTES,
+    ) -> T:
+        """What is made of what the process tells and of the arrays that it names.
+
+        Raises
+        ------
+        FileRefusedError
+            What the process refused, a file that is too large, or a `ReadingEndedError`.
+        """
+        sizes = {path: path.stat().st_size for path in files if path.is_file()}
+        for path, size in sizes.items():
+            if size > most_bytes:
+                raise FileRefusedError(
+                    where if len(files) == 1 else str(path),
+                    "this is {size} MB large, more than a recording needs",
+                    "Choose a file of up to {most} MB",
+                    size=round(size / 1e6),
+                    most=round(most_bytes / 1e6),
+                )
+        deadline_s = DEADLINE_S + sum(sizes.values()) / BYTES_A_SECOND
+        asked = {**task, "where": where, "cwd": str(Path.cwd()), "processor_s": 2.0 * deadline_s}
+        while not self._lock.acquire(timeout=WAIT_S):
+            waiting()
+        try:
+            process = self._process = self._ready()
+            self._files_left -= len(files)
+            answer, arrays = _exchange(process, asked, monotonic() + deadline_s, waiting)
+            return made_of(_told(answer, where), arrays)
+        except BrokenAnswerError as problem:
+            _log.warning("the reading process gave a broken answer")
+            self._files_left = 0
+            raise ReadingEndedError(where, CRASH) from problem
+        except FileRefusedError as refusal:
+            if isinstance(refusal, ReadingEndedError):
+                self._files_left = 0  # what took the memory may still hold it
+            raise
+        except BaseException:
+            self._files_left = 0  # nobody waits for its answer
+            raise
+        finally:
+            if self._files_left <= 0:
+                self._end()
+            self._lock.release()
+
+    def close(self) -> None:
+        """End the process, if there is one; who waits for it gets a refusal."""
+        if (process := self._process) is not None:
+            process.kill()
+        with self._lock:
+            self._end()
+
+    def _ready(self) -> "Process":
+        if self._process is not None and self._process.poll() is None:
+            return self._process
+        self._end()
+        self._files_left = FILES_EACH
+        process = start(self._memory_bytes)
+        self._ending = weakref.finalize(self, end, process)  # also when this program ends
+        return process
+
+    def _end(self) -> None:
+        self._process = None
+        if self._ending is not None:
+            self._ending()
+
+
+def start(memory_bytes: int) -> Process:
+    """Start the limited process. It knows this program's modules, and takes none from the folder it is started in."""
+    paths = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", child.__name__, str(memory_bytes)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": paths, "OPENBLAS_NUM_THREADS": "1", "PYTHONDONTWRITEBYTECODE": "1"},
+        creationflags=getattr(subprocess, "CREATE_NO_WINDOW", 0),
+    )
+
+
+def end(process: Process) -> None:
+    process.kill()
+    process.wait()
+    for stream in (process.stdin, process.stdout):
+        if stream is not None:
+            with contextlib.suppress(OSError):  # what could not be said to it any more
+                stream.close()
+
+
+def _exchange(process: Process, asked: Told, deadline_s: float, waiting: Waiting) -> tuple[Told, list[Array]]:
+    """Ask, and wait for the answer until the deadline; half an answer without its end is waited for no longer."""
+    answers: list[tuple[Told, list[Array]]] = []
+    problems: list[Exception] = []
+
+    def exchange() -> None:
+        try:
+            assert process.stdin is not None  # it was started with both
+            assert process.stdout is not None
+            send(process.stdin, asked)
+            answers.append(receive(process.stdout))
+        except (EOFError, OSError, BrokenAnswerError, MemoryError) as problem:
+            problems.append(problem)
+
+    is_late = False
+    thread = threading.Thread(target=exchange, name="waiting for a file", daemon=True)
+    thread.start()
+    try:
+        while _is_running(thread):
+            waiting()
+            if monotonic() > deadline_s:
+                is_late = True
+                process.kill()
+    except BaseException:
+        process.kill()
+        thread.join()
+        raise
+    if answers:
+        return answers[0]
+    process.kill()
+    process.wait()
+    is_late = is_late or -process.returncode == getattr(signal, "SIGXCPU", 0)
+    _log.warning("the reading process ended with %s (%s)", process.returncode, type(problems[0]).__name__)
+    raise ReadingEndedError(asked["where"], TIME if is_late else CRASH) from problems[0]
+
+
+def _is_running(thread: threading.Thread) -> bool:
+    """Tell whether the thread has not ended within a short while."""
+    thread.join(WAIT_S)
+    return thread.is_alive()
+
+
+def _told(answer: Told, where: str) -> Any:
+    match answer:
+        case {"what": child.READ, "told": told}:
+            return told
+        case {"what": child.REFUSED, "told": dict(told)}:
+            raise refusal_from(told)
+        case {"what": child.MEMORY}:
+            raise ReadingEndedError(where, child.MEMORY)
+        case {"what": child.UNFORESEEN, "told": str(told)}:
+            _log.error("a file's reader raised %s", told[:200])
+            raise ReadingEndedError(where, child.UNFORESEEN)
+    raise BrokenAnswerError("neither read nor refused")
+
+
+class LimitedReading:
+    """One reading of files of others, that `waiting` can end: a `session_folder.SessionReader`, and an importer."""
+
+    def __init__(self, reader: LimitedReader, waiting: Waiting) -> None:
+        self._reader = reader
+        self.waiting = waiting
+
+    def read_toml(self, path: Path) -> Mapping[str, object]:
+        task = {"task": child.TOML, "path": str(path)}
+        return self._reader.ask(task, [path], FILE_NAME, _document, self.waiting, MOST_TOML_BYTES)
+
+    def read_site(self, file: SiteFile) -> ReadSite:
+        task = {
+            "task": child.SITE,
+            "path": str(file.path),
+            "place": file.place,
+            "sensor": file.sensor,
+            "is_rate_derived": file.is_rate_derived,
+        }
+        return self._reader.ask(task, [file.path], file.where, _site, self.waiting)
+
+    def import_files(
+        self,
+        format_name: str,
+        files: Sequence[Path],
+        placement: Mapping[Site, str],
+        recording: str,
+        rate_hz: float | None,
+    ) -> Imported:
+        """As the importer of this format does."""
+        task = {
+            "task": child.IMPORT,
+            "format": format_name,
+            "files": [str(path) for path in files],
+            "placement": dict(placement),
+            "recording": recording,
+            "rate_hz": rate_hz,
+        }
+        where = ", ".join(path.name for path in files)
+        return self._reader.ask(task, files, where, import_from, self.waiting)
+
+
+def _document(told: Any, _arrays: Sequence[Array]) -> dict[str, object]:
+    document = document_from(told)
+    if not isinstance(document, dict):
+        raise BrokenAnswerError("no table")
+    return document
+
+
+def _site(told: Any, arrays: Sequence[Array]) -> ReadSite:
+    if not isinstance(told, dict) or not {"block", "findings"} <= told.keys():
+        raise BrokenAnswerError("no site")
+    return block_from(told["block"], arrays), findings_from(told["findings"])
