@@ -1,0 +1,21 @@
+"""Spoilt files raise nothing but refusals, end nothing, and nothing is written."""
+
+import pytest
+
+from devices.files.limited_reader import LimitedReader
+from tests.safety.file_fuzz import fuzz, importers
+
+COUNTS = (40, pytest.param(500, marks=pytest.mark.endurance))
+
+
+@pytest.mark.parametrize("files", COUNTS)
+@pytest.mark.parametrize("name", importers())
+def test_a_spoilt_file_is_read_or_refused(name: str, files: int) -> None:
+    reader = LimitedReader()
+    try:
+        found = fuzz(importers()[name], files, 7, reader)
+    finally:
+        reader.close()
+    assert found.faults == []
+    assert found.outcomes["read"] > 0
+    assert found.outcomes["refused"] > files / 2

@@ -1,0 +1,312 @@
+"""T13: spoilt files. Does one end the application, hang it, write anywhere, or raise anything but a refusal?
+
+    python -m tests.safety.file_fuzz --files 10000
+
+Each importer reads files of which bits, bursts, blocks, lines, numbers or the encoding were changed, which were cut,
+doubled, nested deeply or replaced by a link that leads outside. All are read by one limited process, as the application
+reads them, each followed now and then by a good one, which has to be read.
+"""
+
+import argparse
+import os
+import random
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
+
+from core.body import Site
+from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
+from devices.files.refusal import FileRefusedError
+from devices.files.session_folder import read_session
+from devices.files.site_files import MAG, QUAT, REQUIRED
+
+ROWS = 30
+GOOD_EVERY = 50
+LONGEST_S = 30.0  # for one file; the deadline of the application is twice that
+TOML = """format = "gaitwright-session/1"
+own = [1979-05-27T07:32:00Z, 1979-05-27, 07:32:00, [1, 2.5, nan, { deep = "ä" }]]
+[session]
+started = "2026-01-01T10:00:00"
+simulated = true
+[patient]
+code = "DEMO-1"
+birth_year = 1950
+height_m = 1.8
+prosthetic_side = "left"
+[sensors.left_thigh]
+serial = "A1"
+rate_hz = 100.0
+rate_kind = "averaged"
+[zero]
+left_knee = 2.0
+[sign]
+left_knee = -1
+[[recordings]]
+name = "walk 1"
+kind = "walking"
+folder = "walk_1"
+kept = true
+sensors = { left_thigh = "A1" }
+rates_derived = ["left_thigh"]
+strides_left_out = { left = [1.0, 2.0] }
+"""
+HUGE = (b"1e999", b"-1e308", b"9" * 400, b"9" * 5000, b"0x7fffffffffffffff", b"1e-400", b"nan", b"inf", b"-0", b"65536")
+DEEP = (b"[" * 3000, b"{a=" * 2000, b"[" + b"a." * 3000 + b"b]", b"a" + b".a" * 3000 + b" = 1", b'"' * 3, b"{" * 400)
+
+
+@dataclass(frozen=True, slots=True)
+class Spoilable:
+    """A good file, where it lies in the folder, and how the folder is read."""
+
+    content: bytes
+    place: str
+    read: Callable[[LimitedReader, Path], object]
+    may_be_a_link: bool
+
+
+@dataclass(slots=True)
+class Read:
+    """What came of the files of one importer."""
+
+    files: int = 0
+    outcomes: Counter[str] = field(default_factory=Counter)
+    slowest_s: float = 0.0
+    seconds: float = 0.0
+    faults: list[str] = field(default_factory=list)
+
+    def __str__(self) -> str:
+        came = ", ".join(f"{count} {outcome}" for outcome, count in sorted(self.outcomes.items()))
+        return (
+            f"{self.files} files: {came}; {len(self.faults)} faults, "
+            f"slowest {self.slowest_s:.2f} s, {self.seconds:.0f} s in all"
+        )
+
+
+def columns() -> dict[str, np.ndarray[tuple[int], np.dtype[np.float64]]]:
+    chance = np.random.default_rng(1)
+    names = (*REQUIRED[1:], *QUAT, *MAG)
+    return {REQUIRED[0]: np.arange(ROWS) / 100.0} | {name: chance.normal(size=ROWS).round(4) for name in names}
+
+
+def csv_text() -> bytes:
+    table = columns()
+    rows = (",".join(map(str, row)) + ",good\n" for row in zip(*table.values(), strict=True))
+    return (",".join(table) + ",note\n" + "".join(rows)).encode()
+
+
+def parquet() -> bytes:
+    sink = pa.BufferOutputStream()
+    pq.write_table(pa.table(columns() | {"note": ["good"] * ROWS}), sink)
+    return bytes(sink.getvalue().to_pybytes())
+
+
+def mtmanager() -> bytes:
+    names = ["PacketCounter", "SampleTimeFine", "Acc_X", "Acc_Y", "Acc_Z", "Gyr_X", "Gyr_Y", "Gyr_Z"]
+    names += ("Mag_X", "Mag_Y", "Mag_Z", "Quat_q0", "Quat_q1", "Quat_q2", "Quat_q3")
+    lines = ["// Start Time: Unknown", "// Update Rate: 100.0Hz", "// DeviceId: 00B42D4B", "\t".join(names)]
+    for number in range(ROWS):
+        samples = (0.1, 0.2, 9.8, 0.01, 0.02, 0.03, 0.4, 0.5, 0.6, 1.0, 0.0, 0.0, 0.0)
+        lines.append("\t".join([f"{number:05d}", str(number * 100), *(f"{value:.6f}" for value in samples)]))
+    return "\n".join([*lines, ""]).encode()
+
+
+def read_folder(reader: LimitedReader, folder: Path) -> object:
+    return read_session(folder, LimitedReading(reader, nobody))
+
+
+def read_export(reader: LimitedReader, folder: Path) -> object:
+    files = [folder / "export.txt"]
+    return LimitedReading(reader, nobody).import_files(
+        "xsens-mtmanager", files, {Site.LEFT_THIGH: "export.txt"}, "walk 1", None
+    )
+
+
+def nobody() -> None: ...
+
+
+def importers() -> dict[str, Spoilable]:
+    return {
+        "csv": Spoilable(csv_text(), "walk_1/left_thigh.csv", read_folder, may_be_a_link=True),
+        "parquet": Spoilable(parquet(), "walk_1/left_thigh.parquet", read_folder, may_be_a_link=True),
+        "session.toml": Spoilable(TOML.encode(), "session.toml", read_folder, may_be_a_link=True),
+        "xsens-mtmanager": Spoilable(mtmanager(), "export.txt", read_export, may_be_a_link=False),
+    }
+
+
+def spoilt(content: bytes, chance: random.Random) -> bytes:
+    """The content with one to three things wrong."""
+    for _ in range(chance.choice((1, 1, 1, 2, 3))):
+        content = chance.choice(WAYS)(content, chance)
+    return content
+
+
+def _flip(content: bytes, chance: random.Random) -> bytes:
+    changed = bytearray(content or b"\0")
+    for _ in range(chance.choice((1, 1, 3, 30))):
+        changed[chance.randrange(len(changed))] ^= 1 << chance.randrange(8)
+    return bytes(changed)
+
+
+def _burst(content: bytes, chance: random.Random) -> bytes:
+    at, length = chance.randrange(len(content) + 1), chance.choice((1, 8, 200, 5000))
+    return content[:at] + chance.randbytes(length) + content[at + chance.choice((0, length)) :]
+
+
+def _cut(content: bytes, chance: random.Random) -> bytes:
+    at, end = sorted(chance.randrange(len(content) + 1) for _ in range(2))
+    return chance.choice((content[:at], content[at:], content[:at] + content[end:]))
+
+
+def _double(content: bytes, chance: random.Random) -> bytes:
+    at, end = sorted(chance.randrange(len(content) + 1) for _ in range(2))
+    return content[:end] + content[at:end] * chance.choice((1, 1, 30)) + content[end:]
+
+
+def _swap_lines(content: bytes, chance: random.Random) -> bytes:
+    lines = content.split(b"\n")
+    one, other = (chance.randrange(len(lines)) for _ in range(2))
+    lines[one], lines[other] = lines[other], lines[one]
+    return chance.choice((b"\n", b"\n", b"\r", b"\r\n", b"\n\n")).join(lines)
+
+
+def _word(content: bytes, chance: random.Random, words: Sequence[bytes]) -> bytes:
+    """Put a word in place of another, or between two letters."""
+    if chance.random() < 0.3:
+        at = end = chance.randrange(len(content) + 1)
+    else:
+        edges = [i for i, letter in enumerate(content) if letter in b',\t\n =".[]{}'] or [0]
+        at = chance.choice(edges) + 1
+        end = next((edge for edge in edges if edge >= at), len(content))
+    return content[:at] + chance.choice(words) + content[end:]
+
+
+def _huge(content: bytes, chance: random.Random) -> bytes:
+    return _word(content, chance, HUGE)
+
+
+def _nul(content: bytes, chance: random.Random) -> bytes:
+    return _word(
+        content, chance, (b"\0", b"\0" * 4096, b"\xff\xfe", b"\xef\xbb\xbf", b"\x1b[2J", b"{x!r:>99}", b'"', b"\r")
+    )
+
+
+def _deep(content: bytes, chance: random.Random) -> bytes:
+    return _word(content, chance, DEEP)
+
+
+def _path(content: bytes, chance: random.Random) -> bytes:
+    return _word(
+        content, chance, (b"../outside", b"/etc", b"walk_1/..", b"C:\\x", b"a" * 5000, "\u202egnp.exe".encode(), b".")
+    )
+
+
+def _encode(content: bytes, chance: random.Random) -> bytes:
+    text = content.decode("utf-8", "replace")
+    return text.encode(chance.choice(("utf-16", "utf-16-le", "utf-32", "utf-8-sig", "cp037", "utf-7")), "replace")
+
+
+def _no_lines(content: bytes, chance: random.Random) -> bytes:
+    return chance.choice((content.replace(b"\n", b""), content + b"1," * 100_000, content + b"\n" * 100_000, b""))
+
+
+WAYS = (_flip, _burst, _cut, _double, _swap_lines, _huge, _nul, _deep, _path, _encode, _no_lines)
+
+
+def fuzz(importer: Spoilable, files: int, seed: int, reader: LimitedReader) -> Read:
+    """Spoil and read that many files."""
+    chance, found = random.Random(seed), Read(files)
+    began_s = time.monotonic()
+    with tempfile.TemporaryDirectory(prefix="gaitwright-fuzz-") as place:
+        root = Path(place)
+        (root / "outside").mkdir()
+        (root / "outside" / "secret").write_bytes(importer.content)
+        (root / "session" / "walk_1").mkdir(parents=True)
+        (root / "session" / "session.toml").write_text(TOML, encoding="utf-8")
+        target = root / "session" / importer.place
+        if target.parent.name != "walk_1":
+            (root / "session" / "walk_1" / "left_thigh.csv").write_bytes(csv_text())
+        before = _everything(root, target)
+        for number in range(files):
+            is_link = importer.may_be_a_link and number % 100 == 99
+            content = importer.content if number % GOOD_EVERY == 0 else spoilt(importer.content, chance)
+            target.unlink(missing_ok=True)
+            if is_link:
+                outside = root / "outside" / "secret"
+                target.symlink_to(chance.choice((outside, os.path.relpath(outside, target.parent))))
+            else:
+                target.write_bytes(content)
+            outcome = _outcome(importer, reader, root / "session", number, found)
+            found.outcomes[outcome] += 1
+            if number % GOOD_EVERY == 0 and outcome != "read":
+                found.faults.append(f"file {number}: a good one came out as {outcome}")
+            if is_link and outcome != "refused":
+                found.faults.append(f"file {number}: a link that leads outside came out as {outcome}")
+            if number % 100 == 0 and _everything(root, target) != before:
+                found.faults.append(f"up to file {number}: something was written")
+        if _everything(root, target) != before:
+            found.faults.append("something was written")
+    found.seconds = time.monotonic() - began_s
+    return found
+
+
+def _outcome(importer: Spoilable, reader: LimitedReader, folder: Path, number: int, found: Read) -> str:
+    began_s = time.monotonic()
+    try:
+        importer.read(reader, folder)
+        outcome = "read"
+    except ReadingEndedError as ended:
+        outcome = ended.cause
+        if ended.cause != "memory":  # a file may claim to be large
+            found.faults.append(f"file {number}: the reader ended, {ended.cause}")
+    except FileRefusedError as refusal:
+        outcome = "refused"
+        if not str(refusal).isprintable() or not refusal.where or not refusal.remedy:
+            found.faults.append(f"file {number}: {refusal!r} is no line")
+    except Exception as error:  # whatever it is, it is a fault
+        outcome = "raised"
+        found.faults.append(f"file {number}: {error!r}")
+    took_s = time.monotonic() - began_s
+    found.slowest_s = max(found.slowest_s, took_s)
+    if took_s > LONGEST_S:
+        found.faults.append(f"file {number}: took {took_s:.0f} s")
+    return outcome
+
+
+def _everything(root: Path, target: Path) -> dict[str, tuple[int, bytes]]:
+    """All files and folders but the one that is spoilt, with when they were changed and what they hold."""
+    return {
+        str(path.relative_to(root)): (
+            0 if path == target.parent else path.lstat().st_mtime_ns,
+            path.read_bytes() if path.is_file() else b"",
+        )
+        for path in sorted(root.rglob("*"))
+        if path != target
+    }
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--files", type=int, default=10_000)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--importer", choices=tuple(importers()), action="append")
+    wanted = parser.parse_args()
+    reader = LimitedReader()
+    faults = 0
+    for name in wanted.importer or importers():
+        found = fuzz(importers()[name], wanted.files, wanted.seed, reader)
+        print(f"{name}: {found}", *found.faults[:10], sep="\n  ", flush=True)
+        faults += len(found.faults)
+    reader.close()
+    return 1 if faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
