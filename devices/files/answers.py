@@ -173,15 +173,15 @@ def told_of_refusal(refusal: FileRefusedError) -> Told:
 def refusal_from(told: Told) -> FileRefusedError:
     """The refusal as it was raised; only plain names stand in its braces, so that filling them can do nothing else."""
     with _whatever_is_wrong():
-        parts = [_text(told[name]) for name in ("where", "what", "remedy")]
+        where, what, remedy = (_text(told[name]) for name in ("where", "what", "remedy"))
         values = {str(name): _text(value) for name, value in told["values"].items()}
-        if any(len(text) > MOST_REFUSAL for text in (*parts, *values.values())):
+        if any(len(text) > MOST_REFUSAL for text in (where, what, remedy, *values.values())):
             raise BrokenAnswerError("a refusal without end")
         if values:
-            for _, name, form, conversion in Formatter().parse(f"{parts[1]}{parts[2]}"):
+            for _, name, form, conversion in Formatter().parse(f"{what}{remedy}"):
                 if name is not None and (name not in values or form or conversion):
                     raise BrokenAnswerError("a refusal with strange braces")
-        return FileRefusedError.said_elsewhere(*parts, values)
+        return FileRefusedError.said_elsewhere(where, what, remedy, values)
 
 
 @contextmanager

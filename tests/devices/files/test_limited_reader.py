@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 
 from core.body import Site
 from core.findings import Finding, Severity
-from core.samples import ImuBlock
+from core.samples import ImuBlock, Session
 from devices.files import limited_reader
 from devices.files.answers import (
     Array,
@@ -65,7 +65,7 @@ def reader() -> Iterator[LimitedReader]:
 def nothing() -> None: ...
 
 
-def read(folder: Path, reader: LimitedReader, waiting: Callable[[], object] = nothing) -> object:
+def read(folder: Path, reader: LimitedReader, waiting: Callable[[], object] = nothing) -> Session:
     return read_session(folder, LimitedReading(reader, waiting))
 
 
@@ -86,7 +86,7 @@ def same(one: object, other: object) -> bool:
         return isinstance(other, dict) and [*one] == [*other] and all(same(one[key], other[key]) for key in one)
     if isinstance(one, tuple | list):
         is_alike = type(one) is type(other) and len(one) == len(other)
-        return is_alike and all(same(*pair) for pair in zip(one, other, strict=True))  # type: ignore[call-overload]
+        return is_alike and all(same(*pair) for pair in zip(one, other, strict=True))  # type: ignore[call-overload]  # of any kind
     return one == other
 
 
@@ -130,7 +130,7 @@ folder = "walk_1"
     direct, limited = read_session(folder), read(folder, shared)
     assert len(direct.recordings[0].imu[Site.LEFT_SHANK].unknown) == 3
     assert repr(limited) == repr(direct)  # NaN is not equal to itself
-    assert same(direct.recordings[0].imu, limited.recordings[0].imu)  # type: ignore[attr-defined]
+    assert same(direct.recordings[0].imu, limited.recordings[0].imu)
     assert not same(direct.recordings[0].imu, {})
 
 
