@@ -112,13 +112,13 @@ def _chosen(option: str, said: str, known: Sequence[str], what: str) -> list[str
 def _preview(wanted: argparse.Namespace, kept: "Sequence[Typed]") -> list[str]:
     """Lines with all that would leave beside the figures; raises as `export`."""
     from app.exports.exports import preview_from_folder, preview_from_library
+    from app.foreign_files import read_foreign_session
     from app.reports.patient_report.report_file import session_of
-    from devices.files.session_folder import read_session
 
     if isinstance(wanted.session, LibrarySession):
         with opened_library(wanted) as opened:
             rows = preview_from_library(opened, wanted.session.id, kept)
     else:
-        rows = preview_from_folder(read_session(session_of(wanted.session)), kept)
+        rows = preview_from_folder(read_foreign_session(session_of(wanted.session), lambda: None), kept)
     told = [f"{name}: {one_line(str(value))}" for name, value in rows]
     return [*told, "And angles, events, strides and averages of these recordings. Nothing was written."]
