@@ -53,16 +53,20 @@ class SettingsDesk(QObject):
         is_administrator = is_own and state.operator.role.value == ADMINISTRATOR
         may_restore = state.operator.role.value != VIEWER
         self.page.show_library(
-            has_access=is_own, has_backup=may_write, has_deleted=may_restore, has_operators=is_administrator
+            has_access=is_own,
+            has_backup=may_write,
+            has_deleted=may_restore,
+            has_operators=is_administrator,
+            own=(state.operator.code, state.operator.name),
         )
         self.page.renew.setVisible(is_administrator)
         self.page.choose_folder.setVisible(is_administrator)
         self._show_screen()
         if is_own:
             self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
+            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)  # no passphrase holds its name
         if is_administrator:
             self._read_operators()
-            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)
 
     def read_deleted(self) -> None:
         """Show what can be had back now."""
@@ -126,7 +130,8 @@ class SettingsDesk(QObject):
         def change(opened: "OpenedLibrary") -> None:
             slots, operator = _slots(opened), opened.library.operator
             assert operator is not None  # whoever opens a library is logged in
-            slots.set_passphrase(slots.open(operator.code, old), operator.code, new)
+            known = (operator.name, _clinic_of(opened))
+            slots.set_passphrase(slots.open(operator.code, old), operator.code, new, known)
 
         self._desk.run(change, self._on_passphrase_changed, self._on_passphrase_refused, self)
 
@@ -244,7 +249,8 @@ class SettingsDesk(QObject):
 
             assert opened.data_key is not None  # hidden in the demonstration
             slots = _slots(opened)
-            slots.add(opened.data_key, code, passphrase)  # first: without a slot an operator could not log in
+            # the slot first: without one an operator could not log in
+            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)))
             try:
                 opened.library.operators.add(Operator(code, name, Role(role)))
             except Exception:

@@ -9,7 +9,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.pages.entry import EntryPage
-from app.pages.passphrase_strength import strength_in_words
+from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -142,12 +142,16 @@ class FirstStartPage(EntryPage):
             part.setVisible(not has_key)
         for part in (self._key_title, self._key_lead, self._second):
             part.setVisible(has_key)
-        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
+
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return self.code.text, self.name.text
 
     def _on_edited(self, _text: str) -> None:
         for field in (self.code, self.name, self.passphrase, self.again):
             field.set_wrong("")
-        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
 
     def _on_make(self) -> None:
         code = self.code.text.strip()
@@ -156,9 +160,9 @@ class FirstStartPage(EntryPage):
             wrong.append((self.code, tr("Type 1 to {most} letters and figures.").format(most=LONGEST_CODE)))
         if not self.name.text.strip():
             wrong.append((self.name, tr("Type your name.")))
-        if len(self.passphrase.text.strip()) < self._shortest:
-            short = tr("{shortest} letters or more are needed. Take a few words.").format(shortest=self._shortest)
-            wrong.append((self.passphrase, short))
+        if strength_of(self.passphrase.text or "-", self._shortest, self._known) in REFUSED:
+            why = strength_in_words(self.passphrase.text or "-", self._shortest, self._known)
+            wrong.append((self.passphrase, why))
         elif self.passphrase.text != self.again.text:
             wrong.append((self.again, tr("The two are not the same. Type the second one again.")))
         for field, sentence in wrong:

@@ -7,7 +7,7 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.pages.passphrase_strength import strength_in_words
+from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -65,6 +65,7 @@ class SettingsPage(QWidget):
     def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
         self._look, self._shortest, self._roles = look, shortest, roles
+        self._own: tuple[str, ...] = ()
         self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
         self._column = QVBoxLayout(self)
         self._column.addWidget(self._title)
@@ -103,9 +104,16 @@ class SettingsPage(QWidget):
         self.sound.setChecked(has_sound)
 
     def show_library(
-        self, *, has_access: bool, has_backup: bool, has_operators: bool, has_deleted: bool = False
+        self,
+        *,
+        has_access: bool,
+        has_backup: bool,
+        has_operators: bool,
+        has_deleted: bool = False,
+        own: tuple[str, ...] = (),
     ) -> None:
-        """Show what the operator may set; nothing that was typed for another is kept."""
+        """Show what the operator may set, whose code and name are `own`; nothing typed for another is kept."""
+        self._own = own
         self._access.setVisible(has_access)
         self._backup.setVisible(has_backup)
         self._deleted.setVisible(has_deleted)
@@ -325,12 +333,13 @@ class SettingsPage(QWidget):
     def _on_edited(self, _text: str) -> None:
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.set_wrong("")
-        self._strength.setText(strength_in_words(self.new.text, self._shortest))
+        self._strength.setText(strength_in_words(self.new.text, self._shortest, self._known))
 
     def _on_change(self) -> None:
         self._on_edited("")
-        if len(self.new.text.strip()) < self._shortest:
-            self.new.set_wrong(strength_in_words(self.new.text or "-", self._shortest))
+        new = self.new.text or "-"
+        if strength_of(new, self._shortest, self._known) in REFUSED:
+            self.new.set_wrong(strength_in_words(new, self._shortest, self._known))
         elif self.new.text != self.again.text:
             self.again.set_wrong(tr("The two are not the same. Type the second one again."))
         else:
@@ -348,13 +357,18 @@ class SettingsPage(QWidget):
     def _on_back_up(self) -> None:
         (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
 
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return *self._own, self.clinic.text
+
     def _on_add(self) -> None:
+        first, known = self.first.text or "-", (self.code.text, self.name.text, self.clinic.text)
         if not self.code.text.strip():
             self.code.set_wrong(tr("Type a code."))
         elif not self.name.text.strip():
             self.name.set_wrong(tr("Type a name."))
-        elif len(self.first.text.strip()) < self._shortest:
-            self.first.set_wrong(strength_in_words(self.first.text or "-", self._shortest))
+        elif strength_of(first, self._shortest, known) in REFUSED:
+            self.first.set_wrong(strength_in_words(first, self._shortest, known))
         else:
             name = self.name.text.strip()
             self.operator_added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)

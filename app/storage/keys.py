@@ -12,7 +12,7 @@ import os
 import secrets
 import time
 import unicodedata
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -21,6 +21,7 @@ from cryptography.exceptions import InvalidTag
 from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
 
+from app.passphrases import Strength, refusal_of_passphrase, strength_of
 from app.storage.files import held, replace_file
 from app.wording import tr
 
@@ -110,18 +111,18 @@ class KeySlots:
         """The operators that can log in."""
         return tuple(code for code in self._read() if _is_operators(code))
 
-    def create(self, code: str, passphrase: str) -> tuple[bytes, str]:
+    def create(self, code: str, passphrase: str, known: Iterable[str] = ()) -> tuple[bytes, str]:
         """Make the first operator's slot and the recovery key's; returns the data key and the recovery key's text.
 
         Raises
         ------
         KeyRefusedError
-            There are slots already, or the passphrase is too short.
+            There are slots already, or the passphrase is too short or weak; `known` are names that it must not rest on.
         """
         if self.exists:
             raise KeyRefusedError("This library has its keys already", "Log in, or use the recovery key")
         data_key, text = secrets.token_bytes(KEY_BYTES), new_recovery_key()
-        own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase), self._cost)
+        own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase, (code, *known)), self._cost)
         self._write({own.code: own, RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
         return data_key, text
 
@@ -154,34 +155,34 @@ class KeySlots:
             raise KeyRefusedError("This recovery key belongs to another library", "Look for the sheet of this one")
         return data_key
 
-    def add(self, data_key: bytes, code: str, passphrase: str) -> None:
+    def add(self, data_key: bytes, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
         """Give an operator a slot.
 
         Raises
         ------
         KeyRefusedError
-            The code is taken, or the passphrase too short.
+            The code is taken, or the passphrase is too short or weak.
         """
         with self._changing() as slots:
             if _checked_code(code) in slots:
                 raise KeyRefusedError(tr("{code} is taken").format(code=_normal(code)), "Choose another code")
-            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             self._write({**slots, own.code: own})
 
-    def set_passphrase(self, data_key: bytes, code: str, passphrase: str) -> None:
+    def set_passphrase(self, data_key: bytes, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
         """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
 
         Raises
         ------
         KeyRefusedError
-            No such operator, or the passphrase is too short.
+            No such operator, or the passphrase is too short or weak; `known` are names that it must not rest on.
         """
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
                     tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
                 )
-            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             self._write({**slots, own.code: own})
 
     def remove(self, code: str) -> None:
@@ -354,11 +355,10 @@ def _checked_code(code: str) -> str:
     return code
 
 
-def _checked(passphrase: str) -> bytes:
-    if len(passphrase.strip()) < MIN_PASSPHRASE:
-        raise KeyRefusedError(
-            tr("A passphrase has {count} letters or more").format(count=MIN_PASSPHRASE), "Take a few words"
-        )
+def _checked(passphrase: str, known: Iterable[str]) -> bytes:
+    known = tuple(known)
+    if strength_of(passphrase or "-", MIN_PASSPHRASE, known) not in (Strength.FAIR, Strength.STRONG):
+        raise KeyRefusedError(*refusal_of_passphrase(passphrase, MIN_PASSPHRASE, known))
     return _secret(passphrase)
 
 

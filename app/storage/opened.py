@@ -91,7 +91,7 @@ def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[O
         Something is in the folder, or it cannot be written.
     """
     with made_beside(folder) as beside:
-        data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase)
+        data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase, (operator.name,))
         Library.create(beside, data_key, operator).close()
     return open_library(folder, passphrase, operator.code), recovery_key
 

@@ -93,6 +93,18 @@ def test_short_passphrases_are_refused(slots: KeySlots, passphrase: str) -> None
     assert not slots.exists
 
 
+@pytest.mark.parametrize("passphrase", ["aaaaaaaaaa", "1234567890", "Passwort2024", "keller-wollishofen"])
+def test_weak_passphrases_are_refused_with_the_reason(slots: KeySlots, passphrase: str) -> None:
+    with pytest.raises(KeyRefusedError, match=r"could guess it within .*Take four or five words"):
+        slots.create("hk", passphrase, ("H. Keller", "Wollishofen"))
+    assert not slots.exists
+    data_key, _ = slots.create("hk", OLD)
+    for change in (slots.set_passphrase, slots.add):
+        with pytest.raises(KeyRefusedError, match="could guess it"):
+            change(data_key, "hk" if change == slots.set_passphrase else "ab", passphrase, ("Keller", "Wollishofen"))
+    assert slots.open("hk", OLD) == data_key
+
+
 @pytest.mark.parametrize("code", ["", "recovery", "a name", "x" * 13])
 def test_codes_that_could_be_names_or_nothing_are_refused(slots: KeySlots, code: str) -> None:
     with pytest.raises(KeyRefusedError, match=r"cannot be a code|needs a code"):
