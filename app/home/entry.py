@@ -1,6 +1,7 @@
 """Who opens the library? The pages before it is open and over it, and what the desk answers them."""
 
 import time
+from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,7 +18,7 @@ from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
-    from app.storage.keys import LoginDelay
+    from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
 
 KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
@@ -72,6 +73,10 @@ class Entry(QObject):
     def cover(self, code: str, is_recording: bool) -> None:
         """Show nothing but the way back, for the operator who is logged in."""
         self._cover_of = code
+        if self._delay is None:  # of a library that was just made
+            from app.storage.login_delay import LoginDelay
+
+            self._delay = LoginDelay(self._folder, time.monotonic)
         self.log_in.show_cover(code, is_recording)
         self._show(self.log_in)
 
@@ -116,6 +121,9 @@ class Entry(QObject):
         self._place = place
         latest = self._settings.latest_operator
         self.log_in.show_operators(place.codes, place.remembered, latest, can_remember=place.has_keyring)
+        self._delay = place.delay
+        if (left_s := self._left_s(self.log_in.code)) > 0:
+            self.log_in.refuse(_too_many(), left_s)
         self.log_in.focus()
 
     def _on_look_failed(self, what: str, remedy: str) -> None:
@@ -127,16 +135,21 @@ class Entry(QObject):
 
     def _on_open_wished(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
+        if (left_s := self._left_s(code)) > 0:  # of another operator than the one that the page waited for
+            self.log_in.refuse(_too_many(), left_s)
+            return
         self.log_in.show_busy(True)
+        delay = self._delay
         if not self.is_covering:
-            self._desk.open(self._folder, passphrase, code, must_remember)
+            self._desk.open(self._folder, passphrase, code, must_remember, delay)
             return
 
         def check(opened: "OpenedLibrary") -> None:
             from app.storage.keys import KeySlots
             from app.storage.opened import KEYS as NAME
 
-            KeySlots(opened.folder / NAME).open(code, passphrase)
+            with delay.trying(code) if delay is not None else nullcontext():
+                KeySlots(opened.folder / NAME).open(code, passphrase)
 
         self._desk.run(check, self._on_checked, self._on_check_failed, self)
 
@@ -151,20 +164,17 @@ class Entry(QObject):
         self._desk.open_recovered(self._folder, recovery_key, code, passphrase)
 
     def _on_checked(self, _nothing: object) -> None:
-        self._login_delay().forget(self._tried)
         self._cover_of = ""
         self.log_in.forget_typed()
         self.uncovered.emit()
 
     def _on_check_failed(self, what: str, remedy: str) -> None:
-        self._login_delay().count_wrong(self._tried)
-        self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+        self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
 
     def _on_opened(self, state: OpenedState) -> None:
         self.log_in.forget_typed()
         self.first_start.show_busy(False)
         if not state.is_demonstration:
-            self._login_delay().forget(state.operator.code)
             self._settings.latest_operator = state.operator.code
         if state.recovery_key:
             self._new = state
@@ -172,11 +182,9 @@ class Entry(QObject):
             return
         self.entered.emit(state)
 
-    def _on_not_opened(self, what: str, remedy: str, is_key: bool) -> None:
+    def _on_not_opened(self, what: str, remedy: str, _is_key: bool) -> None:
         if self._tried:
-            if is_key:
-                self._login_delay().count_wrong(self._tried)
-            self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+            self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
         elif (self._folder / KEYS).exists():
             self.begin()
             self.tell(what, remedy)
@@ -203,12 +211,12 @@ class Entry(QObject):
             self._sheet.told.connect(self.tell)
         return self._sheet
 
-    def _login_delay(self) -> "LoginDelay":
-        if self._delay is None:
-            from app.storage.keys import LoginDelay
+    def _left_s(self, code: str) -> float:
+        return self._delay.left_s(code) if self._delay is not None else 0.0
 
-            self._delay = LoginDelay(time.monotonic)
-        return self._delay
+
+def _too_many() -> str:
+    return tr("Wrong passphrases were typed before. Wait until the next try, or use the recovery key.")
 
 
 def _is_same_key(typed: str, shown: str) -> bool:

@@ -205,7 +205,8 @@ class LogInPage(EntryPage):
         self._show_go()
 
     def _show_go(self) -> None:
-        self.go.setEnabled(not self._is_busy and self._left_s <= 0)
+        is_waiting = self._left_s > 0 and not self._is_recovering  # nobody guesses a recovery key
+        self.go.setEnabled(not self._is_busy and not is_waiting)
         words = tr("Open")
         if self._is_cover:
             words = tr("Go on")
@@ -213,7 +214,7 @@ class LogInPage(EntryPage):
             words = tr("Set it and open")
         if self._is_busy:
             words = tr("Opening")
-        if self._left_s > 0:
+        if is_waiting:
             words = tr("Next try in {seconds} s").format(seconds=math.ceil(self._left_s))
         self.go.setText(words)
         self.go.setAccessibleName(words)

@@ -12,7 +12,7 @@ import os
 import secrets
 import time
 import unicodedata
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -34,8 +34,6 @@ RECOVERY_BYTES = 20
 GROUP = 4  # letters of the recovery key that stand together
 LETTERS = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"  # Crockford's: no I, L, O, U to be misread
 MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
-FREE_TRIES = 3
-FIRST_DELAY_S, LONGEST_DELAY_S = 2.0, 300.0
 BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
 KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
@@ -267,29 +265,6 @@ class KeySlots:
     def _write(self, slots: dict[str, Slot]) -> None:
         content = {"format": FORMAT, "slots": [asdict(slot) for slot in slots.values()]}
         replace_file(self._path, json.dumps(content, indent=1).encode())
-
-
-class LoginDelay:
-    """After three wrong passphrases the next try has to wait, twice as long after each further one."""
-
-    def __init__(self, now_s: Callable[[], float]) -> None:
-        self._now_s = now_s
-        self._wrong: dict[str, int] = {}
-        self._free_at_s: dict[str, float] = {}
-
-    def left_s(self, code: str) -> float:
-        return max(0.0, self._free_at_s.get(_normal(code), 0.0) - self._now_s())
-
-    def count_wrong(self, code: str) -> None:
-        code = _normal(code)
-        self._wrong[code] = wrong = self._wrong.get(code, 0) + 1
-        if wrong >= FREE_TRIES:
-            delay_s = min(LONGEST_DELAY_S, FIRST_DELAY_S * 2.0 ** (wrong - FREE_TRIES))
-            self._free_at_s[code] = self._now_s() + delay_s
-
-    def forget(self, code: str) -> None:
-        self._wrong.pop(_normal(code), None)
-        self._free_at_s.pop(_normal(code), None)
 
 
 def new_recovery_key() -> str:

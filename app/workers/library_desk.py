@@ -9,9 +9,10 @@ be shown. Storage is imported by the thread, for its imports take longer than th
 
 import logging
 import tempfile
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from queue import SimpleQueue
@@ -28,6 +29,7 @@ from app.workers.library_opening import demonstration, let_keyring_remember, log
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
+    from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
     from app.storage.stored import Operator
@@ -75,6 +77,7 @@ class LibraryPlace:
     codes: tuple[str, ...]
     remembered: tuple[str, ...]
     has_keyring: bool
+    delay: "LoginDelay"
 
 
 class LibraryDesk(QObject):
@@ -172,13 +175,24 @@ class LibraryDesk(QObject):
         """Find out who may open the library in `folder`."""
         self._calls.ask(_Job(lambda: _look(folder), _weak(done), _weak(failed), ref(owner)))
 
-    def open(self, folder: Path, passphrase: str, code: str = "", must_remember: bool = False) -> None:
-        """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too."""
+    def open(
+        self,
+        folder: Path,
+        passphrase: str,
+        code: str = "",
+        must_remember: bool = False,
+        delay: "LoginDelay | None" = None,
+    ) -> None:
+        """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too.
+
+        `delay` counts the wrong ones.
+        """
 
         def opening() -> "Opening":
             from app.storage.opened import open_library
 
-            library = open_library(folder, passphrase, code)
+            with delay.trying(code) if delay is not None else nullcontext():
+                library = open_library(folder, passphrase, code)
             if must_remember:
                 let_keyring_remember(library)
             return library, ""
@@ -431,11 +445,15 @@ def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
 
 def _look(folder: Path) -> LibraryPlace:
     from app.storage.keyring_slot import is_there_a_keyring
+    from app.storage.login_delay import LoginDelay
 
     slots = slots_of(folder)
     codes = slots.codes if slots.exists else ()
     remembered = tuple(code for code in codes if slots.keyring_slot(code) is not None)
-    return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring())
+    delay = LoginDelay(folder, time.monotonic)
+    if slots.exists:
+        delay.read()
+    return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring(), delay)
 
 
 def _weak(method: Callable[P, T] | None) -> "WeakMethod[Callable[P, T]] | None":

@@ -3,7 +3,9 @@
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -19,8 +21,9 @@ from app.home.entry import KEYS, SHORTEST
 from app.main_window import MainWindow
 from app.settings import Scheme, Settings
 from app.storage import keys, opened
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import Cost, KeyRefusedError, KeySlots
 from app.storage.library import Library
+from app.storage.login_delay import LoginDelay
 from app.storage.stored import Operator, Role
 from app.theme import DARK, LIGHT, Look, load_fonts
 from app.wording import use_language
@@ -234,6 +237,21 @@ def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
     assert page.go.text() == "Next try in 2 s"
     assert not page.go.isEnabled()
     qtbot.waitUntil(page.go.isEnabled, timeout=WAIT_MS)
+
+
+def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    delay = LoginDelay(folder, time.monotonic)
+    for _ in range(6):
+        with suppress(KeyRefusedError), delay.trying("hk"):
+            raise KeyRefusedError("This passphrase does not open the library", "Type it again")
+    window = open_window(folder)
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.passphrase.is_wrong, timeout=WAIT_MS)
+    assert page.go.text() == "Next try in 16 s"
+    assert not page.go.isEnabled()
+    page.use_recovery.click()
+    assert page.go.isEnabled()
 
 
 def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_window: Open, folder: Path) -> None:

@@ -16,7 +16,6 @@ from app.storage.keys import (
     Cost,
     KeyRefusedError,
     KeySlots,
-    LoginDelay,
     Slot,
     is_same_recovery_key,
     new_recovery_key,
@@ -152,26 +151,6 @@ def test_a_mistyped_letter_of_the_recovery_key_is_noticed() -> None:
                 slots.open_with_recovery_key(wrong)
     assert is_same_recovery_key(key.lower().replace("0", "o").replace("1", "l"), key)
     assert not is_same_recovery_key(key[:-1], key)
-
-
-def test_wrong_passphrases_make_the_next_try_wait() -> None:
-    now = [0.0]
-    delay = LoginDelay(lambda: now[0])
-    for _ in range(2):
-        delay.count_wrong("hk")
-    assert delay.left_s("HK") == 0.0
-    delay.count_wrong("hk")
-    assert delay.left_s("hk") == 2.0
-    now[0] = 2.0
-    assert delay.left_s("hk") == 0.0
-    delay.count_wrong("hk")
-    assert delay.left_s("hk") == 4.0
-    for _ in range(50):
-        delay.count_wrong("hk")
-    assert delay.left_s("hk") == 300.0
-    assert delay.left_s("ab") == 0.0
-    delay.forget("hk")
-    assert delay.left_s("hk") == 0.0
 
 
 def test_wrapping_the_same_key_twice_shows_no_likeness() -> None:

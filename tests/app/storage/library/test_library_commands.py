@@ -1,6 +1,7 @@
 """The command line opens a library with a passphrase that nobody sees, recovers, and analyses its sessions."""
 
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from uuid import UUID, uuid4
@@ -163,3 +164,25 @@ def test_an_audit_whose_entry_was_changed_or_whose_end_is_missing_is_refused(
     assert "a fault in the audit" in told.err
     assert cli.main(["audit", str(opened.folder), *key, "--since", "nonsense"]) == 2
     assert "is no line of an earlier audit" in capsys.readouterr().err
+
+
+def test_wrong_passphrases_make_the_command_line_wait_too(
+    opened: OpenedLibrary,
+    tmp_path: Path,
+    key: list[str],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    waited: list[float] = []
+    monkeypatch.setattr(time, "sleep", waited.append)
+    (tmp_path / "wrong").write_text("nobody's passphrase")
+    where = ["recover", str(opened.folder)]
+    for expected in (0, 0, 0, 1):
+        assert cli.main([*where, "--passphrase-file", str(tmp_path / "wrong")]) != 0
+        assert len(waited) == expected
+    assert waited[0] == pytest.approx(2.0, abs=0.5)
+    assert "this waits for 2 s" in capsys.readouterr().err
+    assert cli.main([*where, *key]) == 0
+    assert waited[1] == pytest.approx(4.0, abs=0.5)
+    assert cli.main([*where, *key]) == 0
+    assert len(waited) == 2
