@@ -100,7 +100,7 @@ def export_from_library(
     report(0.5, "analysing")
     analysis = analysed(session)
     if not is_identified:
-        session, analysis = nameless(Pseudonyms(opened.data_key), visit.patient_id, session, analysis)
+        session, analysis = nameless(Pseudonyms(opened.library.pseudonyms_key), visit.patient_id, session, analysis)
     report(1.0, "writing")
     _write(session, analysis, formats, folder)
 

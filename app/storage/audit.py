@@ -12,8 +12,6 @@ import json
 from collections.abc import Iterable, Mapping
 from uuid import UUID
 
-from cryptography.hazmat.primitives.hashes import SHA256
-from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
@@ -58,11 +56,6 @@ class Audit:
 def note(desk: Desk, session: OrmSession, action: Action, subject: str, **details: object) -> None:
     """Add an entry in the same transaction as what it tells of."""
     append(session, desk.audit_key, desk.now(), desk.code, action, subject, details)
-
-
-def audit_key(data_key: bytes | None) -> bytes:
-    """The key of the chain's hashes; a demonstration's is known to all."""
-    return HKDF(SHA256(), 32, salt=None, info=b"gaitwright audit 1").derive(data_key or b"")
 
 
 def append(

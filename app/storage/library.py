@@ -14,6 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
+from app.storage.data_key import KeyMaterial
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
 
 if TYPE_CHECKING:
@@ -37,13 +38,14 @@ class Library:
     def __init__(
         self,
         database: "Database",
-        data_key: bytes | None,
+        data_key: KeyMaterial | None,
         now: Callable[[], datetime.datetime] = now_utc,
         is_end_lost: bool = False,
     ) -> None:
-        from app.storage.audit import Audit, audit_key
+        from app.storage.audit import Audit
         from app.storage.corrections import Corrections
         from app.storage.database.schema import bring_up_to_date
+        from app.storage.derived_keys import derived_keys
         from app.storage.desk import Desk
         from app.storage.operators import Operators, Settings
         from app.storage.patients import Patients
@@ -54,7 +56,10 @@ class Library:
         self.is_end_lost = is_end_lost
         bring_up_to_date(database)
         self._database = database
-        self._desk = Desk(database, audit_key(data_key), now, is_demonstration=data_key is None)
+        with database.reading() as session:
+            keys = derived_keys(session, data_key)
+        self.pseudonyms_key = keys.pseudonyms
+        self._desk = Desk(database, keys.audit, now, is_demonstration=data_key is None)
         self.patients = Patients(self._desk)
         self.sessions = Sessions(self._desk)
         self.recordings = Recordings(self._desk)
@@ -68,7 +73,7 @@ class Library:
     def create(
         cls,
         folder: Path,
-        data_key: bytes | None,
+        data_key: KeyMaterial | None,
         operator: Operator,
         now: Callable[[], datetime.datetime] = now_utc,
     ) -> Self:
@@ -94,7 +99,7 @@ class Library:
         return library
 
     @classmethod
-    def open(cls, folder: Path, data_key: bytes | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
+    def open(cls, folder: Path, data_key: KeyMaterial | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
         """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
 
         Raises
@@ -201,7 +206,7 @@ class Library:
         self.close()
 
 
-def _database(folder: Path, data_key: bytes | None) -> "Database":
+def _database(folder: Path, data_key: KeyMaterial | None) -> "Database":
     from app.storage.database.engine import Database, sqlite_engine
 
     return Database(sqlite_engine(folder / FILE_NAME, data_key))

@@ -4,6 +4,8 @@ keys.json                          who may open it
 library.db                         the encrypted database
 recordings/ID.SEGMENT.journal      the samples
 in-use                             locked by the program that records here
+tries.json                         how many wrong passphrases were typed
+keys-next.json, library-next.db    a change of the key that is not finished
 """
 
 import shutil
@@ -15,6 +17,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from app.storage.data_key import DataKey
 from app.storage.files import held, sync_folder
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
@@ -22,6 +25,7 @@ from app.storage.stored import LibraryError, Operator
 from app.wording import tr
 
 KEYS = "keys.json"
+NEW_KEYS, NEW_DATABASE = "keys-next.json", "library-next.db"
 RECORDINGS = "recordings"
 IN_USE = "in-use"
 
@@ -35,7 +39,7 @@ class OpenedLibrary:
 
     library: Library
     folder: Path
-    data_key: bytes | None = field(repr=False)  # whatever prints this must not print the key
+    data_key: DataKey | None = field(repr=False)  # whatever prints this must not print the key
 
     @property
     def recordings(self) -> Path:
@@ -51,6 +55,23 @@ class OpenedLibrary:
         self.library.close()
 
 
+def slots_of(folder: Path) -> KeySlots:
+    """The slots of the library in `folder`; a change of its key that was interrupted is finished or taken back.
+
+    Raises
+    ------
+    KeyRefusedError
+        The key is being changed just now.
+    OSError
+        A file cannot be written.
+    """
+    if (folder / NEW_KEYS).exists() or (folder / NEW_DATABASE).exists():
+        from app.storage.key_change import settle
+
+        settle(folder)
+    return KeySlots(folder / KEYS)
+
+
 def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary:
     """Open the library in `folder` for the operator with this code; without one, for the only operator there is.
 
@@ -61,7 +82,7 @@ def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary
     LibraryError
         There is no library, or it does not open.
     """
-    slots = KeySlots(folder / KEYS)
+    slots = slots_of(folder)
     if not slots.exists:
         raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
     if not code:

@@ -21,9 +21,10 @@ from app.home.entry import KEYS, SHORTEST
 from app.main_window import MainWindow
 from app.settings import Scheme, Settings
 from app.storage import keys, opened
-from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
+from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import DARK, LIGHT, Look, load_fonts
 from app.wording import use_language

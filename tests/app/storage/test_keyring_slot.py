@@ -8,7 +8,8 @@ from types import ModuleType
 import pytest
 
 from app.storage.keyring_slot import SERVICE, forget, is_there_a_keyring, open_remembered, remember
-from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.slots import Cost
 
 OLD, NEW = "four short words here", "another four short words"
 CHEAP = Cost(passes=1, memory_kib=64)

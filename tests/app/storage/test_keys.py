@@ -13,20 +13,20 @@ import pytest
 from app.storage import keys
 from app.storage.files import held, replace_file
 from app.storage.keys import (
-    Cost,
     KeyRefusedError,
     KeySlots,
-    Slot,
     is_same_recovery_key,
     new_recovery_key,
 )
+from app.storage.slots import Cost, Slot
 
 OLD, NEW = "four short words here", "another four short words"
 CHEAP = Cost(passes=1, memory_kib=64)
 CHANGE = """
 import sys
 from pathlib import Path
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
+from app.storage.slots import Cost
 slots = KeySlots(Path(sys.argv[1]), Cost(passes=1, memory_kib=64))
 data_key = slots.open("hk", sys.argv[2])
 print("ready", flush=True)

@@ -13,9 +13,10 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
-from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary, held_alone
+from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
