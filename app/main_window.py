@@ -361,6 +361,7 @@ class MainWindow(QWidget):
             return
         self._covered = self.screens.currentWidget()
         self.entry.cover(state.operator.code, self._is_recording)
+        self.desk.lock()
 
     def _on_uncovered(self) -> None:
         covered, self._covered = self._covered, None

@@ -1,7 +1,6 @@
 """Who opens the library? The pages before it is open and over it, and what the desk answers them."""
 
 import time
-from contextlib import nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,7 +18,6 @@ from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
     from app.storage.login_delay import LoginDelay
-    from app.storage.opened import OpenedLibrary
 
 KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
 SHORTEST = 10  # as app.storage.keys has it
@@ -143,15 +141,7 @@ class Entry(QObject):
         if not self.is_covering:
             self._desk.open(self._folder, passphrase, code, must_remember, delay)
             return
-
-        def check(opened: "OpenedLibrary") -> None:
-            from app.storage.keys import KeySlots
-            from app.storage.opened import KEYS as NAME
-
-            with delay.trying(code) if delay is not None else nullcontext():
-                KeySlots(opened.folder / NAME).open(code, passphrase)
-
-        self._desk.run(check, self._on_checked, self._on_check_failed, self)
+        self._desk.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
 
     def _on_remembered_wished(self, code: str) -> None:
         self._tried = code

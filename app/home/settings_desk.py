@@ -24,6 +24,7 @@ from app.workers.library_opening import BACKUP_FOLDER
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
     from app.storage.backup import Backup
+    from app.storage.key_change import ChangedKey
     from app.storage.keys import KeySlots
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import Operator
@@ -102,7 +103,7 @@ class SettingsDesk(QObject):
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
         page.operator_added.connect(self._on_operator_added)
-        page.operator_switched.connect(self._on_operator_switched)
+        page.operator_removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
         page.restore_wished.connect(self._on_restore_wished)
         self._settings.changed.connect(self._show_screen)
@@ -229,15 +230,18 @@ class SettingsDesk(QObject):
         self._desk.run(put, None, self._on_refused, self)
 
     def _read_operators(self) -> None:
-        self._desk.run(lambda opened: opened.library.operators.list(), self._on_operators, self._on_refused, self)
+        self._desk.run(_operators_of, self._on_operators, self._on_refused, self)
 
-    def _on_operators(self, operators: "tuple[Operator, ...]") -> None:
+    def _on_operators(self, found: "tuple[tuple[Operator, ...], tuple[str, ...]]") -> None:
+        operators, codes = found
         if self._state is None:
             return
         own, roles = self._state.operator.code, _roles()
         self.page.show_operators(
             [
-                OperatorLine(one.code, one.name, roles[one.role.value], one.is_active, one.code == own)
+                OperatorLine(
+                    one.code, one.name, roles[one.role.value], one.is_active, one.code == own, one.code in codes
+                )
                 for one in operators
             ]
         )
@@ -252,7 +256,12 @@ class SettingsDesk(QObject):
             # the slot first: without one an operator could not log in
             slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)))
             try:
-                opened.library.operators.add(Operator(code, name, Role(role)))
+                operators = opened.library.operators
+                known = next((one for one in operators.list() if one.code == code.casefold()), None)
+                if known is None:
+                    operators.add(Operator(code, name, Role(role)))
+                else:  # who worked here before and has had no key since
+                    operators.change(replace(known, name=name, role=Role(role), is_active=True))
             except Exception:
                 with suppress(KeyRefusedError):
                     slots.remove(code)
@@ -260,12 +269,31 @@ class SettingsDesk(QObject):
 
         self._desk.run(add, self._on_operator_changed, self._on_operator_refused, self)
 
-    def _on_operator_switched(self, code: str, is_active: bool) -> None:
-        def switch(opened: "OpenedLibrary") -> None:
-            (operator,) = (one for one in opened.library.operators.list() if one.code == code)
-            opened.library.operators.change(replace(operator, is_active=is_active))
+    def _on_operator_removed(self, code: str) -> None:
+        self.page.show_key_change(tr("Changing the library's key"), is_running=True)
+        self._desk.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
 
-        self._desk.run(switch, self._on_operator_changed, self._on_refused, self)
+    def _on_key_progressed(self, share: float, _what: str) -> None:
+        sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))
+        self.page.show_key_change(sentence, is_running=True)
+
+    def _on_key_changed(self, changed: "ChangedKey") -> None:
+        said = [tr("The library has a new key. Backups made before keep the old one: make a new one now.")]
+        if changed.left_out:
+            said.append(
+                tr("These have not logged in for long and need a new passphrase, add them below: {codes}.").format(
+                    codes=", ".join(changed.left_out)
+                )
+            )
+        if changed.recovery_key:
+            said.append(tr("The recovery key is a new one, shown above."))
+            self.page.show_recovery_key(changed.recovery_key)
+        self.page.show_key_change(" ".join(said), is_running=False)
+        self._read_operators()
+
+    def _on_key_refused(self, what: str, remedy: str) -> None:
+        self.page.show_key_change(f"{what} {remedy}", is_running=False)
+        self._read_operators()
 
     def _on_operator_changed(self, _nothing: object) -> None:
         self.page.forget_typed()
@@ -276,6 +304,11 @@ class SettingsDesk(QObject):
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)
+
+
+def _operators_of(opened: "OpenedLibrary") -> "tuple[tuple[Operator, ...], tuple[str, ...]]":
+    """Who is known here, and who has a key."""
+    return opened.library.operators.list(), _slots(opened).codes
 
 
 def _clinic_of(opened: "OpenedLibrary") -> str:

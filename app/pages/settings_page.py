@@ -25,13 +25,14 @@ FRONT, BEHIND = "front", "behind"
 
 @dataclass(frozen=True, slots=True)
 class OperatorLine:
-    """Who works here; `role` in words."""
+    """Who works here; `role` in words. `has_key`: the passphrase opens the library."""
 
     code: str
     name: str
     role: str
     is_active: bool
     is_self: bool
+    has_key: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,7 @@ class SettingsPage(QWidget):
     backup_folder_wished = Signal()
     stop_wished = Signal()
     operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
-    operator_switched = Signal(str, bool)  # code, whether they work here
+    operator_removed = Signal(str)  # code
     clinic_named = Signal(str)
     restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
@@ -154,7 +155,7 @@ class SettingsPage(QWidget):
                 widget.deleteLater()
         for operator in operators:
             row = _OperatorRow(self._look, operator)
-            row.switched.connect(self.operator_switched)
+            row.switched.connect(self._on_operator_switched)
             self._rows.addWidget(row)
 
     def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
@@ -265,6 +266,13 @@ class SettingsPage(QWidget):
         self._operators = self._card(tr("Who works with this library"))
         self._rows = QVBoxLayout()
         self._operators.column.addLayout(self._rows)
+        self._leaving = ""
+        self._leaving_words = Text(look, wraps=True)
+        self.remove = Button(look, tr("Remove and change the key"))
+        self.keep = Button(look, tr("Cancel"), Kind.QUIET)
+        self._operators.column.addWidget(self._leaving_words)
+        self._add_left(self._operators, self.remove, self.keep)
+        self._show_leaving("")
         self.code = Field(look, tr("Code of a new operator"), is_code=True)
         self.name = Field(look, tr("Name"))
         self.role = Choice(look, tr("Role"))
@@ -291,10 +299,54 @@ class SettingsPage(QWidget):
         self.back_up.clicked.connect(self._on_back_up)
         self.choose_folder.clicked.connect(self.backup_folder_wished)
         self.add.clicked.connect(self._on_add)
+        self.remove.clicked.connect(self._on_remove)
+        self.keep.clicked.connect(self._on_keep)
         self.clinic.committed.connect(self._on_clinic_named)
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.edited.connect(self._on_edited)
         self._look.changed.connect(self._on_look_changed)
+
+    def show_key_change(self, sentence: str, *, is_running: bool) -> None:
+        """Say how far the change of the library's key is, or how it ended."""
+        self._leaving_words.setText(sentence)
+        self._leaving_words.setVisible(bool(sentence))
+        for button in (self.remove, self.keep):
+            button.hide()
+        self._operators.setEnabled(not is_running)
+
+    def _show_leaving(self, code: str) -> None:
+        """Ask before somebody is removed, and say what is out of reach; without a code nothing is asked."""
+        self._leaving = code
+        self.show_key_change(
+            tr(
+                "{code} then opens this library no longer, and it gets a new key: an old copy of its key file, with "
+                "the passphrase of {code}, opens nothing that is on this computer from then on. All others keep "
+                "their passphrases. Backups that were made before keep their old key: with the old passphrase, who "
+                "has one can still read it. Nothing can be recorded until the change is done."
+            ).format(code=code)
+            if code
+            else "",
+            is_running=False,
+        )
+        for button in (self.remove, self.keep):
+            button.setVisible(bool(code))
+
+    def _on_operator_switched(self, operator: OperatorLine) -> None:
+        if operator.is_active or operator.has_key:
+            self._show_leaving(operator.code)
+            return
+        self._show_leaving("")
+        self.code.set_text(operator.code)
+        self.name.set_text(operator.name)
+        self.role.setCurrentIndex(max(self.role.findText(operator.role), 0))
+        self.first.set_wrong(tr("Type a first passphrase: the old one opens nothing any more."))
+        self.first.setFocus()
+
+    def _on_remove(self) -> None:
+        self.operator_removed.emit(self._leaving)
+
+    def _on_keep(self) -> None:
+        self._show_leaving("")
 
     def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
         """Say how the latest backup went, and where backups go."""
@@ -383,7 +435,7 @@ class SettingsPage(QWidget):
 
 
 class _OperatorRow(QWidget):
-    switched = Signal(str, bool)
+    switched = Signal(object)  # OperatorLine
 
     def __init__(self, look: Look, operator: OperatorLine) -> None:
         super().__init__()
@@ -393,7 +445,13 @@ class _OperatorRow(QWidget):
         words = ", ".join([operator.code, operator.name, operator.role])
         row.addWidget(Text(look, words, size=15, wraps=True), 1)
         self.button = Button(
-            look, tr("Works here no longer") if operator.is_active else tr("Works here again"), height=44
+            look,
+            tr("Works here no longer")
+            if operator.is_active
+            else tr("Change the key now")
+            if operator.has_key
+            else tr("Works here again"),
+            height=44,
         )
         self.button.setAccessibleName(f"{self.button.text()}, {operator.code}")
         self.button.setVisible(not operator.is_self)
@@ -401,7 +459,7 @@ class _OperatorRow(QWidget):
         row.addWidget(self.button)
 
     def _on_clicked(self) -> None:
-        self.switched.emit(self._operator.code, not self._operator.is_active)
+        self.switched.emit(self._operator)
 
 
 class _DeletedRow(QWidget):

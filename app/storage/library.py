@@ -193,6 +193,22 @@ class Library:
         """Read every page of the database and check it; what is wrong, for a report. Nothing: it is whole."""
         return self._database.faults()
 
+    def suspend(self) -> None:
+        """Close the file, and the key with it; the next call opens both again, for the operator who is logged in."""
+        self._database.close()
+
+    def write_journal_headers(self, recordings: Path) -> None:
+        """Finish what a change of the data key left to be done.
+
+        Raises
+        ------
+        OSError
+            A file cannot be written.
+        """
+        from app.storage.key_change import write_headers
+
+        write_headers(self._database, recordings)
+
     def close(self) -> None:
         self.log_out()
         self._database.close()

@@ -29,6 +29,7 @@ from app.workers.library_opening import demonstration, let_keyring_remember, log
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
+    from app.storage.key_change import ChangedKey
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
@@ -96,6 +97,8 @@ class LibraryDesk(QObject):
         for lane in (self._calls, self._recordings):
             lane.told.connect(self._on_told)
         self._state: OpenedState | None = None
+        self._is_locked = self._is_to_be_locked = False
+        self._held: list[tuple[_Lane, _Job]] = []  # what was asked under the lock
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
@@ -119,7 +122,7 @@ class LibraryDesk(QObject):
 
         Without `failed` a refusal is told by the signal `refused`.
         """
-        self._calls.ask(_Job(lambda: call(self._holder.library), _weak(done), _weak(failed), ref(owner)))
+        self._ask(self._calls, _Job(lambda: call(self._holder.library), _weak(done), _weak(failed), ref(owner)))
 
     def record(
         self,
@@ -136,8 +139,8 @@ class LibraryDesk(QObject):
             self._tell_refusal(_Job(_nothing, None, _weak(failed), ref(owner)), *nothing_open())
             return
         library, turn = self._state.library, Future[None]()
-        self._calls.ask(_Job(lambda: turn.set_result(None), None, None, ref(self)))
-        self._recordings.ask(_Job(lambda: call(library, turn), _weak(done), _weak(failed), ref(owner)))
+        self._ask(self._calls, _Job(lambda: turn.set_result(None), None, None, ref(self)))
+        self._ask(self._recordings, _Job(lambda: call(library, turn), _weak(done), _weak(failed), ref(owner)))
 
     def run_long(
         self,
@@ -170,6 +173,56 @@ class LibraryDesk(QObject):
     def stop_long(self) -> None:
         self._long.stop()
         self._long_job = None
+
+    def lock(self) -> None:
+        """Take the data key out of memory until `unlock`; what is asked meanwhile is done after it.
+
+        A recording goes on: its journal has a key of its own. Long work is waited for.
+        """
+        if self._state is None or self._state.is_demonstration:
+            return
+        self._is_to_be_locked = self._is_locked = True
+        if not self._long.is_busy:
+            self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
+            self._calls.ask(_Job(self._holder.lock, None, None, ref(self)))
+
+    def unlock(
+        self,
+        code: str,
+        passphrase: str,
+        delay: "LoginDelay | None",
+        done: Callable[[None], object],
+        failed: Failed,
+        owner: QObject,
+    ) -> None:
+        """Bring the data key back with the operator's passphrase; `delay` counts the wrong ones."""
+        job = _Job(lambda: self._holder.unlock(code, passphrase, delay), _weak(done), _weak(failed), ref(owner))
+        self._calls.ask(job)
+
+    def change_key(
+        self,
+        leaving: str,
+        done: Callable[["ChangedKey"], object],
+        failed: Failed,
+        progressed: Callable[[float, str], object],
+        owner: QObject,
+    ) -> None:
+        """Give the library a new data key, without the operator `leaving` if one is named; nothing else meanwhile."""
+        job = _Job(lambda: self._holder.change_key(leaving, report), _weak(done), _weak(failed), ref(owner))
+        if self._state is None:
+            self._tell_refusal(job, *nothing_open())
+            return
+        if self._long.is_busy:
+            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
+            return
+        heard = _weak(progressed)
+
+        def report(share: float, _what: str) -> None:
+            self._calls.told.emit(job, _Progress(share, heard))
+
+        self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
+        self._state = None
+        self._calls.ask(job)
 
     def look(self, folder: Path, done: Callable[[LibraryPlace], object], failed: Failed, owner: QObject) -> None:
         """Find out who may open the library in `folder`."""
@@ -247,6 +300,7 @@ class LibraryDesk(QObject):
 
     def finish(self) -> None:
         """Close, and wait for all threads: for the end of the program."""
+        self._ask_held()  # a recording is ended under a lock too; its row follows at the next start
         self._end_library()
         self._long.finish()
         self._calls.finish()
@@ -256,8 +310,25 @@ class LibraryDesk(QObject):
         self._end_library()
         self._calls.ask(_Job(lambda: self._holder.open(opening), None, None, ref(self)))
 
+    def _ask(self, lane: "_Lane", job: "_Job") -> None:
+        if self._is_locked:
+            self._held.append((lane, job))
+        else:
+            lane.ask(job)
+
+    def _ask_held(self) -> None:
+        self._is_to_be_locked = self._is_locked = False
+        held, self._held = self._held, []
+        for lane, job in held:
+            lane.ask(job)
+
+    def _lock_now(self) -> None:
+        if self._is_to_be_locked:
+            self.lock()
+
     def _end_library(self) -> None:
         """What is asked next closes the library: not before the last recording has ended."""
+        self._ask_held()
         self.stop_long()
         if self._state is not None:
             self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
@@ -269,12 +340,30 @@ class LibraryDesk(QObject):
         elif isinstance(outcome, OpenedState):
             self._state = outcome
             self.opened.emit(outcome)
+        elif isinstance(outcome, _Progress):
+            if progressed := job.listening(outcome.heard):
+                progressed(outcome.share, "")
+        elif isinstance(outcome, _Unlocked):
+            self._ask_held()
+            if done := job.listening(job.done):
+                done(None)
+        elif isinstance(outcome, _KeyChanged):
+            self._on_key_changed(job, outcome)
         elif isinstance(outcome, _NotOpened):
             self.not_opened.emit(outcome.what, outcome.remedy, outcome.is_key)
         elif isinstance(outcome, _Closed):
             self.closed.emit()
         elif done := job.listening(job.done):
             done(outcome)
+
+    def _on_key_changed(self, job: "_Job", outcome: "_KeyChanged") -> None:
+        self._state = outcome.state
+        if outcome.state is None:  # it does not open again: from the log in, what was interrupted is finished
+            self.not_opened.emit(*outcome.refusal, False)
+        elif outcome.changed is None:
+            self._tell_refusal(job, *outcome.refusal)
+        elif done := job.listening(job.done):
+            done(outcome.changed)
 
     def _tell_refusal(self, job: "_Job", what: str, remedy: str) -> None:
         if job.failed is None:
@@ -289,11 +378,13 @@ class LibraryDesk(QObject):
 
     def _on_long_done(self, result: object) -> None:
         job, self._long_job = self._long_job, None
+        self._lock_now()
         if job is not None and (done := job.listening(job.done)):
             done(result)
 
     def _on_long_failed(self, error: Exception) -> None:
         job, self._long_job = self._long_job, None
+        self._lock_now()
         if job is not None:
             refusal = refusal_of(error)
             self._tell_refusal(job, refusal.what, refusal.remedy)
@@ -307,6 +398,23 @@ class _NotOpened(NamedTuple):
 
 class _Closed(NamedTuple):
     pass
+
+
+class _Unlocked(NamedTuple):
+    pass
+
+
+class _Progress(NamedTuple):
+    share: float
+    heard: "WeakMethod[Callable[[float, str], object]] | None"
+
+
+class _KeyChanged(NamedTuple):
+    """What came of a change of the key; `changed` None: nothing but `refusal`. `state` None: nothing is open now."""
+
+    state: OpenedState | None
+    changed: "ChangedKey | None"
+    refusal: Refusal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -403,6 +511,51 @@ class _Holder:
         self._is_to_be_tidied = True
         return replace(state, recovery_key=recovery_key)
 
+    def lock(self) -> None:
+        library = self._library
+        if library is None or library.data_key is None or not self.long_work.acquire(blocking=False):
+            return
+        try:
+            library.library.suspend()
+            library.data_key.wipe()
+        finally:
+            self.long_work.release()
+
+    def unlock(self, code: str, passphrase: str, delay: "LoginDelay | None") -> _Unlocked:
+        library = self.library
+        with delay.trying(code) if delay is not None else nullcontext():
+            data_key = slots_of(library.folder).open(code, passphrase)
+        if library.data_key is not None:
+            library.data_key.refill(data_key)
+        return _Unlocked()
+
+    def change_key(self, leaving: str, report: Report) -> _KeyChanged:
+        from app.storage.key_change import change_data_key
+
+        library, changed, refusal = self.library, None, nothing_open()
+        operator = library.library.operator
+        assert operator is not None  # whoever opens a library is logged in
+        key = old = library.data_key
+        with self.long_work:
+            try:
+                staying = _staying(library, leaving)
+                changed = change_data_key(library, staying, report)
+                key = changed.data_key
+            except Exception as error:  # told where the key was to be changed
+                refusal = refusal_of(error)
+            self._library = None
+            library.library.close()
+            try:
+                assert key is not None  # hidden in the demonstration
+                self._library = logged_in(library.folder, key, operator.code)
+            except Exception as error:  # what was interrupted is finished when somebody logs in
+                self._ends.close()
+                return _KeyChanged(None, None, refusal if changed is None else refusal_of(error))
+            self._ends.enter_context(self._library)
+            if old is not None and old is not key:
+                old.wipe()
+        return _KeyChanged(OpenedState(self._library, operator), changed, refusal)
+
     def open_demonstration(self) -> OpenedState | _NotOpened:
         self.close()
         try:
@@ -441,6 +594,15 @@ def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
     operator = library.library.operator
     assert operator is not None  # whoever opens a library is logged in
     return OpenedState(library, operator, find_interrupted(library), library.library.is_end_lost)
+
+
+def _staying(library: "OpenedLibrary", leaving: str) -> list[str]:
+    """Who keeps a key, once the operator `leaving` works here no longer."""
+    operators = library.library.operators
+    for operator in operators.list():
+        if operator.code == leaving and operator.is_active:
+            operators.change(replace(operator, is_active=False))
+    return [operator.code for operator in operators.list() if operator.is_active]
 
 
 def _look(folder: Path) -> LibraryPlace:

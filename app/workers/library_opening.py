@@ -80,6 +80,7 @@ def tidy(library: "OpenedLibrary") -> None:
     operator = library.library.operator
     if operator is None or operator.role is Role.VIEWER:
         return
+    library.library.write_journal_headers(library.recordings)
     destroyed = destroy_overdue(library)
     folder = library.library.settings.get(BACKUP_FOLDER, "")
     removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()

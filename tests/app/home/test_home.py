@@ -24,7 +24,7 @@ from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.slots import Cost
-from app.storage.stored import Operator, PlacedSensor, Role, StoredJournal, StoredPatient
+from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
 from app.widgets.button import Button
 from app.workers.library_desk import LibraryDesk, OpenedState
@@ -361,6 +361,50 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     page.backup_wished.emit()
     qtbot.waitUntil(lambda: "checked" in page._backup_said.text(), timeout=WAIT_MS)
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
+
+
+def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(
+    qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path
+) -> None:
+    home.show_settings()
+    page = home.settings.page
+
+    def add(passphrase: str) -> None:
+        page.code.set_text("ab")
+        page.name.set_text("A. Bauer")
+        page.first.set_text(passphrase)
+        page._on_add()
+
+    def row() -> tuple[Button, str]:
+        found = page._rows.itemAt(0)
+        widget = found.widget() if found is not None else None
+        assert widget is not None
+        button = widget.findChild(Button)
+        assert button is not None
+        return button, button.text()
+
+    add("first words for now")
+    qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
+    shutil.copy(folder / KEYS, folder.parent / "old.json")
+    row()[0].click()
+    assert "Backups that were made before keep their old key" in page._leaving_words.text()
+    page.keep.click()
+    assert not page.remove.isVisible()
+    row()[0].click()
+    page.remove.click()
+    assert not page._operators.isEnabled()
+    qtbot.waitUntil(lambda: row()[1] == "Works here again", timeout=WAIT_MS)
+    assert "has a new key" in page._leaving_words.text()
+    stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
+    with pytest.raises(LibraryError):
+        Library.open(folder, stolen)
+    assert desk.state is not None
+    assert desk.state.library.data_key == KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    row()[0].click()
+    assert page.first.is_wrong
+    add("other words for then")
+    qtbot.waitUntil(lambda: row()[1] == "Works here no longer", timeout=WAIT_MS)
+    assert KeySlots(folder / KEYS).open("ab", "other words for then") == desk.state.library.data_key
 
 
 def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path) -> None:
