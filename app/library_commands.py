@@ -186,8 +186,7 @@ def verify_audit(wanted: argparse.Namespace) -> Iterator[str]:
     FileRefusedError
         The library does not open, `wanted.since` is no checkpoint, or an entry is not as it was written.
     """
-    from app.storage.audit import BEGINNING
-    from app.storage.stored import Checkpoint, LibraryError
+    from app.storage.stored import BEGINNING, Checkpoint, LibraryError
 
     try:
         since = Checkpoint.parsed(wanted.since) if wanted.since else BEGINNING

@@ -65,12 +65,15 @@ ACTIVITY = frozenset(
 
 
 class MainWindow(QWidget):
-    """`library` is the folder of the user's own library, be it still to be made. None: sessions of folders only."""
+    """`library` is the folder of the user's own library, be it still to be made. None: sessions of folders only.
 
-    def __init__(self, look: Look, settings: Settings, library: Path | None = None) -> None:
+    `seen` is where this computer remembers how far a library had come.
+    """
+
+    def __init__(self, look: Look, settings: Settings, library: Path | None = None, seen: Path | None = None) -> None:
         super().__init__()
         self._look, self._settings = look, settings
-        self.desk = LibraryDesk(self)
+        self.desk = LibraryDesk(self, seen)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
         self.preparing = Background(self)
@@ -459,7 +462,8 @@ def open_window(argv: list[str]) -> int:
     app.setApplicationName("Gaitwright")
     app.setStyle("Fusion")
     load_fonts()
-    window = MainWindow(Look(app), Settings(own_settings()), default_folder())
+    library = default_folder()
+    window = MainWindow(Look(app), Settings(own_settings()), library, library.with_name("seen"))
     window.show()
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)

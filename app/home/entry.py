@@ -1,6 +1,7 @@
 """Who opens the library? The pages before it is open and over it, and what the desk answers them."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,12 +15,15 @@ from app.theme import Look
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from app.workers.library_opening import slots_of
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
     from app.storage.login_delay import LoginDelay
+    from app.storage.opened import OpenedLibrary
 
 KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
+ADMINISTRATOR = "administrator"  # as app.storage.stored has it
 SHORTEST = 10  # as app.storage.keys has it
 
 
@@ -35,7 +39,8 @@ class Entry(QObject):
         super().__init__(parent)
         self._desk, self._settings, self._folder = desk, settings, folder
         self._place: LibraryPlace | None = None
-        self._new: OpenedState | None = None
+        self._new: OpenedState | None = None  # whose recovery key is shown or asked for
+        self._key = ""  # as long as it is shown
         self._cover_of = self._tried = ""
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
@@ -55,12 +60,13 @@ class Entry(QObject):
 
     @property
     def is_showing_key(self) -> bool:
-        return self._new is not None
+        return bool(self._key)
 
     def begin(self) -> None:
         """Show the page that comes first: where there is no library yet, how to make one."""
-        self._new, self._cover_of, self._tried = None, "", ""
+        self._new, self._key, self._cover_of, self._tried = None, "", "", ""
         if not (self._folder / KEYS).exists():
+            self.first_start.show_first()
             self._show(self.first_start)
             return
         self.log_in.forget_typed()
@@ -106,6 +112,9 @@ class Entry(QObject):
         first, log_in, desk = self.first_start, self.log_in, self._desk
         first.made.connect(self._on_made)
         first.done.connect(self._on_key_kept)
+        first.typed_back.connect(self._confirm)
+        first.renew_wished.connect(self._on_renew_wished)
+        first.put_off.connect(self._enter)
         first.print_wished.connect(self._on_print_wished)
         first.save_wished.connect(self._on_save_wished)
         log_in.opened.connect(self._on_open_wished)
@@ -168,7 +177,12 @@ class Entry(QObject):
             self._settings.latest_operator = state.operator.code
         if state.recovery_key:
             self._new = state
-            self.first_start.show_recovery_key(state.recovery_key)
+            self._on_renewed(state.recovery_key)
+            return
+        if not state.is_recovery_key_confirmed and state.operator.role.value == ADMINISTRATOR:
+            self._new = state
+            self.first_start.ask_for_recovery_key()
+            self._show(self.first_start)
             return
         self.entered.emit(state)
 
@@ -183,6 +197,32 @@ class Entry(QObject):
             self._show(self.first_start)
 
     def _on_key_kept(self) -> None:
+        key, self._key = self._key, ""
+        self._desk.run(_confirming(key), None, None, self)  # where that fails it is asked for again
+        self._enter()
+
+    def _confirm(self, typed: str) -> None:
+        self._desk.run(_confirming(typed), self._on_confirmed, self._on_confirm_failed, self)
+
+    def _on_confirmed(self, _nothing: object) -> None:
+        self._enter()
+
+    def _on_confirm_failed(self, what: str, remedy: str) -> None:
+        self.first_start.ask_for_recovery_key()
+        self.first_start.show_typed_wrong(f"{what} {remedy}")
+
+    def _on_renew_wished(self) -> None:
+        def renew(opened: "OpenedLibrary") -> str:
+            assert opened.data_key is not None  # the demonstration's is not asked for
+            return slots_of(opened.folder).renew_recovery_key(opened.data_key)
+
+        self._desk.run(renew, self._on_renewed, self._on_confirm_failed, self)
+
+    def _on_renewed(self, key: str) -> None:
+        self._key = key
+        self.first_start.show_recovery_key(key)
+
+    def _enter(self) -> None:
         state, self._new = self._new, None
         if state is not None:
             self.entered.emit(state)
@@ -203,6 +243,15 @@ class Entry(QObject):
 
     def _left_s(self, code: str) -> float:
         return self._delay.left_s(code) if self._delay is not None else 0.0
+
+
+def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
+    """What keeps that the recovery key was typed back; then nobody is asked for it any more."""
+
+    def confirm(opened: "OpenedLibrary") -> None:
+        slots_of(opened.folder).confirm_recovery_key(typed)
+
+    return confirm
 
 
 def _too_many() -> str:

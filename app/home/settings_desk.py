@@ -10,7 +10,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.home.entry import SHORTEST
+from app.home.entry import ADMINISTRATOR, SHORTEST
 from app.home.words import person, when
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.settings import Scheme, Settings
@@ -29,7 +29,8 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import Operator
 
-VIEWER, CLINICIAN, ADMINISTRATOR = "viewer", "clinician", "administrator"  # as app.storage.stored has them
+HASH_LETTERS = 16  # of an entry's hash: as much as anybody compares
+VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 
 
 class SettingsDesk(QObject):
@@ -203,11 +204,14 @@ class SettingsDesk(QObject):
     def _on_backed_up(self, backup: "Backup") -> None:
         size = f"{backup.bytes / 1e6:.0f}"
         sentence = tr("Backed up and checked: {files} files, {size} MB.").format(files=backup.files, size=size)
+        end = backup.checkpoint
         if backup.faults:
             count = len(backup.faults)
             sentence = tr("Backed up. {count} recordings were missing or damaged in the library already.").format(
                 count=count
             )
+        kept = tr("Its audit ends with entry {number}, {hash}: note it down to tell later whether anything is missing.")
+        sentence = f"{sentence} {kept.format(number=end.number, hash=end.hash[:HASH_LETTERS])}"
         self.page.show_backup(sentence, self._backup_folder)
 
     def _on_backup_refused(self, what: str, remedy: str) -> None:

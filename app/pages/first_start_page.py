@@ -29,11 +29,15 @@ class FirstStartPage(EntryPage):
     print_wished = Signal(str)  # the recovery key
     save_wished = Signal(str)
     done = Signal()  # the recovery key was typed back
+    typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
+    renew_wished = Signal()
+    put_off = Signal()
     demonstration_wished = Signal()
 
     def __init__(self, look: Look, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
         self._shortest, self._is_same_key, self._key = shortest, is_same_key, ""
+        self._is_asking = False
         self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
             look,
@@ -58,11 +62,23 @@ class FirstStartPage(EntryPage):
             tone="ink2",
             wraps=True,
         )
+        self._asking_lead = Text(
+            look,
+            tr(
+                "It was made, but nobody has typed it back, so perhaps nobody has it. It opens the library when the "
+                "passphrase is forgotten; nothing else does. Type it from the paper or the file. If it is not to be "
+                "found, make a new one: the old one then opens nothing any more."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
         self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
         self.go = Button(look, tr("Go on"), Kind.PRIMARY, None, tr("Enter"))
+        self.renew = Button(look, tr("Make a new recovery key"))
+        self.later = Button(look, tr("Later: ask at the next log in"), Kind.QUIET, height=44)
         self._build()
         self._connect()
         self._show()
@@ -72,11 +88,11 @@ class FirstStartPage(EntryPage):
     def tab_order(self) -> list[QWidget]:
         fields = [self.code, self.name, self.passphrase, self.again]
         first = [*(field.line_edit for field in fields), self.make, self.demonstration]
-        return [*first, self.print, self.save, self.typed.line_edit, self.go]
+        return [*first, self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
 
     def show_recovery_key(self, key: str) -> None:
         """Show the key, once, and forget the passphrase."""
-        self._key = key
+        self._key, self._is_asking = key, False
         groups = key.split("-")
         lines = [groups[k : k + GROUPS] for k in range(0, len(groups), GROUPS)]
         self._key_words.setText("\n".join("   ".join(line) for line in lines))
@@ -84,6 +100,23 @@ class FirstStartPage(EntryPage):
             field.set_text("")
         self._show()
         self.focus()
+
+    def ask_for_recovery_key(self) -> None:
+        """Let the key be typed back that was shown earlier."""
+        self._key, self._is_asking = "", True
+        self.typed.set_text("")
+        self._show()
+        self.focus()
+
+    def show_typed_wrong(self, sentence: str) -> None:
+        """Say why what was typed back is not taken."""
+        self.typed.set_wrong(sentence)
+        self.typed.setFocus()
+
+    def show_first(self) -> None:
+        """Show how a library is made."""
+        self._key, self._is_asking = "", False
+        self._show()
 
     def show_busy(self, is_busy: bool) -> None:
         """Say that the library is being made."""
@@ -98,7 +131,7 @@ class FirstStartPage(EntryPage):
         self.code.setFocus()
 
     def focus(self) -> None:
-        (self.print if self._key else self.code).setFocus()
+        (self.typed if self._is_asking else self.print if self._key else self.code).setFocus()
 
     def _build(self) -> None:
         self._first = Card(self._look, padding=24, spacing=16)
@@ -115,12 +148,15 @@ class FirstStartPage(EntryPage):
         self._second.column.addLayout(self._keep_row)
         self._second.column.addWidget(self.typed)
         self._second.column.addWidget(self.go)
+        self._second.column.addWidget(self.renew)
+        self._second.column.addWidget(self.later)
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
         self.column.addWidget(self._first)
         self.column.addLayout(self._demonstration_row)
         self.column.addWidget(self._key_title)
         self.column.addWidget(self._key_lead)
+        self.column.addWidget(self._asking_lead)
         self.column.addWidget(self._second)
 
     def _connect(self) -> None:
@@ -129,6 +165,8 @@ class FirstStartPage(EntryPage):
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
+        self.renew.clicked.connect(self.renew_wished)
+        self.later.clicked.connect(self.put_off)
         self.typed.line_edit.returnPressed.connect(self._on_go)
         self.typed.edited.connect(self._on_typed)
         for field in (self.code, self.name, self.passphrase, self.again):
@@ -137,11 +175,15 @@ class FirstStartPage(EntryPage):
         self._look.changed.connect(self._on_look_changed)
 
     def _show(self) -> None:
-        has_key = bool(self._key)
+        has_key, is_asking = bool(self._key), self._is_asking
         for part in (self._title, self._lead, self._first, self.demonstration):
-            part.setVisible(not has_key)
-        for part in (self._key_title, self._key_lead, self._second):
+            part.setVisible(not has_key and not is_asking)
+        for part in (self._key_title, self._second):
+            part.setVisible(has_key or is_asking)
+        for part in (self._key_lead, self._key_words, self.print, self.save):
             part.setVisible(has_key)
+        for part in (self._asking_lead, self.renew, self.later):
+            part.setVisible(is_asking)
         self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
 
     @property
@@ -182,6 +224,9 @@ class FirstStartPage(EntryPage):
         self.typed.set_wrong("")
 
     def _on_go(self) -> None:
+        if self._is_asking:
+            self.typed_back.emit(self.typed.text)
+            return
         if not self._is_same_key(self.typed.text, self._key):
             self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
             self.typed.setFocus()

@@ -210,7 +210,10 @@ class SettingsPage(QWidget):
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self._key_hint = Text(
             look,
-            tr("The old recovery key opens nothing any more. Print this one or write it down; it is not shown again."),
+            tr(
+                "The old recovery key opens nothing any more. Print this one or write it down; it is not shown again. "
+                "You are asked to type it back at your next log in."
+            ),
             tone="ink2",
             wraps=True,
         )

@@ -23,10 +23,10 @@ from pathlib import Path
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
-from app.storage.audit import verify_rows
+from app.storage.audit import end_of_audit, verify_rows
 from app.storage.data_key import KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.models import AuditRow, JournalRow
+from app.storage.database.models import JournalRow
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
@@ -303,8 +303,7 @@ def _end_of_audit(folder: Path, data_key: KeyMaterial | None) -> Checkpoint:
     database = Database(sqlite_engine(folder / FILE_NAME, data_key))
     try:
         with database.reading() as session:
-            last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).one()
-            return Checkpoint(last.number, last.hash)
+            return end_of_audit(session)
     finally:
         database.close()
 

@@ -183,6 +183,7 @@ class Library:
                 details["is_end_lost"] = True
             subject = about("operator", row.code)
             append(session, self._desk.audit_key, self._desk.now(), row.code, Action.LOGIN, subject, details)
+        self._desk.note_end(session)
         self._desk.operator = operator
         return operator
 

@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
+    from app.storage.rollback import Rollback, SeenLibraries
     from app.storage.stored import Operator
 
 _log = logging.getLogger(__name__)
@@ -56,6 +57,10 @@ class OpenedState:
         The library was not closed well, and what was saved last is damaged.
     recovery_key
         Of a library that was just made, to be shown once; else empty.
+    rollback
+        What this computer has seen of the library and it does not hold any more.
+    is_recovery_key_confirmed
+        Whether somebody typed the recovery key back from its sheet since it was made.
     """
 
     library: "OpenedLibrary"
@@ -63,6 +68,8 @@ class OpenedState:
     interrupted: tuple["Interrupted", ...] = ()
     is_end_lost: bool = False
     recovery_key: str = field(default="", repr=False)
+    rollback: "Rollback | None" = None
+    is_recovery_key_confirmed: bool = True
 
     @property
     def is_demonstration(self) -> bool:
@@ -82,16 +89,19 @@ class LibraryPlace:
 
 
 class LibraryDesk(QObject):
-    """One library at a time; opening another closes the one before. `finish` belongs to the program's end."""
+    """One library at a time; opening another closes the one before. `finish` belongs to the program's end.
+
+    `seen`: the folder where this computer remembers how far a library had come; without it nothing is remembered.
+    """
 
     opened = Signal(object)  # OpenedState
     not_opened = Signal(str, str, bool)  # what, remedy, whether it was the key that did not open
     closed = Signal()
     refused = Signal(str, str)  # of a call whose asker does not listen to refusals
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, seen: Path | None = None) -> None:
         super().__init__(parent)
-        self._holder = _Holder()
+        self._holder = _Holder(seen)
         self._calls = _Lane(self, self._holder.do_left_over, self._holder.close)
         self._recordings = _Lane(self)
         for lane in (self._calls, self._recordings):
@@ -223,6 +233,17 @@ class LibraryDesk(QObject):
         self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
         self._state = None
         self._calls.ask(job)
+
+    def accept_rollback(
+        self, rollback: "Rollback", done: Callable[[None], object], failed: Failed, owner: QObject
+    ) -> None:
+        """Go on from the library's older state; an administrator's decision, which its audit keeps."""
+
+        def accept(opened: "OpenedLibrary") -> None:
+            if self._holder.seen is not None:
+                self._holder.seen.accept(opened.library, rollback)
+
+        self.run(accept, done, failed, owner)
 
     def look(self, folder: Path, done: Callable[[LibraryPlace], object], failed: Failed, owner: QObject) -> None:
         """Find out who may open the library in `folder`."""
@@ -484,8 +505,9 @@ class _Lane(QThread):
 class _Holder:
     """What the thread of the calls alone touches: the library, and all that ends with it."""
 
-    def __init__(self) -> None:
-        self.long_work = Lock()
+    def __init__(self, seen: Path | None) -> None:
+        self.long_work, self._seen_folder = Lock(), seen
+        self.seen: SeenLibraries | None = None
         self._library: OpenedLibrary | None = None
         self._ends = ExitStack()
         self._is_to_be_tidied = False
@@ -504,7 +526,7 @@ class _Holder:
             with ExitStack() as ends:
                 library, recovery_key = opening()
                 ends.enter_context(library)
-                state = _look_through(library, ends)
+                state = replace(_look_through(library, ends), rollback=self._look_back(library))
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # told where the library was to be opened
             return _NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError))
@@ -574,9 +596,19 @@ class _Holder:
             self._ends.close()
         return _Closed()
 
+    def _look_back(self, library: "OpenedLibrary") -> "Rollback | None":
+        if self._seen_folder is None:
+            return None
+        from app.storage.rollback import SeenLibraries
+
+        self.seen = SeenLibraries(self._seen_folder)
+        return self.seen.look(library.library)
+
     def do_left_over(self) -> None:
         """What can wait until the library is on the screen: destroy what is overdue, remove old backups."""
         library = self._library
+        if library is not None and library.data_key and self.seen is not None:
+            self.seen.remember(library.library)
         if library is None or not self._is_to_be_tidied:
             return
         self._is_to_be_tidied = False
@@ -593,7 +625,14 @@ def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
     ends.enter_context(held_alone(library.folder))
     operator = library.library.operator
     assert operator is not None  # whoever opens a library is logged in
-    return OpenedState(library, operator, find_interrupted(library), library.library.is_end_lost)
+    is_confirmed = library.data_key is None or slots_of(library.folder).is_recovery_key_confirmed
+    return OpenedState(
+        library,
+        operator,
+        find_interrupted(library),
+        library.library.is_end_lost,
+        is_recovery_key_confirmed=is_confirmed,
+    )
 
 
 def _staying(library: "OpenedLibrary", leaving: str) -> list[str]:

@@ -40,7 +40,9 @@ WAIT_MS = 20_000  # on a busy machine
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library of `hk`, with a patient."""
     folder = tmp_path_factory.mktemp("window")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    data_key, recovery_key = slots.create("hk", PASSPHRASE)
+    slots.confirm_recovery_key(recovery_key)
     with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
         library.patients.create(Patient(code=SECRET_CODE, birth_year=1968))
     return folder
@@ -159,7 +161,58 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
     QTest.keyClick(page.typed.line_edit, Qt.Key.Key_Return)
     assert window.screens.currentWidget() is window.home
     assert key not in " ".join(label.text() for label in page.findChildren(QLabel))
-    assert KeySlots(tmp_path / "new" / KEYS).open_with_recovery_key(key)
+    slots = KeySlots(tmp_path / "new" / KEYS)
+    assert slots.open_with_recovery_key(key)
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
+
+
+def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    key = slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
+    for put_off in (True, False):
+        window = open_window(folder)
+        assert window.entry is not None
+        page, log_in = window.entry.first_start, window.entry.log_in
+        qtbot.waitUntil(lambda log_in=log_in: log_in.operator.count() == 1, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        log_in.passphrase.set_text(PASSPHRASE)
+        QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+        qtbot.waitUntil(page.later.isVisible, timeout=WAIT_MS)
+        assert "nobody has typed it back" in words_in_sight(window)
+        assert key not in words_in_sight(window)
+        if put_off:
+            page.later.click()
+            assert window.screens.currentWidget() is window.home
+            window.desk.close()
+            window.close()
+            continue
+        page.typed.set_text(key[:-1] + "?")
+        page.go.click()
+        qtbot.waitUntil(lambda page=page: page.typed.is_wrong, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        page.typed.set_text(key)
+        page.go.click()
+        qtbot.waitUntil(lambda window=window: window.screens.currentWidget() is window.home, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+    assert slots.is_recovery_key_confirmed
+
+
+def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
+    window = open_window(folder)
+    assert window.entry is not None
+    page, log_in = window.entry.first_start, window.entry.log_in
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    log_in.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
+    page.renew.click()
+    qtbot.waitUntil(lambda: bool(page._key), timeout=WAIT_MS)
+    assert page.print.isVisible()
+    page.typed.set_text(page._key)
+    page.go.click()
+    assert window.screens.currentWidget() is window.home
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
 
 
 def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(qtbot: QtBot, open_window: Open, folder: Path) -> None:

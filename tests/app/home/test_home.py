@@ -23,6 +23,7 @@ from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.rollback import Rollback
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
@@ -361,6 +362,25 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     page.backup_wished.emit()
     qtbot.waitUntil(lambda: "checked" in page._backup_said.text(), timeout=WAIT_MS)
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
+
+
+@pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
+def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_it(
+    qtbot: QtBot, home: Home, desk: LibraryDesk, first: int, role: Role
+) -> None:
+    state = desk.state
+    assert state is not None
+    home.show_library(state)
+    assert not home.rollback_banner.isVisible()
+    home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
+    said = home.rollback_banner.text
+    assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
+    button = home.rollback_banner.findChildren(Button)[0]
+    assert button.isVisible() is (role is Role.ADMINISTRATOR)
+    assert ("Tell an administrator" in said) is (role is Role.CLINICIAN)
+    if role is Role.ADMINISTRATOR:
+        button.click()
+        qtbot.waitUntil(lambda: not home.rollback_banner.isVisible(), timeout=WAIT_MS)
 
 
 def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(

@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine, text
 
-from app.storage.audit import BEGINNING, hash_of, verify
+from app.storage.audit import hash_of, verify
 from app.storage.database.engine import Database
 from app.storage.derived_keys import derived_from
 from app.storage.library import FILE_NAME, Library
-from app.storage.stored import Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
+from app.storage.stored import BEGINNING, Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from core.samples import Patient
 
 DATA_KEY = bytes(range(32))
