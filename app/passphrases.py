@@ -10,7 +10,7 @@ import re
 import unicodedata
 from collections.abc import Iterable
 from enum import Enum, auto
-from typing import Any
+from typing import Any, NamedTuple
 
 from app.wording import tr
 
@@ -64,30 +64,33 @@ def refusal_of_passphrase(passphrase: str, shortest: int, known: Iterable[str] =
     if strength_of(passphrase, shortest, known) is not Strength.WEAK:
         return tr("{shortest} letters or more are needed").format(shortest=shortest), tr("Take a few words")
     judged = _judged(passphrase, known)
-    held = _in_words(_held_s(float(judged["guesses"])))
+    held = _in_words(_held_s(judged.guesses))
     what = tr("{why}, so who has a copy of the library could guess it within {held}").format(
-        why=_why(judged["sequence"]), held=held
+        why=_why(judged.parts), held=held
     )
     return what, tr("Take four or five words that have nothing to do with each other")
 
 
 def held_for_s(passphrase: str, known: Iterable[str] = ()) -> float:
     """Half of the guesses that a passphrase is good for, in seconds."""
-    return _held_s(float(_judged(passphrase, known)["guesses"])) if passphrase.strip() else 0.0
+    return _held_s(_judged(passphrase, known).guesses) if passphrase.strip() else 0.0
 
 
 def _held_s(guesses: float) -> float:
     return guesses / 2 / GUESSES_PER_S
 
 
-def _judged(passphrase: str, known: Iterable[str]) -> dict[str, Any]:
+class _Judged(NamedTuple):
+    guesses: float
+    parts: list[dict[str, Any]]
+
+
+def _judged(passphrase: str, known: Iterable[str]) -> _Judged:
     from zxcvbn import zxcvbn  # its lists of words take as long to load as the rest of a page
 
     words = [word for text in known for word in (text, *re.split(r"[\W_]+", text)) if len(word) >= LEAST_KNOWN]
-    judged: dict[str, Any] = zxcvbn(
-        unicodedata.normalize("NFKC", passphrase.strip())[:MOST_JUDGED], user_inputs=["gaitwright", *words]
-    )
-    return judged
+    judged = zxcvbn(unicodedata.normalize("NFKC", passphrase.strip())[:MOST_JUDGED], user_inputs=["gaitwright", *words])
+    return _Judged(float(judged["guesses"]), [dict(part) for part in judged["sequence"]])
 
 
 def _why(parts: list[dict[str, Any]]) -> str:

@@ -432,12 +432,13 @@ def test_the_key_is_changed_and_who_left_opens_nothing(qtbot: QtBot, desk: Libra
         lambda library: library.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN)), None, None, asker
     )
     desk.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    assert desk.state is None  # nothing is begun meanwhile
+    assert not desk.state  # nothing is begun meanwhile
     qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == []
     assert not before
-    assert desk.state is not None
-    assert desk.state.library.data_key == slots.open("hk", PASSPHRASE)
+    now = desk.state
+    assert now is not None
+    assert now.library.data_key == slots.open("hk", PASSPHRASE)
     assert slots.codes == ("hk", "vi")
     desk.run(lambda library: library.library.operators.list(), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
