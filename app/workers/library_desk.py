@@ -293,6 +293,7 @@ class LibraryDesk(QObject):
         def opening() -> "Opening":
             slots = slots_of(folder)
             data_key = slots.open_with_recovery_key(recovery_key)
+            slots.confirm_recovery_key(recovery_key)  # it was typed from its sheet
             slots.set_passphrase(data_key, code, passphrase)
             return logged_in(folder, data_key, code), ""
 
