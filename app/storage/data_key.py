@@ -22,6 +22,9 @@ class DataKey(bytearray):
 
     __str__ = __repr__
 
+    def __del__(self) -> None:
+        self.wipe()
+
     def wipe(self) -> None:
         """Overwrite the key where it stands."""
         self[:] = bytes(len(self))  # of the same length, so in place

@@ -29,6 +29,8 @@ from app.storage.backup import back_up
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.writer import JournalWriter
+from app.storage.keys import KeySlots
+from app.storage.opened import KEYS
 from app.workers.library_desk import LibraryDesk
 from core.samples import Patient
 
@@ -56,13 +58,14 @@ def tell(words):
 desk.open(folder, passphrase, "hk")
 while desk.state is None:
     app.processEvents()
+desk.run(lambda opened: len(KeySlots(folder / KEYS).open("hk", passphrase)), asker.on_done, asker.on_failed, asker)
 desk.run(lambda opened: opened.library.patients.create(Patient(code="P-001")), asker.on_done, asker.on_failed, asker)
 desk.run(lambda opened: back_up(opened, folder.parent / "backups"), asker.on_done, asker.on_failed, asker)
 desk.run(
     lambda opened: JournalWriter.create(opened.recordings, uuid7(), opened.data_key, room=Room(0, 0)),
     asker.on_done, asker.on_failed, asker,
 )
-wait(3)
+wait(4)
 writer = said[-1]
 for k in range(int(sys.argv[3])):
     tell("open")
@@ -73,10 +76,10 @@ for k in range(int(sys.argv[3])):
         writer.mark("recorded under the lock")
         app.processEvents()
         time.sleep(0.01)
-    assert len(said) == 3 + 2 * k, "the library answered under the lock"
+    assert len(said) == 4 + 2 * k, "the library answered under the lock"
     tell("locked")
     desk.unlock("hk", passphrase, None, asker.on_done, asker.on_failed, asker)
-    wait(5 + 2 * k)
+    wait(6 + 2 * k)
     assert 1 in said[-2:], said
 print("written", writer.stop().state, flush=True)
 desk.finish()
