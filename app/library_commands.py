@@ -6,7 +6,9 @@ refusals leave here as the one line that the command line prints.
 
 import argparse
 import getpass
+import math
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -104,7 +106,10 @@ def opened_library(wanted: argparse.Namespace) -> Iterator["OpenedLibrary"]:
 
     folder: Path = wanted.library
     try:
-        with open_library(folder, _passphrase(wanted.passphrase_file, folder), wanted.operator) as opened:
+        passphrase = _passphrase(wanted.passphrase_file, folder)
+        with _counted(folder, wanted.operator):
+            opening = open_library(folder, passphrase, wanted.operator)
+        with opening as opened:
             yield opened
     except (LibraryError, KeyRefusedError) as refusal:
         remedy = f"{refusal.remedy} ({WHO} CODE)" if refusal.remedy == "Say who you are" else refusal.remedy
@@ -183,8 +188,7 @@ def verify_audit(wanted: argparse.Namespace) -> Iterator[str]:
     FileRefusedError
         The library does not open, `wanted.since` is no checkpoint, or an entry is not as it was written.
     """
-    from app.storage.audit import BEGINNING
-    from app.storage.stored import Checkpoint, LibraryError
+    from app.storage.stored import BEGINNING, Checkpoint, LibraryError
 
     try:
         since = Checkpoint.parsed(wanted.since) if wanted.since else BEGINNING
@@ -237,6 +241,26 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
     told = Recording(name, RecordingKind.WALKING, folder_for(name), {})
     recovered = adopt(opened, one, into.id, told, report)
     return f"{name}: {_length(recovered.recorded_s)} recorded at {when} was recovered into {into}."
+
+
+@contextmanager
+def _counted(folder: Path, code: str) -> Iterator[None]:
+    """Try a passphrase when it is time for the next try."""
+    from app.storage.keys import KeySlots
+    from app.storage.login_delay import LoginDelay
+    from app.storage.opened import KEYS
+
+    slots, delay = KeySlots(folder / KEYS), LoginDelay(folder, time.monotonic)
+    if not slots.exists or not (code or len(slots.codes) == 1):
+        yield  # which is refused, and says nothing of a passphrase
+        return
+    code = code or slots.codes[0]
+    delay.read()
+    if (left_s := delay.left_s(code)) > 0:
+        print(f"Wrong passphrases were typed before: this waits for {math.ceil(left_s)} s.", file=sys.stderr)
+        time.sleep(left_s)
+    with delay.trying(code):
+        yield
 
 
 def _passphrase(file: Path | None, library: Path) -> str:

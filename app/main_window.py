@@ -65,18 +65,22 @@ ACTIVITY = frozenset(
 
 
 class MainWindow(QWidget):
-    """`library` is the folder of the user's own library, be it still to be made. None: sessions of folders only."""
+    """`library` is the folder of the user's own library, be it still to be made. None: sessions of folders only.
 
-    def __init__(self, look: Look, settings: Settings, library: Path | None = None) -> None:
+    `seen` is where this computer remembers how far a library had come.
+    """
+
+    def __init__(self, look: Look, settings: Settings, library: Path | None = None, seen: Path | None = None) -> None:
         super().__init__()
         self._look, self._settings = look, settings
-        self.desk = LibraryDesk(self)
+        self.desk = LibraryDesk(self, seen)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
         self.preparing = Background(self)
         self._help: HelpPage | None = None
         self._before_help: QWidget | None = None
         self._covered: QWidget | None = None
+        self._has_come_back = False  # the library, and nobody has read what was recorded meanwhile
         self._is_dark: bool | None = None  # not yet known
         self._apply_settings()  # before there is anything to be styled anew
         self.setWindowTitle("Gaitwright")
@@ -351,7 +355,14 @@ class MainWindow(QWidget):
 
     def _on_library_back(self, what: str, then: str) -> None:
         self._on_library_gone(what, then)
-        if self._home is not None and (self._wizard is None or self._wizard.visit is None):
+        self._has_come_back = True
+        if not self.is_covered:
+            self._recover_what_came_home()
+
+    def _recover_what_came_home(self) -> None:
+        """Read it, which needs the key: under the cover it waits for the passphrase."""
+        is_due, self._has_come_back = self._has_come_back, False
+        if is_due and self._home is not None and (self._wizard is None or self._wizard.visit is None):
             self._home.recovering.look_again()  # else the visit reads its own recordings back
 
     # nobody is there
@@ -379,12 +390,14 @@ class MainWindow(QWidget):
         self.entry.cover(state.operator.code, self._is_recording)
         if self.desk.gone_words is not None:
             self.entry.tell(*self.desk.gone_words)
+        self.desk.lock()
 
     def _on_uncovered(self) -> None:
         covered, self._covered = self._covered, None
         self.idle.unlock()
         if covered is not None:
             self._show(covered)
+        self._recover_what_came_home()
 
     # how it looks
 
@@ -476,7 +489,8 @@ def open_window(argv: list[str]) -> int:
     app.setApplicationName("Gaitwright")
     app.setStyle("Fusion")
     load_fonts()
-    window = MainWindow(Look(app), Settings(own_settings()), default_folder())
+    library = default_folder()
+    window = MainWindow(Look(app), Settings(own_settings()), library, library.with_name("seen"))
     window.show()
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)

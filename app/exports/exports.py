@@ -113,7 +113,8 @@ def export_from_library(
     report(0.5, "analysing")
     analysis = analysed(session)
     if not is_identified:
-        session, analysis = nameless(Pseudonyms(opened.data_key), visit.patient_id, session, analysis, kept)
+        pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
+        session, analysis = nameless(pseudonyms, visit.patient_id, session, analysis, kept)
     report(1.0, "writing")
     _write(session, analysis, formats, folder)
 
@@ -133,7 +134,7 @@ def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collecti
     """
     visit = opened.library.sessions.get(session_id)
     told = replace(visit.told, recordings=tuple(one.told for one in visit.recordings if one.state in READ_BACK))
-    return what_leaves(Pseudonyms(opened.data_key).session(visit.patient_id, told, kept))
+    return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, told, kept))
 
 
 def _write(session: Session, analysis: Analysis, formats: Sequence[Format], folder: Path) -> None:

@@ -1,6 +1,7 @@
 """Who opens the library? The pages before it is open and over it, and what the desk answers them."""
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,13 +15,15 @@ from app.theme import Look
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from app.workers.library_opening import slots_of
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
-    from app.storage.keys import LoginDelay
+    from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
 
 KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
+ADMINISTRATOR = "administrator"  # as app.storage.stored has it
 SHORTEST = 10  # as app.storage.keys has it
 
 
@@ -36,7 +39,8 @@ class Entry(QObject):
         super().__init__(parent)
         self._desk, self._settings, self._folder = desk, settings, folder
         self._place: LibraryPlace | None = None
-        self._new: OpenedState | None = None
+        self._new: OpenedState | None = None  # whose recovery key is shown or asked for
+        self._key = ""  # as long as it is shown
         self._cover_of = self._tried = ""
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
@@ -56,14 +60,14 @@ class Entry(QObject):
 
     @property
     def is_showing_key(self) -> bool:
-        return self._new is not None
+        return bool(self._key)
 
     def begin(self) -> None:
         """Show the page that comes first: where there is no library yet, how to make one.
 
         One that was opened here before is missing, rather than to be made: its disk may not be connected.
         """
-        self._new, self._cover_of, self._tried = None, "", ""
+        self._new, self._key, self._cover_of, self._tried = None, "", "", ""
         if not (self._folder / KEYS).exists():
             if self._settings.latest_library == str(self._folder):
                 from app.storage.root import count_sheltered  # rarely needed
@@ -87,6 +91,10 @@ class Entry(QObject):
     def cover(self, code: str, is_recording: bool) -> None:
         """Show nothing but the way back, for the operator who is logged in."""
         self._cover_of = code
+        if self._delay is None:  # of a library that was just made
+            from app.storage.login_delay import LoginDelay
+
+            self._delay = LoginDelay(self._folder, time.monotonic)
         self.log_in.show_cover(code, is_recording)
         self._show(self.log_in)
 
@@ -119,6 +127,9 @@ class Entry(QObject):
         first.made.connect(self._on_made)
         first.look_wished.connect(self._on_look_wished)
         first.done.connect(self._on_key_kept)
+        first.typed_back.connect(self._confirm)
+        first.renew_wished.connect(self._on_renew_wished)
+        first.put_off.connect(self._enter)
         first.print_wished.connect(self._on_print_wished)
         first.save_wished.connect(self._on_save_wished)
         log_in.opened.connect(self._on_open_wished)
@@ -132,6 +143,9 @@ class Entry(QObject):
         self._place = place
         latest = self._settings.latest_operator
         self.log_in.show_operators(place.codes, place.remembered, latest, can_remember=place.has_keyring)
+        self._delay = place.delay
+        if (left_s := self._left_s(self.log_in.code)) > 0:
+            self.log_in.refuse(_too_many(), left_s)
         self.log_in.focus()
 
     def _on_look_failed(self, what: str, remedy: str) -> None:
@@ -148,19 +162,15 @@ class Entry(QObject):
 
     def _on_open_wished(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
-        self.log_in.show_busy(True)
-        if not self.is_covering:
-            self._desk.open(self._folder, passphrase, code, must_remember)
+        if (left_s := self._left_s(code)) > 0:  # of another operator than the one that the page waited for
+            self.log_in.refuse(_too_many(), left_s)
             return
-
-        def check(opened: "OpenedLibrary") -> None:
-            from app.storage.keys import KeySlots
-            from app.storage.opened import KEYS as NAME
-
-            opened.refuse_gone()  # it says what to do, where the slots only miss their file
-            KeySlots(opened.folder / NAME).open(code, passphrase)
-
-        self._desk.run(check, self._on_checked, self._on_check_failed, self)
+        self.log_in.show_busy(True)
+        delay = self._delay
+        if not self.is_covering:
+            self._desk.open(self._folder, passphrase, code, must_remember, delay)
+            return
+        self._desk.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
 
     def _on_remembered_wished(self, code: str) -> None:
         self._tried = code
@@ -173,33 +183,33 @@ class Entry(QObject):
         self._desk.open_recovered(self._folder, recovery_key, code, passphrase)
 
     def _on_checked(self, _nothing: object) -> None:
-        self._login_delay().forget(self._tried)
         self._cover_of = ""
         self.log_in.forget_typed()
         self.uncovered.emit()
 
     def _on_check_failed(self, what: str, remedy: str) -> None:
-        self._login_delay().count_wrong(self._tried)
-        self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+        self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
 
     def _on_opened(self, state: OpenedState) -> None:
         self.log_in.forget_typed()
         self.first_start.show_busy(False)
         if not state.is_demonstration:
-            self._login_delay().forget(state.operator.code)
             self._settings.latest_operator = state.operator.code
             self._settings.latest_library = str(self._folder)
         if state.recovery_key:
             self._new = state
-            self.first_start.show_recovery_key(state.recovery_key)
+            self._on_renewed(state.recovery_key)
+            return
+        if not state.is_recovery_key_confirmed and state.operator.role.value == ADMINISTRATOR:
+            self._new = state
+            self.first_start.ask_for_recovery_key()
+            self._show(self.first_start)
             return
         self.entered.emit(state)
 
-    def _on_not_opened(self, what: str, remedy: str, is_key: bool) -> None:
+    def _on_not_opened(self, what: str, remedy: str, _is_key: bool) -> None:
         if self._tried:
-            if is_key:
-                self._login_delay().count_wrong(self._tried)
-            self.log_in.refuse(f"{what} {remedy}", self._login_delay().left_s(self._tried))
+            self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
         elif (self._folder / KEYS).exists():
             self.begin()
             self.tell(what, remedy)
@@ -208,6 +218,32 @@ class Entry(QObject):
             self._show(self.first_start)
 
     def _on_key_kept(self) -> None:
+        key, self._key = self._key, ""
+        self._desk.run(_confirming(key), None, None, self)  # where that fails it is asked for again
+        self._enter()
+
+    def _confirm(self, typed: str) -> None:
+        self._desk.run(_confirming(typed), self._on_confirmed, self._on_confirm_failed, self)
+
+    def _on_confirmed(self, _nothing: object) -> None:
+        self._enter()
+
+    def _on_confirm_failed(self, what: str, remedy: str) -> None:
+        self.first_start.ask_for_recovery_key()
+        self.first_start.show_typed_wrong(f"{what} {remedy}")
+
+    def _on_renew_wished(self) -> None:
+        def renew(opened: "OpenedLibrary") -> str:
+            assert opened.data_key is not None  # the demonstration's is not asked for
+            return slots_of(opened.folder).renew_recovery_key(opened.data_key)
+
+        self._desk.run(renew, self._on_renewed, self._on_confirm_failed, self)
+
+    def _on_renewed(self, key: str) -> None:
+        self._key = key
+        self.first_start.show_recovery_key(key)
+
+    def _enter(self) -> None:
         state, self._new = self._new, None
         if state is not None:
             self.entered.emit(state)
@@ -226,12 +262,21 @@ class Entry(QObject):
             self._sheet.told.connect(self.tell)
         return self._sheet
 
-    def _login_delay(self) -> "LoginDelay":
-        if self._delay is None:
-            from app.storage.keys import LoginDelay
+    def _left_s(self, code: str) -> float:
+        return self._delay.left_s(code) if self._delay is not None else 0.0
 
-            self._delay = LoginDelay(time.monotonic)
-        return self._delay
+
+def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
+    """What keeps that the recovery key was typed back; then nobody is asked for it any more."""
+
+    def confirm(opened: "OpenedLibrary") -> None:
+        slots_of(opened.folder).confirm_recovery_key(typed)
+
+    return confirm
+
+
+def _too_many() -> str:
+    return tr("Wrong passphrases were typed before. Wait until the next try, or use the recovery key.")
 
 
 def _is_same_key(typed: str, shown: str) -> bool:

@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEv
 from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
 from app.home.deleting import Deleting
+from app.home.entry import ADMINISTRATOR
 from app.home.recovering import Recovering
 from app.home.settings_desk import SettingsDesk
 from app.home.words import patient_line, person, session_line
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from app.storage import stored
     from app.storage.exchange import Imported
     from app.storage.opened import OpenedLibrary
+    from app.storage.rollback import Rollback
     from core.samples import Session
 
 COMPACT_BELOW = (1180, 720)
@@ -77,6 +79,9 @@ class Home(QWidget):
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
         self.banner = Banner(look)
+        self.rollback_banner = Banner(look)
+        self._rollback: Rollback | None = None
+        self.rollback_banner.acted.connect(self._on_rollback_accepted)
         self.recovering = Recovering(desk, self.banner, self)
         self.page = HomePage(look)
         self.import_page = ImportPage(look)
@@ -124,9 +129,35 @@ class Home(QWidget):
                 tr("The library was not closed well, and what was saved last is damaged."),
                 tr("Look through the latest session."),
             )
+        self._show_rollback(state)
         self.recovering.begin(state)
         self.refresh()
         self._go_to(self.page)
+
+    def _show_rollback(self, state: OpenedState) -> None:
+        """Say that the library is an older state than this computer has seen, and let an administrator accept it."""
+        self._rollback = rollback = state.rollback
+        self.rollback_banner.hide()
+        if rollback is None:
+            return
+        is_administrator = state.operator.role.value == ADMINISTRATOR
+        missing = tr("What was done from entry {first} to {last} of its audit is not all in it.")
+        then = tr("If a backup was restored, that is why: accept it. Else somebody put an older copy here.")
+        if not is_administrator:
+            then = tr("Tell an administrator, who can look into it and accept it where a backup was restored.")
+        self.rollback_banner.tell(
+            tr("This library is older than when this computer saw it last."),
+            f"{missing.format(first=rollback.first, last=rollback.last)} {then}",
+            tr("Accept this state") if is_administrator else "",
+        )
+
+    def _on_rollback_accepted(self) -> None:
+        if self._rollback is not None:
+            self._desk.accept_rollback(self._rollback, self._on_rollback_noted, self._on_refused, self)
+
+    def _on_rollback_noted(self, _nothing: object) -> None:
+        self._rollback = None
+        self.rollback_banner.hide()
 
     def clear(self) -> None:
         """Keep nothing of any patient, for whoever comes next."""
@@ -135,6 +166,7 @@ class Home(QWidget):
         self.deleting.forget()
         self.toast.hide()
         self.banner.hide()
+        self.rollback_banner.hide()
         self.page.search.clear()
         self.page.forget_patients()
         self.page.show_patient("", "")
@@ -174,6 +206,7 @@ class Home(QWidget):
         for page in (self.page, self.import_page, self.working):
             self._add_page(page)
         self._banner_row = QVBoxLayout()
+        self._banner_row.addWidget(self.rollback_banner)
         self._banner_row.addWidget(self.banner)
         column = QVBoxLayout()
         column.setSpacing(0)

@@ -10,7 +10,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.home.entry import SHORTEST
+from app.home.entry import ADMINISTRATOR, SHORTEST
 from app.home.words import person, when
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.settings import Scheme, Settings
@@ -24,11 +24,13 @@ from app.workers.library_opening import BACKUP_FOLDER
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
     from app.storage.backup import Backup
+    from app.storage.key_change import ChangedKey
     from app.storage.keys import KeySlots
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import Operator
 
-VIEWER, CLINICIAN, ADMINISTRATOR = "viewer", "clinician", "administrator"  # as app.storage.stored has them
+HASH_LETTERS = 16  # of an entry's hash: as much as anybody compares
+VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 
 
 class SettingsDesk(QObject):
@@ -53,16 +55,20 @@ class SettingsDesk(QObject):
         is_administrator = is_own and state.operator.role.value == ADMINISTRATOR
         may_restore = state.operator.role.value != VIEWER
         self.page.show_library(
-            has_access=is_own, has_backup=may_write, has_deleted=may_restore, has_operators=is_administrator
+            has_access=is_own,
+            has_backup=may_write,
+            has_deleted=may_restore,
+            has_operators=is_administrator,
+            own=(state.operator.code, state.operator.name),
         )
         self.page.renew.setVisible(is_administrator)
         self.page.choose_folder.setVisible(is_administrator)
         self._show_screen()
         if is_own:
             self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
+            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)  # no passphrase holds its name
         if is_administrator:
             self._read_operators()
-            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)
 
     def read_deleted(self) -> None:
         """Show what can be had back now."""
@@ -98,7 +104,7 @@ class SettingsDesk(QObject):
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
         page.operator_added.connect(self._on_operator_added)
-        page.operator_switched.connect(self._on_operator_switched)
+        page.operator_removed.connect(self._on_operator_removed)
         page.clinic_named.connect(self._on_clinic_named)
         page.restore_wished.connect(self._on_restore_wished)
         self._settings.changed.connect(self._show_screen)
@@ -126,7 +132,8 @@ class SettingsDesk(QObject):
         def change(opened: "OpenedLibrary") -> None:
             slots, operator = _slots(opened), opened.library.operator
             assert operator is not None  # whoever opens a library is logged in
-            slots.set_passphrase(slots.open(operator.code, old), operator.code, new)
+            known = (operator.name, _clinic_of(opened))
+            slots.set_passphrase(slots.open(operator.code, old), operator.code, new, known)
 
         self._desk.run(change, self._on_passphrase_changed, self._on_passphrase_refused, self)
 
@@ -197,11 +204,14 @@ class SettingsDesk(QObject):
     def _on_backed_up(self, backup: "Backup") -> None:
         size = f"{backup.bytes / 1e6:.0f}"
         sentence = tr("Backed up and checked: {files} files, {size} MB.").format(files=backup.files, size=size)
+        end = backup.checkpoint
         if backup.faults:
             count = len(backup.faults)
             sentence = tr("Backed up. {count} recordings were missing or damaged in the library already.").format(
                 count=count
             )
+        kept = tr("Its audit ends with entry {number}, {hash}: note it down to tell later whether anything is missing.")
+        sentence = f"{sentence} {kept.format(number=end.number, hash=end.hash[:HASH_LETTERS])}"
         self.page.show_backup(sentence, self._backup_folder)
 
     def _on_backup_refused(self, what: str, remedy: str) -> None:
@@ -228,15 +238,18 @@ class SettingsDesk(QObject):
         self._desk.run(put, None, self._on_refused, self)
 
     def _read_operators(self) -> None:
-        self._desk.run(lambda opened: opened.library.operators.list(), self._on_operators, self._on_refused, self)
+        self._desk.run(_operators_of, self._on_operators, self._on_refused, self)
 
-    def _on_operators(self, operators: "tuple[Operator, ...]") -> None:
+    def _on_operators(self, found: "tuple[tuple[Operator, ...], tuple[str, ...]]") -> None:
+        operators, codes = found
         if self._state is None:
             return
         own, roles = self._state.operator.code, _roles()
         self.page.show_operators(
             [
-                OperatorLine(one.code, one.name, roles[one.role.value], one.is_active, one.code == own)
+                OperatorLine(
+                    one.code, one.name, roles[one.role.value], one.is_active, one.code == own, one.code in codes
+                )
                 for one in operators
             ]
         )
@@ -248,9 +261,15 @@ class SettingsDesk(QObject):
 
             assert opened.data_key is not None  # hidden in the demonstration
             slots = _slots(opened)
-            slots.add(opened.data_key, code, passphrase)  # first: without a slot an operator could not log in
+            # the slot first: without one an operator could not log in
+            slots.add(opened.data_key, code, passphrase, (name, _clinic_of(opened)))
             try:
-                opened.library.operators.add(Operator(code, name, Role(role)))
+                operators = opened.library.operators
+                known = next((one for one in operators.list() if one.code == code.casefold()), None)
+                if known is None:
+                    operators.add(Operator(code, name, Role(role)))
+                else:  # who worked here before and has had no key since
+                    operators.change(replace(known, name=name, role=Role(role), is_active=True))
             except Exception:
                 with suppress(KeyRefusedError):
                     slots.remove(code)
@@ -258,12 +277,31 @@ class SettingsDesk(QObject):
 
         self._desk.run(add, self._on_operator_changed, self._on_operator_refused, self)
 
-    def _on_operator_switched(self, code: str, is_active: bool) -> None:
-        def switch(opened: "OpenedLibrary") -> None:
-            (operator,) = (one for one in opened.library.operators.list() if one.code == code)
-            opened.library.operators.change(replace(operator, is_active=is_active))
+    def _on_operator_removed(self, code: str) -> None:
+        self.page.show_key_change(tr("Changing the library's key"), is_running=True)
+        self._desk.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
 
-        self._desk.run(switch, self._on_operator_changed, self._on_refused, self)
+    def _on_key_progressed(self, share: float, _what: str) -> None:
+        sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))
+        self.page.show_key_change(sentence, is_running=True)
+
+    def _on_key_changed(self, changed: "ChangedKey") -> None:
+        said = [tr("The library has a new key. Backups made before keep the old one: make a new one now.")]
+        if changed.left_out:
+            said.append(
+                tr("These have not logged in for long and need a new passphrase, add them below: {codes}.").format(
+                    codes=", ".join(changed.left_out)
+                )
+            )
+        if changed.recovery_key:
+            said.append(tr("The recovery key is a new one, shown above."))
+            self.page.show_recovery_key(changed.recovery_key)
+        self.page.show_key_change(" ".join(said), is_running=False)
+        self._read_operators()
+
+    def _on_key_refused(self, what: str, remedy: str) -> None:
+        self.page.show_key_change(f"{what} {remedy}", is_running=False)
+        self._read_operators()
 
     def _on_operator_changed(self, _nothing: object) -> None:
         self.page.forget_typed()
@@ -274,6 +312,11 @@ class SettingsDesk(QObject):
 
     def _on_refused(self, what: str, remedy: str) -> None:
         self.told.emit(what, remedy)
+
+
+def _operators_of(opened: "OpenedLibrary") -> "tuple[tuple[Operator, ...], tuple[str, ...]]":
+    """Who is known here, and who has a key."""
+    return opened.library.operators.list(), _slots(opened).codes
 
 
 def _clinic_of(opened: "OpenedLibrary") -> str:

@@ -10,7 +10,7 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
 from app.pages.entry import EntryPage
-from app.pages.passphrase_strength import strength_in_words
+from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -30,6 +30,9 @@ class FirstStartPage(EntryPage):
     print_wished = Signal(str)  # the recovery key
     save_wished = Signal(str)
     done = Signal()  # the recovery key was typed back
+    typed_back = Signal(str)  # a recovery key that is not shown here, to be compared with the library's
+    renew_wished = Signal()
+    put_off = Signal()
     demonstration_wished = Signal()
     look_wished = Signal()  # whether the library that is missing is there now
 
@@ -37,6 +40,7 @@ class FirstStartPage(EntryPage):
         super().__init__(look)
         self._shortest, self._is_same_key, self._key = shortest, is_same_key, ""
         self._missing = ""
+        self._is_asking = False
         self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
         self._missing_lead = Text(look, tone="ink2", wraps=True)
         self.look_again = Button(look, tr("Look again"), Kind.PRIMARY, None, tr("Enter"))
@@ -65,11 +69,23 @@ class FirstStartPage(EntryPage):
             tone="ink2",
             wraps=True,
         )
+        self._asking_lead = Text(
+            look,
+            tr(
+                "It was made, but nobody has typed it back, so perhaps nobody has it. It opens the library when the "
+                "passphrase is forgotten; nothing else does. Type it from the paper or the file. If it is not to be "
+                "found, make a new one: the old one then opens nothing any more."
+            ),
+            tone="ink2",
+            wraps=True,
+        )
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
         self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
         self.go = Button(look, tr("Go on"), Kind.PRIMARY, None, tr("Enter"))
+        self.renew = Button(look, tr("Make a new recovery key"))
+        self.later = Button(look, tr("Later: ask at the next log in"), Kind.QUIET, height=44)
         self._build()
         self._connect()
         self._show()
@@ -79,7 +95,8 @@ class FirstStartPage(EntryPage):
     def tab_order(self) -> list[QWidget]:
         fields = [self.code, self.name, self.passphrase, self.again]
         first = [*(field.line_edit for field in fields), self.make, self.demonstration]
-        return [self.look_again, self.make_another, *first, self.print, self.save, self.typed.line_edit, self.go]
+        second = [self.print, self.save, self.typed.line_edit, self.go, self.renew, self.later]
+        return [self.look_again, self.make_another, *first, *second]
 
     @property
     def is_missing(self) -> bool:
@@ -91,7 +108,7 @@ class FirstStartPage(EntryPage):
 
         `waiting` recordings are on this computer until their library is back.
         """
-        self._missing = folder
+        self._missing, self._key, self._is_asking = folder, "", False
         told = [tr("It was in {folder}, and is not there now.").format(folder=folder)]
         if waiting:
             kept = tr_n(
@@ -106,7 +123,7 @@ class FirstStartPage(EntryPage):
 
     def show_recovery_key(self, key: str) -> None:
         """Show the key, once, and forget the passphrase."""
-        self._key = key
+        self._key, self._is_asking = key, False
         groups = key.split("-")
         lines = [groups[k : k + GROUPS] for k in range(0, len(groups), GROUPS)]
         self._key_words.setText("\n".join("   ".join(line) for line in lines))
@@ -114,6 +131,18 @@ class FirstStartPage(EntryPage):
             field.set_text("")
         self._show()
         self.focus()
+
+    def ask_for_recovery_key(self) -> None:
+        """Let the key be typed back that was shown earlier."""
+        self._key, self._is_asking = "", True
+        self.typed.set_text("")
+        self._show()
+        self.focus()
+
+    def show_typed_wrong(self, sentence: str) -> None:
+        """Say why what was typed back is not taken."""
+        self.typed.set_wrong(sentence)
+        self.typed.setFocus()
 
     def show_busy(self, is_busy: bool) -> None:
         """Say that the library is being made."""
@@ -128,7 +157,8 @@ class FirstStartPage(EntryPage):
         self.code.setFocus()
 
     def focus(self) -> None:
-        (self.print if self._key else self.look_again if self._missing else self.code).setFocus()
+        key_part = self.typed if self._is_asking else self.print if self._key else None
+        (key_part or (self.look_again if self._missing else self.code)).setFocus()
 
     def _build(self) -> None:
         self._first = Card(self._look, padding=24, spacing=16)
@@ -145,6 +175,8 @@ class FirstStartPage(EntryPage):
         self._second.column.addLayout(self._keep_row)
         self._second.column.addWidget(self.typed)
         self._second.column.addWidget(self.go)
+        self._second.column.addWidget(self.renew)
+        self._second.column.addWidget(self.later)
         self._missing_card = Card(self._look, padding=24, spacing=16)
         self._missing_card.column.addWidget(self.look_again)
         self._missing_card.column.addWidget(self.make_another)
@@ -156,6 +188,7 @@ class FirstStartPage(EntryPage):
         self.column.addLayout(self._demonstration_row)
         self.column.addWidget(self._key_title)
         self.column.addWidget(self._key_lead)
+        self.column.addWidget(self._asking_lead)
         self.column.addWidget(self._second)
 
     def _connect(self) -> None:
@@ -166,6 +199,8 @@ class FirstStartPage(EntryPage):
         self.print.clicked.connect(self._on_print)
         self.save.clicked.connect(self._on_save)
         self.go.clicked.connect(self._on_go)
+        self.renew.clicked.connect(self.renew_wished)
+        self.later.clicked.connect(self.put_off)
         self.typed.line_edit.returnPressed.connect(self._on_go)
         self.typed.edited.connect(self._on_typed)
         for field in (self.code, self.name, self.passphrase, self.again):
@@ -174,15 +209,24 @@ class FirstStartPage(EntryPage):
         self._look.changed.connect(self._on_look_changed)
 
     def _show(self) -> None:
-        has_key, is_missing = bool(self._key), self.is_missing
-        for part in (self._missing_title, self._missing_lead, self._missing_card):
-            part.setVisible(is_missing and not has_key)
-        for part in (self._title, self._lead, self._first):
-            part.setVisible(not has_key and not is_missing)
-        self.demonstration.setVisible(not has_key)
-        for part in (self._key_title, self._key_lead, self._second):
+        has_key, is_asking = bool(self._key), self._is_asking
+        is_first = not has_key and not is_asking
+        for block in (self._missing_title, self._missing_lead, self._missing_card):
+            block.setVisible(is_first and self.is_missing)
+        for block in (self._title, self._lead, self._first):
+            block.setVisible(is_first and not self.is_missing)
+        self.demonstration.setVisible(is_first)
+        for block in (self._key_title, self._second):
+            block.setVisible(has_key or is_asking)
+        for part in (self._key_lead, self._key_words, self.print, self.save):
             part.setVisible(has_key)
-        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+        for part in (self._asking_lead, self.renew, self.later):
+            part.setVisible(is_asking)
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
+
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return self.code.text, self.name.text
 
     def _on_make_another(self) -> None:
         self.show_missing("")
@@ -191,7 +235,7 @@ class FirstStartPage(EntryPage):
     def _on_edited(self, _text: str) -> None:
         for field in (self.code, self.name, self.passphrase, self.again):
             field.set_wrong("")
-        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest))
+        self._strength.setText(strength_in_words(self.passphrase.text, self._shortest, self._known))
 
     def _on_make(self) -> None:
         code = self.code.text.strip()
@@ -200,9 +244,9 @@ class FirstStartPage(EntryPage):
             wrong.append((self.code, tr("Type 1 to {most} letters and figures.").format(most=LONGEST_CODE)))
         if not self.name.text.strip():
             wrong.append((self.name, tr("Type your name.")))
-        if len(self.passphrase.text.strip()) < self._shortest:
-            short = tr("{shortest} letters or more are needed. Take a few words.").format(shortest=self._shortest)
-            wrong.append((self.passphrase, short))
+        if strength_of(self.passphrase.text or "-", self._shortest, self._known) in REFUSED:
+            why = strength_in_words(self.passphrase.text or "-", self._shortest, self._known)
+            wrong.append((self.passphrase, why))
         elif self.passphrase.text != self.again.text:
             wrong.append((self.again, tr("The two are not the same. Type the second one again.")))
         for field, sentence in wrong:
@@ -222,6 +266,9 @@ class FirstStartPage(EntryPage):
         self.typed.set_wrong("")
 
     def _on_go(self) -> None:
+        if self._is_asking:
+            self.typed_back.emit(self.typed.text)
+            return
         if not self._is_same_key(self.typed.text, self._key):
             self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
             self.typed.setFocus()

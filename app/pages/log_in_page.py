@@ -10,7 +10,7 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
 from app.pages.entry import EntryPage
-from app.pages.passphrase_strength import strength_in_words
+from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -194,7 +194,7 @@ class LogInPage(EntryPage):
         self.new_passphrase.setVisible(is_recovering)
         self._strength.setVisible(is_recovering)
         self.again.setVisible(is_recovering)
-        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest))
+        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest, (self.code,)))
         is_remembered = self.code in self._remembered
         self.remember.setVisible(self._can_remember and not is_recovering and not is_remembered and not self._is_cover)
         self.use_remembered.setVisible(is_remembered and not is_recovering and not self._is_cover)
@@ -205,7 +205,8 @@ class LogInPage(EntryPage):
         self._show_go()
 
     def _show_go(self) -> None:
-        self.go.setEnabled(not self._is_busy and self._left_s <= 0)
+        is_waiting = self._left_s > 0 and not self._is_recovering  # nobody guesses a recovery key
+        self.go.setEnabled(not self._is_busy and not is_waiting)
         words = tr("Open")
         if self._is_cover:
             words = tr("Go on")
@@ -213,7 +214,7 @@ class LogInPage(EntryPage):
             words = tr("Set it and open")
         if self._is_busy:
             words = tr("Opening")
-        if self._left_s > 0:
+        if is_waiting:
             words = tr("Next try in {seconds} s").format(seconds=math.ceil(self._left_s))
         self.go.setText(words)
         self.go.setAccessibleName(words)
@@ -231,8 +232,9 @@ class LogInPage(EntryPage):
                 self.code, self.passphrase.text, not self.remember.isHidden() and self.remember.isChecked()
             )
             return
-        if len(self.new_passphrase.text.strip()) < self._shortest:
-            self.new_passphrase.set_wrong(strength_in_words(self.new_passphrase.text or "-", self._shortest))
+        new, known = self.new_passphrase.text or "-", (self.code,)
+        if strength_of(new, self._shortest, known) in REFUSED:
+            self.new_passphrase.set_wrong(strength_in_words(new, self._shortest, known))
         elif self.new_passphrase.text != self.again.text:
             self.again.set_wrong(tr("The two are not the same. Type the second one again."))
         else:
@@ -241,7 +243,7 @@ class LogInPage(EntryPage):
     def _on_edited(self, _text: str) -> None:
         for field in self._fields:
             field.set_wrong("")
-        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest))
+        self._strength.setText(strength_in_words(self.new_passphrase.text, self._shortest, (self.code,)))
 
     def _on_remembered(self) -> None:
         self.remembered.emit(self.code)

@@ -7,7 +7,7 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
-from app.pages.passphrase_strength import strength_in_words
+from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
@@ -25,13 +25,14 @@ FRONT, BEHIND = "front", "behind"
 
 @dataclass(frozen=True, slots=True)
 class OperatorLine:
-    """Who works here; `role` in words."""
+    """Who works here; `role` in words. `has_key`: the passphrase opens the library."""
 
     code: str
     name: str
     role: str
     is_active: bool
     is_self: bool
+    has_key: bool = True
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +59,14 @@ class SettingsPage(QWidget):
     backup_folder_wished = Signal()
     stop_wished = Signal()
     operator_added = Signal(str, str, str, str)  # code, name, role, passphrase
-    operator_switched = Signal(str, bool)  # code, whether they work here
+    operator_removed = Signal(str)  # code
     clinic_named = Signal(str)
     restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
     def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
         self._look, self._shortest, self._roles = look, shortest, roles
+        self._own: tuple[str, ...] = ()
         self._title = Text(look, tr("Settings"), size=26, weight=SEMIBOLD)
         self._column = QVBoxLayout(self)
         self._column.addWidget(self._title)
@@ -103,9 +105,16 @@ class SettingsPage(QWidget):
         self.sound.setChecked(has_sound)
 
     def show_library(
-        self, *, has_access: bool, has_backup: bool, has_operators: bool, has_deleted: bool = False
+        self,
+        *,
+        has_access: bool,
+        has_backup: bool,
+        has_operators: bool,
+        has_deleted: bool = False,
+        own: tuple[str, ...] = (),
     ) -> None:
-        """Show what the operator may set; nothing that was typed for another is kept."""
+        """Show what the operator may set, whose code and name are `own`; nothing typed for another is kept."""
+        self._own = own
         self._access.setVisible(has_access)
         self._backup.setVisible(has_backup)
         self._deleted.setVisible(has_deleted)
@@ -146,7 +155,7 @@ class SettingsPage(QWidget):
                 widget.deleteLater()
         for operator in operators:
             row = _OperatorRow(self._look, operator)
-            row.switched.connect(self.operator_switched)
+            row.switched.connect(self._on_operator_switched)
             self._rows.addWidget(row)
 
     def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
@@ -201,7 +210,10 @@ class SettingsPage(QWidget):
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
         self._key_hint = Text(
             look,
-            tr("The old recovery key opens nothing any more. Print this one or write it down; it is not shown again."),
+            tr(
+                "The old recovery key opens nothing any more. Print this one or write it down; it is not shown again. "
+                "You are asked to type it back at your next log in."
+            ),
             tone="ink2",
             wraps=True,
         )
@@ -257,6 +269,13 @@ class SettingsPage(QWidget):
         self._operators = self._card(tr("Who works with this library"))
         self._rows = QVBoxLayout()
         self._operators.column.addLayout(self._rows)
+        self._leaving = ""
+        self._leaving_words = Text(look, wraps=True)
+        self.remove = Button(look, tr("Remove and change the key"))
+        self.keep = Button(look, tr("Cancel"), Kind.QUIET)
+        self._operators.column.addWidget(self._leaving_words)
+        self._add_left(self._operators, self.remove, self.keep)
+        self._show_leaving("")
         self.code = Field(look, tr("Code of a new operator"), is_code=True)
         self.name = Field(look, tr("Name"))
         self.role = Choice(look, tr("Role"))
@@ -283,10 +302,54 @@ class SettingsPage(QWidget):
         self.back_up.clicked.connect(self._on_back_up)
         self.choose_folder.clicked.connect(self.backup_folder_wished)
         self.add.clicked.connect(self._on_add)
+        self.remove.clicked.connect(self._on_remove)
+        self.keep.clicked.connect(self._on_keep)
         self.clinic.committed.connect(self._on_clinic_named)
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.edited.connect(self._on_edited)
         self._look.changed.connect(self._on_look_changed)
+
+    def show_key_change(self, sentence: str, *, is_running: bool) -> None:
+        """Say how far the change of the library's key is, or how it ended."""
+        self._leaving_words.setText(sentence)
+        self._leaving_words.setVisible(bool(sentence))
+        for button in (self.remove, self.keep):
+            button.hide()
+        self._operators.setEnabled(not is_running)
+
+    def _show_leaving(self, code: str) -> None:
+        """Ask before somebody is removed, and say what is out of reach; without a code nothing is asked."""
+        self._leaving = code
+        self.show_key_change(
+            tr(
+                "{code} then opens this library no longer, and it gets a new key: an old copy of its key file, with "
+                "the passphrase of {code}, opens nothing that is on this computer from then on. All others keep "
+                "their passphrases. Backups that were made before keep their old key: with the old passphrase, who "
+                "has one can still read it. Nothing can be recorded until the change is done."
+            ).format(code=code)
+            if code
+            else "",
+            is_running=False,
+        )
+        for button in (self.remove, self.keep):
+            button.setVisible(bool(code))
+
+    def _on_operator_switched(self, operator: OperatorLine) -> None:
+        if operator.is_active or operator.has_key:
+            self._show_leaving(operator.code)
+            return
+        self._show_leaving("")
+        self.code.set_text(operator.code)
+        self.name.set_text(operator.name)
+        self.role.setCurrentIndex(max(self.role.findText(operator.role), 0))
+        self.first.set_wrong(tr("Type a first passphrase: the old one opens nothing any more."))
+        self.first.setFocus()
+
+    def _on_remove(self) -> None:
+        self.operator_removed.emit(self._leaving)
+
+    def _on_keep(self) -> None:
+        self._show_leaving("")
 
     def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
         """Say how the latest backup went, and where backups go."""
@@ -325,12 +388,13 @@ class SettingsPage(QWidget):
     def _on_edited(self, _text: str) -> None:
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.set_wrong("")
-        self._strength.setText(strength_in_words(self.new.text, self._shortest))
+        self._strength.setText(strength_in_words(self.new.text, self._shortest, self._known))
 
     def _on_change(self) -> None:
         self._on_edited("")
-        if len(self.new.text.strip()) < self._shortest:
-            self.new.set_wrong(strength_in_words(self.new.text or "-", self._shortest))
+        new = self.new.text or "-"
+        if strength_of(new, self._shortest, self._known) in REFUSED:
+            self.new.set_wrong(strength_in_words(new, self._shortest, self._known))
         elif self.new.text != self.again.text:
             self.again.set_wrong(tr("The two are not the same. Type the second one again."))
         else:
@@ -348,13 +412,18 @@ class SettingsPage(QWidget):
     def _on_back_up(self) -> None:
         (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
 
+    @property
+    def _known(self) -> tuple[str, ...]:
+        return *self._own, self.clinic.text
+
     def _on_add(self) -> None:
+        first, known = self.first.text or "-", (self.code.text, self.name.text, self.clinic.text)
         if not self.code.text.strip():
             self.code.set_wrong(tr("Type a code."))
         elif not self.name.text.strip():
             self.name.set_wrong(tr("Type a name."))
-        elif len(self.first.text.strip()) < self._shortest:
-            self.first.set_wrong(strength_in_words(self.first.text or "-", self._shortest))
+        elif strength_of(first, self._shortest, known) in REFUSED:
+            self.first.set_wrong(strength_in_words(first, self._shortest, known))
         else:
             name = self.name.text.strip()
             self.operator_added.emit(self.code.text.strip(), name, str(self.role.currentData()), self.first.text)
@@ -369,7 +438,7 @@ class SettingsPage(QWidget):
 
 
 class _OperatorRow(QWidget):
-    switched = Signal(str, bool)
+    switched = Signal(object)  # OperatorLine
 
     def __init__(self, look: Look, operator: OperatorLine) -> None:
         super().__init__()
@@ -379,7 +448,13 @@ class _OperatorRow(QWidget):
         words = ", ".join([operator.code, operator.name, operator.role])
         row.addWidget(Text(look, words, size=15, wraps=True), 1)
         self.button = Button(
-            look, tr("Works here no longer") if operator.is_active else tr("Works here again"), height=44
+            look,
+            tr("Works here no longer")
+            if operator.is_active
+            else tr("Change the key now")
+            if operator.has_key
+            else tr("Works here again"),
+            height=44,
         )
         self.button.setAccessibleName(f"{self.button.text()}, {operator.code}")
         self.button.setVisible(not operator.is_self)
@@ -387,7 +462,7 @@ class _OperatorRow(QWidget):
         row.addWidget(self.button)
 
     def _on_clicked(self) -> None:
-        self.switched.emit(self._operator.code, not self._operator.is_active)
+        self.switched.emit(self._operator)
 
 
 class _DeletedRow(QWidget):

@@ -12,16 +12,13 @@ import json
 from collections.abc import Iterable, Mapping
 from uuid import UUID
 
-from cryptography.hazmat.primitives.hashes import SHA256
-from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import AuditRow
-from app.storage.desk import Desk
-from app.storage.stored import Action, AuditEntry, AuditFault, AuditReport, Checkpoint, Role
+from app.storage.desk import END, Desk
+from app.storage.stored import BEGINNING, Action, AuditEntry, AuditFault, AuditReport, Checkpoint, Role
 
-BEGINNING = Checkpoint(0, "0" * 64)
 MANY = 1000  # rows held at a time
 
 
@@ -30,6 +27,31 @@ class Audit:
 
     def __init__(self, desk: Desk) -> None:
         self._desk = desk
+        with desk.database.reading() as session:
+            first = session.get(AuditRow, 1)
+            self.library_id = first.hash[:32] if first is not None else ""
+
+    @property
+    def end(self) -> Checkpoint:
+        """How far it has come, as far as this program was told."""
+        return self._desk.end_of_audit
+
+    def holds(self, checkpoint: Checkpoint) -> bool:
+        """Whether the entry that a checkpoint tells of is there. The chain is not followed; see `verify`."""
+        with self._desk.reading() as session:
+            row = session.get(AuditRow, checkpoint.number)
+            return row is not None and hmac.compare_digest(row.hash, checkpoint.hash)
+
+    def note_rollback(self, first: int, last: int) -> None:
+        """Record that an administrator goes on without the entries `first` to `last`, which were seen before.
+
+        Raises
+        ------
+        NotAllowedError
+            The operator is not an administrator.
+        """
+        with self._desk.writing(Role.ADMINISTRATOR) as session:
+            note(self._desk, session, Action.EDIT, "library", accepted_without_entries=[first, last])
 
     def note(self, action: Action, subject: str, **details: str | float | bool) -> None:
         """Record what was done outside of the library: an export, a print, a backup. No names in `details`.
@@ -60,9 +82,9 @@ def note(desk: Desk, session: OrmSession, action: Action, subject: str, **detail
     append(session, desk.audit_key, desk.now(), desk.code, action, subject, details)
 
 
-def audit_key(data_key: bytes | None) -> bytes:
-    """The key of the chain's hashes; a demonstration's is known to all."""
-    return HKDF(SHA256(), 32, salt=None, info=b"gaitwright audit 1").derive(data_key or b"")
+def end_of_audit(session: OrmSession) -> Checkpoint:
+    last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).first()
+    return Checkpoint(last.number, last.hash) if last is not None else BEGINNING
 
 
 def append(
@@ -75,8 +97,7 @@ def append(
     details: Mapping[str, object],
 ) -> Checkpoint:
     """Add an entry; `session` holds the write lock, so that nobody else takes the same number."""
-    last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).first()
-    before = Checkpoint(last.number, last.hash) if last is not None else BEGINNING
+    before = end_of_audit(session)
     entry = AuditEntry(
         number=before.number + 1,
         at=at.astimezone(datetime.UTC).isoformat(),
@@ -91,6 +112,7 @@ def append(
     row.hash = hash_of(entry, key)
     session.add(row)
     session.flush()  # the next one in this transaction has to see it
+    session.info[END] = Checkpoint(row.number, row.hash)
     return Checkpoint(row.number, row.hash)
 
 

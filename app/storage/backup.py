@@ -23,9 +23,11 @@ from pathlib import Path
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
-from app.storage.audit import audit_key, verify_rows
+from app.storage.audit import end_of_audit, verify_rows
+from app.storage.data_key import KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.database.models import AuditRow, JournalRow
+from app.storage.database.models import JournalRow
+from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
 from app.storage.library import FILE_NAME, Library, now_utc
@@ -134,7 +136,9 @@ def remove_old_backups(into: Path, now: Callable[[], datetime.datetime] = now_ut
     return old
 
 
-def restore(backup: Path, folder: Path, data_key: bytes | None, code: str, report: Report = silent) -> tuple[str, ...]:
+def restore(
+    backup: Path, folder: Path, data_key: KeyMaterial | None, code: str, report: Report = silent
+) -> tuple[str, ...]:
     """Make a library of a backup in `folder`, which is empty or not there; returns the faults that it had.
 
     What was deleted after the backup is there again, and what was recorded after it is not.
@@ -195,7 +199,7 @@ class _Work:
         self._report(min(1.0, self._done / max(2 * (self.database_bytes + self.bytes), 1)), what)
 
 
-def _copy_database(library: Path, folder: Path, data_key: bytes | None, work: _Work) -> None:
+def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, work: _Work) -> None:
     """Copy page by page, as the library is at this moment, while others go on writing to it."""
     source = sqlite_engine(library / FILE_NAME, data_key, creates=False)
     target = sqlite_engine(folder / FILE_NAME, data_key)
@@ -243,7 +247,7 @@ def _copy(source: Path, target: Path, work: _Work) -> str:
 
 
 def _check(
-    folder: Path, data_key: bytes | None, checkpoint: Checkpoint, hashes: dict[str, str], work: _Work
+    folder: Path, data_key: KeyMaterial | None, checkpoint: Checkpoint, hashes: dict[str, str], work: _Work
 ) -> tuple[str, ...]:
     """Open the copy and read all of it; what the library knows to be otherwise comes back.
 
@@ -271,11 +275,11 @@ def _check(
     return tuple(faults)
 
 
-def _audit_faults(session: OrmSession, data_key: bytes | None, checkpoint: Checkpoint) -> tuple[AuditFault, ...]:
-    return verify_rows(session, audit_key(data_key), checkpoint).faults
+def _audit_faults(session: OrmSession, data_key: KeyMaterial | None, checkpoint: Checkpoint) -> tuple[AuditFault, ...]:
+    return verify_rows(session, derived_keys(session, data_key).audit, checkpoint).faults
 
 
-def _journal_faults(folder: Path, row: JournalRow, data_key: bytes | None, sha256: str | None) -> list[str]:
+def _journal_faults(folder: Path, row: JournalRow, data_key: KeyMaterial | None, sha256: str | None) -> list[str]:
     """What is wrong with one journal; one whose key was destroyed has nothing to be wrong."""
     if row.wrapped_key is None and data_key is not None:
         return []
@@ -299,12 +303,11 @@ def _sha256(path: Path, work: _Work) -> str:
     return digest.hexdigest()
 
 
-def _end_of_audit(folder: Path, data_key: bytes | None) -> Checkpoint:
+def _end_of_audit(folder: Path, data_key: KeyMaterial | None) -> Checkpoint:
     database = Database(sqlite_engine(folder / FILE_NAME, data_key, creates=False))
     try:
         with database.reading() as session:
-            last = session.scalars(select(AuditRow).order_by(AuditRow.number.desc()).limit(1)).one()
-            return Checkpoint(last.number, last.hash)
+            return end_of_audit(session)
     finally:
         database.close()
 

@@ -9,9 +9,10 @@ from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.engine import Database
 from app.storage.database.models import OperatorRow, PatientRow, RecordingRow, SessionRow
-from app.storage.stored import LibraryError, NotAllowedError, Operator, Role
+from app.storage.stored import BEGINNING, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from app.wording import tr
 
+END = "end_of_audit"  # by this name a session keeps how far its entries go
 DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
 
 
@@ -27,6 +28,7 @@ class Desk:
     ) -> None:
         self.database, self.audit_key, self.now, self.is_demonstration = database, audit_key, now, is_demonstration
         self.operator: Operator | None = None
+        self.end_of_audit = BEGINNING
 
     @property
     def code(self) -> str:
@@ -71,6 +73,13 @@ class Desk:
             yield session
             session.flush()
             self._keep_simulated_apart(session)
+        self.note_end(session)
+
+    def note_end(self, session: OrmSession) -> None:
+        """Keep how far the audit goes, now that what `session` wrote is on the disk."""
+        end: Checkpoint = session.info.get(END, BEGINNING)
+        if end.number > self.end_of_audit.number:
+            self.end_of_audit = end
 
     def _keep_simulated_apart(self, session: OrmSession) -> None:
         if self.is_demonstration:

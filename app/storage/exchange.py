@@ -172,7 +172,7 @@ def export_session(
     opened.library.audit.note(Action.EXPORT, subject, format="session folder", is_identified=is_identified, typed=typed)
     session = session_with_samples(opened, visit, decoders, report)
     if not is_identified:
-        session = Pseudonyms(opened.data_key).session(visit.patient_id, session, kept)
+        session = Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, session, kept)
     report(1.0, "writing")
     write_session(session, folder)
 

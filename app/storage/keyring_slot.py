@@ -12,7 +12,8 @@ import secrets
 from contextlib import suppress
 from typing import Any
 
-from app.storage.keys import KEY_BYTES, KeyRefusedError, KeySlots
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
+from app.storage.keys import KeyRefusedError, KeySlots
 
 SERVICE = "Gaitwright"
 SAFE_PRIORITY = 1  # those below are, by the package's own rule, not recommended: some keep secrets in the open
@@ -23,7 +24,7 @@ def is_there_a_keyring() -> bool:
     return _keyring() is not None
 
 
-def remember(slots: KeySlots, data_key: bytes, code: str) -> None:
+def remember(slots: KeySlots, data_key: KeyMaterial, code: str) -> None:
     """Let this machine's keyring open the library for an operator, in place of any that did before.
 
     Raises
@@ -44,7 +45,7 @@ def remember(slots: KeySlots, data_key: bytes, code: str) -> None:
         raise KeyRefusedError("The keyring takes no key", "Unlock it, or go on with the passphrase") from problem
 
 
-def open_remembered(slots: KeySlots, code: str) -> bytes | None:
+def open_remembered(slots: KeySlots, code: str) -> DataKey | None:
     """The data key; None when the passphrase is needed: nothing remembered, no keyring, locked, or another's secret.
 
     Raises

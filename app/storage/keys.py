@@ -1,42 +1,36 @@
-"""Who may open the library? One random data key, wrapped once for every operator and once for the recovery key.
+"""Who may open the library? One random data key, sealed once for every operator and once for the recovery key.
 
-An operator may have a second slot, which the system's keyring opens (`app.storage.keyring_slot`). A slot's wrapping key
-comes from a secret by Argon2id (RFC 9106), the wrapping is AES-256-GCM and is bound to the slot's own words. The
-slots' file holds nothing that opens without one, and no names: operators have short codes. Nothing here limits
-what an operator may do; roles are the application's, not cryptography's.
+An operator may have a second slot, which the system's keyring opens (`app.storage.keyring_slot`). A slot has a pair of
+keys of its own (`app.storage.slots`), so the data key can be changed without anybody's passphrase. The slots' file
+holds nothing that opens without one, and no names: operators have short codes. Nothing here limits what an operator may
+do; roles are the application's, not cryptography's.
 """
 
-import base64
 import json
 import os
 import secrets
 import time
 import unicodedata
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
+from typing import Any
 
-from cryptography.exceptions import InvalidTag
-from cryptography.hazmat.primitives.ciphers.aead import AESGCM
-from cryptography.hazmat.primitives.kdf.argon2 import Argon2id
-
+from app.passphrases import Strength, refusal_of_passphrase, strength_of
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
 from app.storage.files import held, replace_file
+from app.storage.slots import COST, FIRST_FORMAT, FORMAT, Cost, Slot, whole
 from app.wording import tr
 
-FORMAT = "gaitwright-keys/1"
-KEY_BYTES = 32
-SIZES = [16, 12, KEY_BYTES + 16]  # of salt, nonce and wrapped key
-MOST_PASSES, MOST_MEMORY_KIB = 100, 4 * 1024 * 1024
 MIN_PASSPHRASE = 10
 RECOVERY_BYTES = 20
 GROUP = 4  # letters of the recovery key that stand together
 LETTERS = "0123456789ABCDEFGHJKMNPQRSTVWXYZ"  # Crockford's: no I, L, O, U to be misread
 MISREAD = str.maketrans({"I": "1", "L": "1", "O": "0"})
-FREE_TRIES = 3
-FIRST_DELAY_S, LONGEST_DELAY_S = 2.0, 300.0
 BUSY_S = 5.0  # another program's change takes a tenth of it
 RECOVERY = "recovery"
+CONFIRMED = "is_recovery_key_confirmed"
 KEYRING = "keyring-"  # stands before an operator's code; no code that is typed has a dash
 
 
@@ -49,56 +43,28 @@ class KeyRefusedError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class Cost:
-    """What one guess at a passphrase costs (Argon2id): passes over `memory_kib` of memory."""
+class SealedAnew:
+    """What the slots' file is to hold once the data key is changed.
 
-    passes: int = 3
-    memory_kib: int = 64 * 1024
+    Attributes
+    ----------
+    content
+        The file.
+    recovery_key
+        The text of a new recovery key, where the old one could not be kept; else empty.
+    left_out
+        Operators who need a new passphrase: their slots are of the first format, or marked by nobody who had the key.
+    """
 
-
-@dataclass(frozen=True, slots=True)
-class Slot:
-    """The data key, wrapped for an operator (`code`), an operator's keyring or the recovery key. Bytes are base64."""
-
-    code: str
-    salt: str
-    nonce: str
-    wrapped: str
-    passes: int
-    memory_kib: int
-
-    def opened(self, secret: bytes) -> bytes | None:
-        """The data key; None when `secret` is not this slot's."""
-        try:
-            return AESGCM(self._wrapping_key(secret)).decrypt(_bytes(self.nonce), _bytes(self.wrapped), self._bound())
-        except InvalidTag:
-            return None
-
-    def _wrapping_key(self, secret: bytes) -> bytes:
-        kdf = Argon2id(
-            salt=_bytes(self.salt),
-            length=KEY_BYTES,
-            iterations=self.passes,
-            lanes=1,
-            memory_cost=self.memory_kib,
-        )
-        return kdf.derive(secret)
-
-    def _bound(self) -> bytes:
-        return f"{FORMAT} {self.code} {self.salt} {self.passes} {self.memory_kib}".encode()
-
-    @classmethod
-    def wrapping(cls, data_key: bytes, code: str, secret: bytes, cost: Cost) -> "Slot":
-        salt, nonce = _text(secrets.token_bytes(SIZES[0])), _text(secrets.token_bytes(SIZES[1]))
-        empty = cls(code, salt, nonce, "", cost.passes, cost.memory_kib)
-        wrapped = AESGCM(empty._wrapping_key(secret)).encrypt(_bytes(empty.nonce), data_key, empty._bound())
-        return replace(empty, wrapped=_text(wrapped))
+    content: dict[str, object] = field(repr=False)
+    recovery_key: str = field(repr=False)
+    left_out: tuple[str, ...]
 
 
 class KeySlots:
     """The slots' file of one library. Every change replaces the file as a whole."""
 
-    def __init__(self, path: Path, cost: Cost = Cost()) -> None:
+    def __init__(self, path: Path, cost: Cost = COST) -> None:
         self._path, self._cost = path, cost
 
     @property
@@ -110,22 +76,23 @@ class KeySlots:
         """The operators that can log in."""
         return tuple(code for code in self._read() if _is_operators(code))
 
-    def create(self, code: str, passphrase: str) -> tuple[bytes, str]:
+    def create(self, code: str, passphrase: str, known: Iterable[str] = ()) -> tuple[DataKey, str]:
         """Make the first operator's slot and the recovery key's; returns the data key and the recovery key's text.
 
         Raises
         ------
         KeyRefusedError
-            There are slots already, or the passphrase is too short.
+            There are slots already, or the passphrase is too short or weak; `known` are names that it must not rest on.
         """
         if self.exists:
             raise KeyRefusedError("This library has its keys already", "Log in, or use the recovery key")
-        data_key, text = secrets.token_bytes(KEY_BYTES), new_recovery_key()
-        own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase), self._cost)
-        self._write({own.code: own, RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
+        data_key, text = DataKey(os.urandom(KEY_BYTES)), new_recovery_key()
+        own = Slot.wrapping(data_key, _checked_code(code), _checked(passphrase, (code, *known)), self._cost)
+        recovery = Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)
+        self._write({own.code: own, RECOVERY: recovery}, is_confirmed=False)
         return data_key, text
 
-    def open(self, code: str, passphrase: str) -> bytes:
+    def open(self, code: str, passphrase: str) -> DataKey:
         """The data key.
 
         Raises
@@ -134,12 +101,12 @@ class KeySlots:
             No such operator, or not this passphrase; the two are not told apart.
         """
         slot = self._read().get(_normal(code))
-        data_key = slot.opened(_secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
+        data_key = self._opened(slot, _secret(passphrase)) if slot is not None and _is_operators(slot.code) else None
         if data_key is None:
             raise KeyRefusedError("This passphrase does not open the library", "Type it again, or use the recovery key")
         return data_key
 
-    def open_with_recovery_key(self, text: str) -> bytes:
+    def open_with_recovery_key(self, text: str) -> DataKey:
         """The data key.
 
         Raises
@@ -149,39 +116,39 @@ class KeySlots:
         """
         secret = _recovery_bytes(text)
         slot = self._read().get(RECOVERY)
-        data_key = slot.opened(secret) if slot is not None else None
+        data_key = self._opened(slot, secret) if slot is not None else None
         if data_key is None:
             raise KeyRefusedError("This recovery key belongs to another library", "Look for the sheet of this one")
         return data_key
 
-    def add(self, data_key: bytes, code: str, passphrase: str) -> None:
+    def add(self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
         """Give an operator a slot.
 
         Raises
         ------
         KeyRefusedError
-            The code is taken, or the passphrase too short.
+            The code is taken, or the passphrase is too short or weak.
         """
         with self._changing() as slots:
             if _checked_code(code) in slots:
                 raise KeyRefusedError(tr("{code} is taken").format(code=_normal(code)), "Choose another code")
-            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             self._write({**slots, own.code: own})
 
-    def set_passphrase(self, data_key: bytes, code: str, passphrase: str) -> None:
+    def set_passphrase(self, data_key: KeyMaterial, code: str, passphrase: str, known: Iterable[str] = ()) -> None:
         """Give an operator a new passphrase; until the file is replaced the old one opens, from then on the new one.
 
         Raises
         ------
         KeyRefusedError
-            No such operator, or the passphrase is too short.
+            No such operator, or the passphrase is too short or weak; `known` are names that it must not rest on.
         """
         with self._changing() as slots:
             if _checked_code(code) not in slots:
                 raise KeyRefusedError(
                     tr("{code} has no key to this library").format(code=_normal(code)), "Add the operator first"
                 )
-            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase), self._cost)
+            own = Slot.wrapping(data_key, _normal(code), _checked(passphrase, (code, *known)), self._cost)
             self._write({**slots, own.code: own})
 
     def remove(self, code: str) -> None:
@@ -199,18 +166,54 @@ class KeySlots:
                 raise KeyRefusedError("The last operator keeps the key", "Add another operator first")
             self._write(slots)
 
-    def renew_recovery_key(self, data_key: bytes) -> str:
+    def renew_recovery_key(self, data_key: KeyMaterial) -> str:
         """Make a new recovery key and end the old one; returns its text."""
         text = new_recovery_key()
         with self._changing() as slots:
-            self._write({**slots, RECOVERY: Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)})
+            recovery = Slot.wrapping(data_key, RECOVERY, _recovery_bytes(text), self._cost)
+            self._write({**slots, RECOVERY: recovery}, is_confirmed=False)
         return text
+
+    @property
+    def is_recovery_key_confirmed(self) -> bool:
+        """Whether somebody typed the recovery key back from its sheet since it was made."""
+        return bool(self._content().get(CONFIRMED, True))
+
+    def confirm_recovery_key(self, text: str) -> None:
+        """Take the recovery key as it was typed back from its sheet.
+
+        Raises
+        ------
+        KeyRefusedError
+            It is not the one that opens this library.
+        """
+        self.open_with_recovery_key(text).wipe()
+        with self._changing() as slots:
+            self._write(slots, is_confirmed=True)
+
+    def sealed_anew(self, old: KeyMaterial, new: KeyMaterial, staying: Iterable[str]) -> SealedAnew:
+        """What the file is to hold when `new` is the data key of the operators `staying`, and of nobody else.
+
+        Their passphrases, keyrings and the recovery key go on opening the library, under the new key.
+        """
+        slots, codes = self._read(), {_normal(code) for code in staying}
+        kept = {code: slot.sealing(new) for code, slot in slots.items() if slot.is_of(old) and _person(code) in codes}
+        is_confirmed, text = self.is_recovery_key_confirmed, ""
+        if slots[RECOVERY].is_of(old):
+            kept[RECOVERY] = slots[RECOVERY].sealing(new)
+        else:
+            text, is_confirmed = new_recovery_key(), False
+            kept[RECOVERY] = Slot.wrapping(new, RECOVERY, _recovery_bytes(text), self._cost)
+        if not any(_is_operators(code) for code in kept):
+            raise KeyRefusedError("Nobody would have a key to the library any more", "Log in with the passphrase once")
+        left_out = sorted(code for code in codes if code in slots and code not in kept)
+        return SealedAnew(_file(kept, is_confirmed), text, tuple(left_out))
 
     def keyring_slot(self, code: str) -> Slot | None:
         """The slot that an operator's keyring opens; None when it was not asked to."""
         return self._read().get(KEYRING + _normal(code))
 
-    def set_keyring_slot(self, data_key: bytes, code: str, secret: bytes) -> Slot:
+    def set_keyring_slot(self, data_key: KeyMaterial, code: str, secret: bytes) -> Slot:
         """Let what an operator's keyring holds open the library, in place of what it held before.
 
         Raises
@@ -233,6 +236,27 @@ class KeySlots:
             if slots.pop(KEYRING + _normal(code), None) is not None:
                 self._write(slots)
 
+    def _opened(self, slot: Slot, secret: bytes) -> DataKey | None:
+        data_key = slot.opened(secret)
+        if data_key is not None and slot.is_first_format:
+            with suppress(KeyRefusedError, OSError), self._changing() as slots:  # else the next time
+                if slots.get(slot.code) == slot:
+                    cost = Cost(slot.passes, slot.memory_kib)
+                    self._write({**slots, slot.code: Slot.wrapping(data_key, slot.code, secret, cost)})
+        return data_key
+
+    @contextmanager
+    def held(self) -> Iterator[None]:
+        """Let nobody else change the slots.
+
+        Raises
+        ------
+        KeyRefusedError
+            Somebody else is changing them.
+        """
+        with self._changing():
+            yield
+
     @contextmanager
     def _changing(self) -> Iterator[dict[str, Slot]]:
         """The slots, held until what was done with them is written: of two changes at once neither is lost."""
@@ -249,46 +273,37 @@ class KeySlots:
 
     def _read(self) -> dict[str, Slot]:
         try:
+            slots = [whole(Slot(**slot)) for slot in self._content()["slots"]]
+        except (ValueError, KeyError, TypeError):
+            raise self._damaged() from None
+        return {slot.code: slot for slot in slots}
+
+    def _content(self) -> dict[str, Any]:
+        try:
             content = json.loads(self._path.read_bytes())
-            if content["format"] != FORMAT:
+            if content["format"] not in (FIRST_FORMAT, FORMAT):
                 raise ValueError(content["format"])
-            slots = [_whole(Slot(**slot)) for slot in content["slots"]]
         except FileNotFoundError:
             raise KeyRefusedError(
                 tr("{file} is not there").format(file=self._path.name), "Restore the library from a backup"
             ) from None
         except (ValueError, KeyError, TypeError):
-            raise KeyRefusedError(
-                tr("{file} is damaged").format(file=self._path.name), "Restore it from a backup of this library"
-            ) from None
-        return {slot.code: slot for slot in slots}
+            raise self._damaged() from None
+        made: dict[str, Any] = content
+        return made
 
-    def _write(self, slots: dict[str, Slot]) -> None:
-        content = {"format": FORMAT, "slots": [asdict(slot) for slot in slots.values()]}
-        replace_file(self._path, json.dumps(content, indent=1).encode())
+    def _damaged(self) -> KeyRefusedError:
+        what = tr("{file} is damaged").format(file=self._path.name)
+        return KeyRefusedError(what, "Restore it from a backup of this library")
+
+    def _write(self, slots: dict[str, Slot], *, is_confirmed: bool | None = None) -> None:
+        if is_confirmed is None:
+            is_confirmed = self.is_recovery_key_confirmed
+        replace_file(self._path, json.dumps(_file(slots, is_confirmed), indent=1).encode())
 
 
-class LoginDelay:
-    """After three wrong passphrases the next try has to wait, twice as long after each further one."""
-
-    def __init__(self, now_s: Callable[[], float]) -> None:
-        self._now_s = now_s
-        self._wrong: dict[str, int] = {}
-        self._free_at_s: dict[str, float] = {}
-
-    def left_s(self, code: str) -> float:
-        return max(0.0, self._free_at_s.get(_normal(code), 0.0) - self._now_s())
-
-    def count_wrong(self, code: str) -> None:
-        code = _normal(code)
-        self._wrong[code] = wrong = self._wrong.get(code, 0) + 1
-        if wrong >= FREE_TRIES:
-            delay_s = min(LONGEST_DELAY_S, FIRST_DELAY_S * 2.0 ** (wrong - FREE_TRIES))
-            self._free_at_s[code] = self._now_s() + delay_s
-
-    def forget(self, code: str) -> None:
-        self._wrong.pop(_normal(code), None)
-        self._free_at_s.pop(_normal(code), None)
+def _file(slots: dict[str, Slot], is_confirmed: bool) -> dict[str, object]:
+    return {"format": FORMAT, CONFIRMED: is_confirmed, "slots": [asdict(slot) for slot in slots.values()]}
 
 
 def new_recovery_key() -> str:
@@ -324,22 +339,12 @@ def _recovery_bytes(text: str) -> bytes:
     return number.to_bytes(RECOVERY_BYTES, "big")
 
 
-def _whole(slot: Slot) -> Slot:
-    """The slot, once it can be opened without being believed: its file may come from anywhere.
-
-    Raises
-    ------
-    ValueError, TypeError
-        It is damaged, or a guess would cost more than a machine has.
-    """
-    sizes = [len(base64.b64decode(text, validate=True)) for text in (slot.salt, slot.nonce, slot.wrapped)]
-    if sizes != SIZES or not 1 <= slot.passes <= MOST_PASSES or not 8 <= slot.memory_kib <= MOST_MEMORY_KIB:
-        raise ValueError(slot.code)
-    return slot
-
-
 def _normal(code: str) -> str:
     return code.strip().casefold()
+
+
+def _person(code: str) -> str:
+    return code.removeprefix(KEYRING)
 
 
 def _is_operators(code: str) -> bool:
@@ -354,22 +359,13 @@ def _checked_code(code: str) -> str:
     return code
 
 
-def _checked(passphrase: str) -> bytes:
-    if len(passphrase.strip()) < MIN_PASSPHRASE:
-        raise KeyRefusedError(
-            tr("A passphrase has {count} letters or more").format(count=MIN_PASSPHRASE), "Take a few words"
-        )
+def _checked(passphrase: str, known: Iterable[str]) -> bytes:
+    known = tuple(known)
+    if strength_of(passphrase or "-", MIN_PASSPHRASE, known) not in (Strength.FAIR, Strength.STRONG):
+        raise KeyRefusedError(*refusal_of_passphrase(passphrase, MIN_PASSPHRASE, known))
     return _secret(passphrase)
 
 
 def _secret(passphrase: str) -> bytes:
     # the same letters from another keyboard may come as other code points
     return unicodedata.normalize("NFKC", passphrase.strip()).encode()
-
-
-def _bytes(text: str) -> bytes:
-    return base64.b64decode(text)
-
-
-def _text(data: bytes) -> str:
-    return base64.b64encode(data).decode()

@@ -14,6 +14,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
+from app.storage.data_key import KeyMaterial
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
 
 if TYPE_CHECKING:
@@ -38,13 +39,14 @@ class Library:
     def __init__(
         self,
         database: "Database",
-        data_key: bytes | None,
+        data_key: KeyMaterial | None,
         now: Callable[[], datetime.datetime] = now_utc,
         is_end_lost: bool = False,
     ) -> None:
-        from app.storage.audit import Audit, audit_key
+        from app.storage.audit import Audit
         from app.storage.corrections import Corrections
         from app.storage.database.schema import bring_up_to_date
+        from app.storage.derived_keys import derived_keys
         from app.storage.desk import Desk
         from app.storage.operators import Operators, Settings
         from app.storage.patients import Patients
@@ -56,7 +58,10 @@ class Library:
         self.root: LibraryRoot | None = None  # of a library in a folder
         bring_up_to_date(database)
         self._database = database
-        self._desk = Desk(database, audit_key(data_key), now, is_demonstration=data_key is None)
+        with database.reading() as session:
+            keys = derived_keys(session, data_key)
+        self.pseudonyms_key = keys.pseudonyms
+        self._desk = Desk(database, keys.audit, now, is_demonstration=data_key is None)
         self.patients = Patients(self._desk)
         self.sessions = Sessions(self._desk)
         self.recordings = Recordings(self._desk)
@@ -70,7 +75,7 @@ class Library:
     def create(
         cls,
         folder: Path,
-        data_key: bytes | None,
+        data_key: KeyMaterial | None,
         operator: Operator,
         now: Callable[[], datetime.datetime] = now_utc,
     ) -> Self:
@@ -97,7 +102,7 @@ class Library:
         return library
 
     @classmethod
-    def open(cls, folder: Path, data_key: bytes | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
+    def open(cls, folder: Path, data_key: KeyMaterial | None, now: Callable[[], datetime.datetime] = now_utc) -> Self:
         """Open the library in `folder`. No `data_key`: it is a demonstration, and not encrypted.
 
         Raises
@@ -183,6 +188,7 @@ class Library:
                 details["is_end_lost"] = True
             subject = about("operator", row.code)
             append(session, self._desk.audit_key, self._desk.now(), row.code, Action.LOGIN, subject, details)
+        self._desk.note_end(session)
         self._desk.operator = operator
         return operator
 
@@ -221,6 +227,22 @@ class Library:
             raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
         self._database.guard = self.root.refuse_gone
 
+    def suspend(self) -> None:
+        """Close the file, and the key with it; the next call opens both again, for the operator who is logged in."""
+        self._database.close()
+
+    def write_journal_headers(self, recordings: Path) -> None:
+        """Finish what a change of the data key left to be done.
+
+        Raises
+        ------
+        OSError
+            A file cannot be written.
+        """
+        from app.storage.key_change import write_headers
+
+        write_headers(self._database, recordings)
+
     def close(self) -> None:
         self.log_out()
         self._database.close()
@@ -234,7 +256,7 @@ class Library:
         self.close()
 
 
-def _database(folder: Path, data_key: bytes | None, creates: bool) -> "Database":
+def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> "Database":
     from app.storage.database.engine import Database, sqlite_engine
 
     return Database(sqlite_engine(folder / FILE_NAME, data_key, creates=creates))

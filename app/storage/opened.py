@@ -5,6 +5,8 @@ library.db                         the encrypted database
 recordings/ID.SEGMENT.journal      the samples
 library-id                         which library it is, for whoever has no key
 in-use                             locked by the program that records here
+tries.json                         how many wrong passphrases were typed
+keys-next.json, library-next.db    a change of the key that is not finished
 
 All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made anew:
 recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
@@ -19,6 +21,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from app.storage.data_key import DataKey
 from app.storage.files import held, sync_folder
 from app.storage.journal.shelter import Shelter
 from app.storage.keys import KeyRefusedError, KeySlots
@@ -27,6 +30,7 @@ from app.storage.stored import LibraryError, Operator
 from app.wording import tr
 
 KEYS = "keys.json"
+NEW_KEYS, NEW_DATABASE = "keys-next.json", "library-next.db"
 RECORDINGS = "recordings"
 IN_USE = "in-use"
 
@@ -40,7 +44,7 @@ class OpenedLibrary:
 
     library: Library
     folder: Path
-    data_key: bytes | None = field(repr=False)  # whatever prints this must not print the key
+    data_key: DataKey | None = field(repr=False)  # whatever prints this must not print the key
 
     @property
     def recordings(self) -> Path:
@@ -78,6 +82,23 @@ class OpenedLibrary:
         self.library.close()
 
 
+def slots_of(folder: Path) -> KeySlots:
+    """The slots of the library in `folder`; a change of its key that was interrupted is finished or taken back.
+
+    Raises
+    ------
+    KeyRefusedError
+        The key is being changed just now.
+    OSError
+        A file cannot be written.
+    """
+    if (folder / NEW_KEYS).exists() or (folder / NEW_DATABASE).exists():
+        from app.storage.key_change import settle
+
+        settle(folder)
+    return KeySlots(folder / KEYS)
+
+
 def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary:
     """Open the library in `folder` for the operator with this code; without one, for the only operator there is.
 
@@ -88,7 +109,7 @@ def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary
     LibraryError
         There is no library, or it does not open.
     """
-    slots = KeySlots(folder / KEYS)
+    slots = slots_of(folder)
     if not slots.exists:
         raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
     if not code:
@@ -118,7 +139,7 @@ def create_library(folder: Path, operator: Operator, passphrase: str) -> tuple[O
         Something is in the folder, or it cannot be written.
     """
     with made_beside(folder) as beside:
-        data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase)
+        data_key, recovery_key = KeySlots(beside / KEYS).create(operator.code, passphrase, (operator.name,))
         Library.create(beside, data_key, operator).close()
     return open_library(folder, passphrase, operator.code), recovery_key
 

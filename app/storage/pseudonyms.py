@@ -17,9 +17,6 @@ from dataclasses import replace
 from enum import StrEnum
 from uuid import UUID
 
-from cryptography.hazmat.primitives.hashes import SHA256
-from cryptography.hazmat.primitives.kdf.hkdf import HKDF
-
 from app.storage.desk import DEMO
 from core.samples import Patient, Recording, SensorInfo, Session
 from devices.files.imports import folder_for, free_name
@@ -41,10 +38,10 @@ class Typed(StrEnum):
 
 
 class Pseudonyms:
-    """Those of one library. No `data_key`: a demonstration, whose patients nobody has to hide."""
+    """Those of one library, whose `pseudonyms_key` it is."""
 
-    def __init__(self, data_key: bytes | None) -> None:
-        self._key = HKDF(SHA256(), 32, salt=None, info=b"gaitwright pseudonyms 1").derive(data_key or b"")
+    def __init__(self, key: bytes) -> None:
+        self._key = key
 
     def code(self, patient_id: UUID, is_simulated: bool = False) -> str:
         """Like P-7Q2M4XKA; simulated ones stay known as such."""

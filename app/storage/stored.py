@@ -309,6 +309,9 @@ class Checkpoint:
         raise LibraryError("This is not a checkpoint of an audit", "Choose a file that the audit's export has written")
 
 
+BEGINNING = Checkpoint(0, "0" * 64)  # before the first entry
+
+
 @dataclass(frozen=True, slots=True)
 class AuditFault:
     """What is wrong at one number."""

@@ -9,10 +9,12 @@ be shown. Storage is imported by the thread, for its imports take longer than th
 
 import logging
 import tempfile
+import time
 from collections.abc import Callable
 from concurrent.futures import Future
-from contextlib import ExitStack
+from contextlib import ExitStack, nullcontext
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from queue import SimpleQueue
 from threading import Event, Lock
@@ -30,8 +32,12 @@ from app.workers.library_watch import LibraryWatch
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 
 if TYPE_CHECKING:
+    from app.storage.data_key import DataKey
+    from app.storage.key_change import ChangedKey
+    from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
+    from app.storage.rollback import Rollback, SeenLibraries
     from app.storage.stored import Operator
 
 _log = logging.getLogger(__name__)
@@ -57,6 +63,10 @@ class OpenedState:
         Recordings that were made while the library was gone, and are in it again.
     recovery_key
         Of a library that was just made, to be shown once; else empty.
+    rollback
+        What this computer has seen of the library and it does not hold any more.
+    is_recovery_key_confirmed
+        Whether somebody typed the recovery key back from its sheet since it was made.
     """
 
     library: "OpenedLibrary"
@@ -65,6 +75,8 @@ class OpenedState:
     is_end_lost: bool = False
     brought_home: frozenset[UUID] = frozenset()
     recovery_key: str = field(default="", repr=False)
+    rollback: "Rollback | None" = None
+    is_recovery_key_confirmed: bool = True
 
     @property
     def is_demonstration(self) -> bool:
@@ -80,10 +92,14 @@ class LibraryPlace:
     codes: tuple[str, ...]
     remembered: tuple[str, ...]
     has_keyring: bool
+    delay: "LoginDelay"
 
 
 class LibraryDesk(QObject):
-    """One library at a time; opening another closes the one before. `finish` belongs to the program's end."""
+    """One library at a time; opening another closes the one before. `finish` belongs to the program's end.
+
+    `seen`: the folder where this computer remembers how far a library had come; without it nothing is remembered.
+    """
 
     opened = Signal(object)  # OpenedState
     not_opened = Signal(str, str, bool)  # what, remedy, whether it was the key that did not open
@@ -92,9 +108,9 @@ class LibraryDesk(QObject):
     gone = Signal(str, str)  # the library's folder, while it is open: what happened, and what to do
     back = Signal(str, str)  # it is there again: and what was recorded meanwhile
 
-    def __init__(self, parent: QObject | None = None) -> None:
+    def __init__(self, parent: QObject | None = None, seen: Path | None = None) -> None:
         super().__init__(parent)
-        self._holder = _Holder()
+        self._holder = _Holder(seen)
         self._calls = _Lane(self, self._holder.do_left_over, self._holder.close)
         self._recordings = _Lane(self)
         for lane in (self._calls, self._recordings):
@@ -102,6 +118,9 @@ class LibraryDesk(QObject):
         self._state: OpenedState | None = None
         self._watch: LibraryWatch | None = None
         self.gone_words: Refusal | None = None  # for whoever comes later; None: the library is where it was opened
+        self._is_locked = self._is_to_be_locked = False
+        self._held: list[Callable[[], object]] = []  # what was asked under the lock
+        self._key_change: _Job | None = None  # that goes on
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
@@ -132,7 +151,7 @@ class LibraryDesk(QObject):
 
         Without `failed` a refusal is told by the signal `refused`.
         """
-        self._calls.ask(_Job(lambda: call(self._holder.library), _weak(done), _weak(failed), ref(owner)))
+        self._ask(self._calls, _Job(lambda: call(self._holder.library), _weak(done), _weak(failed), ref(owner)))
 
     def record(
         self,
@@ -149,8 +168,8 @@ class LibraryDesk(QObject):
             self._tell_refusal(_Job(_nothing, None, _weak(failed), ref(owner)), *nothing_open())
             return
         library, turn = self._state.library, Future[None]()
-        self._calls.ask(_Job(lambda: turn.set_result(None), None, None, ref(self)))
-        self._recordings.ask(_Job(lambda: call(library, turn), _weak(done), _weak(failed), ref(owner)))
+        self._ask(self._calls, _Job(lambda: turn.set_result(None), None, None, ref(self)))
+        self._ask(self._recordings, _Job(lambda: call(library, turn), _weak(done), _weak(failed), ref(owner)))
 
     def run_long(
         self,
@@ -165,20 +184,11 @@ class LibraryDesk(QObject):
         Nothing more is heard of what was stopped.
         """
         job = _Job(_nothing, _weak(done), _weak(failed), ref(owner))
-        if self._state is None:
-            self._tell_refusal(job, *nothing_open())
-            return
-        if self._long.is_busy:  # what was stopped is waited for by the next
-            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
-            return
-        self._long_job, self._long_progressed = job, _weak(progressed)
-        library, lock = self._state.library, self._holder.long_work
-
-        def locked(report: Report) -> T:
-            with lock:  # the library is not closed under it
-                return work(library, report)
-
-        self._long.start(locked)
+        begin = partial(self._begin_long, work, job, _weak(progressed))
+        if self._is_locked:
+            self._held.append(begin)
+        else:
+            begin()
 
     def stop_long(self, ended: Callable[[bool], object] | None = None) -> None:
         """End what takes long; `ended` is told, once it has ended, whether it was done before it could be stopped."""
@@ -187,17 +197,96 @@ class LibraryDesk(QObject):
         self._long.stop()
         self._long_job = None
 
+    def lock(self) -> None:
+        """Take the data key out of memory until `unlock`; what is asked meanwhile is done after it.
+
+        A recording goes on: its journal has a key of its own. Long work is waited for.
+        """
+        if self._state is None or self._state.is_demonstration:
+            return
+        self._is_to_be_locked = self._is_locked = True
+        if not self._long.is_busy:
+            self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
+            self._calls.ask(_Job(self._holder.lock, None, None, ref(self)))
+
+    def unlock(
+        self,
+        code: str,
+        passphrase: str,
+        delay: "LoginDelay | None",
+        done: Callable[[None], object],
+        failed: Failed,
+        owner: QObject,
+    ) -> None:
+        """Bring the data key back with the operator's passphrase; `delay` counts the wrong ones."""
+        job = _Job(lambda: self._holder.unlock(code, passphrase, delay), _weak(done), _weak(failed), ref(owner))
+        self._calls.ask(job)
+
+    def change_key(
+        self,
+        leaving: str,
+        done: Callable[["ChangedKey"], object],
+        failed: Failed,
+        progressed: Callable[[float, str], object],
+        owner: QObject,
+    ) -> None:
+        """Give the library a new data key, without the operator `leaving` if one is named; nothing else meanwhile.
+
+        Nor is the folder watched: its database is replaced, and nothing must come home that has the old key.
+        """
+        job = _Job(lambda: self._holder.change_key(leaving, report), _weak(done), _weak(failed), ref(owner))
+        if self._state is None:
+            self._tell_refusal(job, *nothing_open())
+            return
+        if self._long.is_busy:
+            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
+            return
+        if self.gone_words is not None:
+            self._tell_refusal(job, *self.gone_words)
+            return
+        heard = _weak(progressed)
+
+        def report(share: float, _what: str) -> None:
+            self._calls.told.emit(job, _Progress(share, heard))
+
+        self._end_watch()
+        self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
+        self._state, self._key_change = None, job
+        self._calls.ask(job)
+
+    def accept_rollback(
+        self, rollback: "Rollback", done: Callable[[None], object], failed: Failed, owner: QObject
+    ) -> None:
+        """Go on from the library's older state; an administrator's decision, which its audit keeps."""
+
+        def accept(opened: "OpenedLibrary") -> None:
+            if self._holder.seen is not None:
+                self._holder.seen.accept(opened.library, rollback)
+
+        self.run(accept, done, failed, owner)
+
     def look(self, folder: Path, done: Callable[[LibraryPlace], object], failed: Failed, owner: QObject) -> None:
         """Find out who may open the library in `folder`."""
         self._calls.ask(_Job(lambda: _look(folder), _weak(done), _weak(failed), ref(owner)))
 
-    def open(self, folder: Path, passphrase: str, code: str = "", must_remember: bool = False) -> None:
-        """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too."""
+    def open(
+        self,
+        folder: Path,
+        passphrase: str,
+        code: str = "",
+        must_remember: bool = False,
+        delay: "LoginDelay | None" = None,
+    ) -> None:
+        """Open a library with an operator's passphrase; `must_remember`: from now on the keyring may do so, too.
+
+        `delay` counts the wrong ones.
+        """
 
         def opening() -> "Opening":
             from app.storage.opened import open_library
 
-            library = open_library(folder, passphrase, code)
+            with delay.trying(code) if delay is not None else nullcontext():
+                library = open_library(folder, passphrase, code)
             if must_remember:
                 let_keyring_remember(library)
             return library, ""
@@ -224,6 +313,7 @@ class LibraryDesk(QObject):
         def opening() -> "Opening":
             slots = slots_of(folder)
             data_key = slots.open_with_recovery_key(recovery_key)
+            slots.confirm_recovery_key(recovery_key)  # it was typed from its sheet
             slots.set_passphrase(data_key, code, passphrase)
             return logged_in(folder, data_key, code), ""
 
@@ -252,6 +342,7 @@ class LibraryDesk(QObject):
 
     def finish(self) -> None:
         """Close, and wait for all threads: for the end of the program."""
+        self._ask_held()  # a recording is ended under a lock too; its row follows at the next start
         self._end_library()
         self._long.finish()
         self._calls.finish()
@@ -261,13 +352,51 @@ class LibraryDesk(QObject):
         self._end_library()
         self._calls.ask(_Job(lambda: self._holder.open(opening), None, None, ref(self)))
 
+    def _begin_long(
+        self,
+        work: Callable[["OpenedLibrary", Report], object],
+        job: "_Job",
+        progressed: "WeakMethod[Callable[[float, str], object]] | None",
+    ) -> None:
+        if self._state is None:
+            self._tell_refusal(job, *nothing_open())
+            return
+        if self._long.is_busy:  # what was stopped is waited for by the next
+            self._tell_refusal(job, tr("Something else is still being done."), tr("Wait for it, or stop it."))
+            return
+        self._long_job, self._long_progressed = job, progressed
+        library, lock = self._state.library, self._holder.long_work
+
+        def locked(report: Report) -> object:
+            with lock:  # the library is not closed under it
+                return work(library, report)
+
+        self._long.start(locked)
+
+    def _ask(self, lane: "_Lane", job: "_Job") -> None:
+        if self._is_locked:
+            self._held.append(partial(lane.ask, job))
+        else:
+            lane.ask(job)
+
+    def _ask_held(self) -> None:
+        self._is_to_be_locked = self._is_locked = False
+        held, self._held = self._held, []
+        for ask in held:
+            ask()
+
+    def _lock_now(self) -> None:
+        if self._is_to_be_locked:
+            self.lock()
+
     def _end_library(self) -> None:
         """What is asked next closes the library: not before the last recording has ended."""
+        self._ask_held()
         self.stop_long()
         self._end_watch()
         if self._state is not None:
             self._calls.ask(_Job(self._recordings.passed().wait, None, None, ref(self)))
-        self._state = None
+        self._state = self._key_change = None
 
     def _on_told(self, job: "_Job", outcome: object) -> None:
         if isinstance(outcome, Refusal):
@@ -276,6 +405,15 @@ class LibraryDesk(QObject):
             self._state = outcome
             self._begin_watch(outcome)
             self.opened.emit(outcome)
+        elif isinstance(outcome, _Progress):
+            if progressed := job.listening(outcome.heard):
+                progressed(outcome.share, "")
+        elif isinstance(outcome, _Unlocked):
+            self._ask_held()
+            if done := job.listening(job.done):
+                done(None)
+        elif isinstance(outcome, _KeyChanged):
+            self._on_key_changed(job, outcome)
         elif isinstance(outcome, _NotOpened):
             self.not_opened.emit(outcome.what, outcome.remedy, outcome.is_key)
         elif isinstance(outcome, _Closed):
@@ -324,6 +462,19 @@ class LibraryDesk(QObject):
         then = tr("It is kept in {shelter}, and is tried again by itself. See to the library's disk.")
         self.refused.emit(what.format(why=why), then.format(shelter=shelter.folder))
 
+    def _on_key_changed(self, job: "_Job", outcome: "_KeyChanged") -> None:
+        if job is not self._key_change:
+            return  # the library was closed meanwhile
+        self._state, self._key_change = outcome.state, None
+        if outcome.state is None:  # it does not open again: from the log in, what was interrupted is finished
+            self.not_opened.emit(*outcome.refusal, False)
+            return
+        self._begin_watch(outcome.state)
+        if outcome.changed is None:
+            self._tell_refusal(job, *outcome.refusal)
+        elif done := job.listening(job.done):
+            done(outcome.changed)
+
     def _tell_refusal(self, job: "_Job", what: str, remedy: str) -> None:
         if job.failed is None:
             self.refused.emit(what, remedy)
@@ -337,6 +488,7 @@ class LibraryDesk(QObject):
 
     def _on_long_done(self, result: object) -> None:
         job, self._long_job = self._long_job, None
+        self._lock_now()
         if job is not None and (done := job.listening(job.done)):
             done(result)
 
@@ -347,6 +499,7 @@ class LibraryDesk(QObject):
 
     def _on_long_failed(self, error: Exception) -> None:
         job, self._long_job = self._long_job, None
+        self._lock_now()
         if job is not None:
             refusal = refusal_of(error)
             self._tell_refusal(job, refusal.what, refusal.remedy)
@@ -360,6 +513,23 @@ class _NotOpened(NamedTuple):
 
 class _Closed(NamedTuple):
     pass
+
+
+class _Unlocked(NamedTuple):
+    pass
+
+
+class _Progress(NamedTuple):
+    share: float
+    heard: "WeakMethod[Callable[[float, str], object]] | None"
+
+
+class _KeyChanged(NamedTuple):
+    """What came of a change of the key; `changed` None: nothing but `refusal`. `state` None: nothing is open now."""
+
+    state: OpenedState | None
+    changed: "ChangedKey | None"
+    refusal: Refusal
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -429,8 +599,9 @@ class _Lane(QThread):
 class _Holder:
     """What the thread of the calls alone touches: the library, and all that ends with it."""
 
-    def __init__(self) -> None:
-        self.long_work = Lock()
+    def __init__(self, seen: Path | None) -> None:
+        self.long_work, self._seen_folder = Lock(), seen
+        self.seen: SeenLibraries | None = None
         self._library: OpenedLibrary | None = None
         self._ends = ExitStack()
         self._is_to_be_tidied = False
@@ -449,12 +620,70 @@ class _Holder:
             with ExitStack() as ends:
                 library, recovery_key = opening()
                 ends.enter_context(library)
-                state = _look_through(library, ends)
+                state = replace(_look_through(library, ends), rollback=self._look_back(library))
                 self._library, self._ends = library, ends.pop_all()
         except Exception as error:  # told where the library was to be opened
             return _NotOpened(*refusal_of(error), isinstance(error, KeyRefusedError))
         self._is_to_be_tidied = True
         return replace(state, recovery_key=recovery_key)
+
+    def lock(self) -> None:
+        library = self._library
+        if library is None or library.data_key is None or not self.long_work.acquire(blocking=False):
+            return
+        try:
+            library.library.suspend()
+            library.data_key.wipe()
+        finally:
+            self.long_work.release()
+
+    def unlock(self, code: str, passphrase: str, delay: "LoginDelay | None") -> _Unlocked:
+        library = self.library
+        library.refuse_gone()  # else the slots only miss their file, which would count as a wrong passphrase
+        with delay.trying(code) if delay is not None else nullcontext():
+            data_key = slots_of(library.folder).open(code, passphrase)
+        if library.data_key is not None:
+            library.data_key.refill(data_key)
+        return _Unlocked()
+
+    def change_key(self, leaving: str, report: Report) -> _KeyChanged:
+        from app.storage.key_change import change_data_key, refuse_change
+
+        library, changed, refusal = self.library, None, nothing_open()
+        operator = library.library.operator
+        assert operator is not None  # whoever opens a library is logged in
+        key = library.data_key
+        with self.long_work:
+            try:
+                refuse_change(library)  # before anybody is said to work here no longer
+            except Exception as error:  # told where the key was to be changed
+                return _KeyChanged(OpenedState(library, operator), None, refusal_of(error))
+            try:
+                changed = change_data_key(library, _staying(library, leaving), report)
+                key = changed.data_key
+            except Exception as error:
+                refusal = refusal_of(error)
+            try:
+                assert key is not None  # hidden in the demonstration
+                again = self._open_again(library, key, operator.code)
+            except Exception as error:  # what was interrupted is finished when somebody logs in
+                return _KeyChanged(None, None, refusal if changed is None else refusal_of(error))
+        return _KeyChanged(OpenedState(again, operator), changed, refusal)
+
+    def _open_again(self, before: "OpenedLibrary", key: "DataKey", code: str) -> "OpenedLibrary":
+        """The library under `key`; the one before is closed, and its key wiped where it is another."""
+        from app.storage.opened import held_alone
+
+        self._library = None
+        self._ends.close()
+        with ExitStack() as ends:
+            library = ends.enter_context(logged_in(before.folder, key, code))
+            # held anew: where the disk was mounted anew meanwhile, the watch held it, which has ended
+            ends.enter_context(held_alone(library.folder))
+            self._library, self._ends = library, ends.pop_all()
+        if before.data_key is not None and before.data_key is not key:
+            before.data_key.wipe()
+        return library
 
     def open_demonstration(self) -> OpenedState | _NotOpened:
         self.close()
@@ -474,9 +703,19 @@ class _Holder:
             self._ends.close()
         return _Closed()
 
+    def _look_back(self, library: "OpenedLibrary") -> "Rollback | None":
+        if self._seen_folder is None:
+            return None
+        from app.storage.rollback import SeenLibraries
+
+        self.seen = SeenLibraries(self._seen_folder)
+        return self.seen.look(library.library)
+
     def do_left_over(self) -> None:
         """What can wait until the library is on the screen: destroy what is overdue, remove old backups."""
         library = self._library
+        if library is not None and library.data_key and self.seen is not None:
+            self.seen.remember(library.library)
         if library is None or not self._is_to_be_tidied:
             return
         self._is_to_be_tidied = False
@@ -513,17 +752,36 @@ def _look_through(library: "OpenedLibrary", ends: ExitStack) -> OpenedState:
         brought = bring_home(library)
     except OSError as error:  # the watch tries again, and says so
         _log.warning("what is in the shelter cannot be brought home", exc_info=error)
-    found = find_interrupted(library)
-    return OpenedState(library, operator, found, library.library.is_end_lost, brought)
+    return OpenedState(
+        library,
+        operator,
+        find_interrupted(library),
+        library.library.is_end_lost,
+        brought,
+        is_recovery_key_confirmed=library.data_key is None or slots_of(library.folder).is_recovery_key_confirmed,
+    )
+
+
+def _staying(library: "OpenedLibrary", leaving: str) -> list[str]:
+    """Who keeps a key, once the operator `leaving` works here no longer."""
+    operators = library.library.operators
+    for operator in operators.list():
+        if operator.code == leaving and operator.is_active:
+            operators.change(replace(operator, is_active=False))
+    return [operator.code for operator in operators.list() if operator.is_active]
 
 
 def _look(folder: Path) -> LibraryPlace:
     from app.storage.keyring_slot import is_there_a_keyring
+    from app.storage.login_delay import LoginDelay
 
     slots = slots_of(folder)
     codes = slots.codes if slots.exists else ()
     remembered = tuple(code for code in codes if slots.keyring_slot(code) is not None)
-    return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring())
+    delay = LoginDelay(folder, time.monotonic)
+    if slots.exists:
+        delay.read()
+    return LibraryPlace(folder, slots.exists, codes, remembered, is_there_a_keyring(), delay)
 
 
 def _weak(method: Callable[P, T] | None) -> "WeakMethod[Callable[P, T]] | None":

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from app.storage.data_key import DataKey
     from app.storage.keys import KeySlots
     from app.storage.opened import OpenedLibrary
 
@@ -17,13 +18,12 @@ _log = logging.getLogger(__name__)
 
 
 def slots_of(folder: Path) -> "KeySlots":
-    from app.storage.keys import KeySlots
-    from app.storage.opened import KEYS
+    from app.storage import opened
 
-    return KeySlots(folder / KEYS)
+    return opened.slots_of(folder)
 
 
-def logged_in(folder: Path, data_key: bytes, code: str) -> "OpenedLibrary":
+def logged_in(folder: Path, data_key: "DataKey", code: str) -> "OpenedLibrary":
     from app.storage.library import Library
     from app.storage.opened import OpenedLibrary
 
@@ -80,6 +80,7 @@ def tidy(library: "OpenedLibrary") -> None:
     operator = library.library.operator
     if operator is None or operator.role is Role.VIEWER:
         return
+    library.library.write_journal_headers(library.recordings)
     destroyed = destroy_overdue(library)
     folder = library.library.settings.get(BACKUP_FOLDER, "")
     removed = remove_old_backups(Path(folder)) if folder and Path(folder).is_dir() else ()

@@ -3,7 +3,9 @@
 import shutil
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -23,8 +25,10 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
+from app.storage.login_delay import LoginDelay
+from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import DARK, LIGHT, Look, load_fonts
 from app.wording import use_language
@@ -41,7 +45,9 @@ ANY_ROOM = Room(start_bytes=0, kept_bytes=0)
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library of `hk`, with a patient."""
     folder = tmp_path_factory.mktemp("window")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    data_key, recovery_key = slots.create("hk", PASSPHRASE)
+    slots.confirm_recovery_key(recovery_key)
     with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
         library.patients.create(Patient(code=SECRET_CODE, birth_year=1968))
     return folder
@@ -160,7 +166,58 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
     QTest.keyClick(page.typed.line_edit, Qt.Key.Key_Return)
     assert window.screens.currentWidget() is window.home
     assert key not in " ".join(label.text() for label in page.findChildren(QLabel))
-    assert KeySlots(tmp_path / "new" / KEYS).open_with_recovery_key(key)
+    slots = KeySlots(tmp_path / "new" / KEYS)
+    assert slots.open_with_recovery_key(key)
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
+
+
+def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    key = slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
+    for put_off in (True, False):
+        window = open_window(folder)
+        assert window.entry is not None
+        page, log_in = window.entry.first_start, window.entry.log_in
+        qtbot.waitUntil(lambda log_in=log_in: log_in.operator.count() == 1, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        log_in.passphrase.set_text(PASSPHRASE)
+        QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+        qtbot.waitUntil(page.later.isVisible, timeout=WAIT_MS)
+        assert "nobody has typed it back" in words_in_sight(window)
+        assert key not in words_in_sight(window)
+        if put_off:
+            page.later.click()
+            assert window.screens.currentWidget() is window.home
+            window.desk.close()
+            window.close()
+            continue
+        page.typed.set_text(key[:-1] + "?")
+        page.go.click()
+        qtbot.waitUntil(lambda page=page: page.typed.is_wrong, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+        page.typed.set_text(key)
+        page.go.click()
+        qtbot.waitUntil(lambda window=window: window.screens.currentWidget() is window.home, timeout=WAIT_MS)  # type: ignore[misc]  # pytest-qt's types
+    assert slots.is_recovery_key_confirmed
+
+
+def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.renew_recovery_key(slots.open("hk", PASSPHRASE))
+    window = open_window(folder)
+    assert window.entry is not None
+    page, log_in = window.entry.first_start, window.entry.log_in
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    log_in.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
+    page.renew.click()
+    qtbot.waitUntil(lambda: bool(page._key), timeout=WAIT_MS)
+    assert page.print.isVisible()
+    page.typed.set_text(page._key)
+    page.go.click()
+    assert window.screens.currentWidget() is window.home
+    qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
 
 
 def test_the_passphrase_opens_home_and_nothing_of_it_is_kept(qtbot: QtBot, open_window: Open, folder: Path) -> None:
@@ -239,6 +296,21 @@ def test_after_three_wrong_passphrases_the_next_try_waits_and_says_so(
     assert page.go.text() == "Next try in 2 s"
     assert not page.go.isEnabled()
     qtbot.waitUntil(page.go.isEnabled, timeout=WAIT_MS)
+
+
+def test_the_wait_after_wrong_passphrases_outlives_the_program(qtbot: QtBot, open_window: Open, folder: Path) -> None:
+    delay = LoginDelay(folder, time.monotonic)
+    for _ in range(6):
+        with suppress(KeyRefusedError), delay.trying("hk"):
+            raise KeyRefusedError("This passphrase does not open the library", "Type it again")
+    window = open_window(folder)
+    assert window.entry is not None
+    page = window.entry.log_in
+    qtbot.waitUntil(lambda: page.passphrase.is_wrong, timeout=WAIT_MS)
+    assert page.go.text() == "Next try in 16 s"
+    assert not page.go.isEnabled()
+    page.use_recovery.click()
+    assert page.go.isEnabled()
 
 
 def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_window: Open, folder: Path) -> None:
@@ -533,3 +605,40 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     home.banner._dismiss.click()
     assert home.banner.isHidden()
     assert [one.told.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
+
+
+def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
+    qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its file comes home without the key; what it holds nobody can read until the key is there."""
+    monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    home, state, entry = window.home, window.desk.state, window.entry
+    assert home is not None
+    assert state is not None
+    assert entry is not None
+    library = state.library.library
+    session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
+    elsewhere, data_key, page = folder.with_name("renamed"), bytes(state.library.data_key or b""), entry.log_in
+    window._lock()
+    qtbot.waitUntil(lambda: not state.library.data_key, timeout=WAIT_MS)
+    for name in ("walk 1", "walk 2"):  # a disk that comes and goes
+        with qtbot.waitSignal(window.desk.gone, timeout=WAIT_MS):
+            folder.rename(elsewhere)
+        told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
+        with JournalWriter.create(
+            state.library.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=state.library.shelter
+        ) as writer:
+            writer.mark(Belonging(session_id, told).text())
+        with qtbot.waitSignal(window.desk.back, timeout=WAIT_MS):
+            elsewhere.rename(folder)
+        assert page.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+    assert len(list(state.library.recordings.glob("*.journal"))) == 2
+    assert not state.library.data_key
+    with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
+        page.passphrase.set_text(PASSPHRASE)
+        QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
+    assert not window.is_covered
+    assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
+    assert sorted(one.told.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]

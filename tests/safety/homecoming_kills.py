@@ -17,6 +17,7 @@ from pathlib import Path
 
 from app.storage import root as root_module
 from app.storage.bringing_home import bring_home
+from app.storage.data_key import DataKey
 from app.storage.database.ids import uuid7
 from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
@@ -44,7 +45,7 @@ def bring_home_killed(folder: Path, count: int, seed: int) -> Homecomings:
     rng, found = random.Random(seed), Homecomings()
     library = Library.create(folder / "library", KEY, Operator("hk", "", Role.ADMINISTRATOR))
     library.close()
-    opened = OpenedLibrary(library, folder / "library", KEY)  # bringing home asks the folder only
+    opened = OpenedLibrary(library, folder / "library", DataKey(KEY))  # bringing home asks the folder only
     while found.kills < count:
         _come_home(opened, rng, found)
     return found

@@ -28,8 +28,8 @@ from datetime import datetime
 from pathlib import Path
 from typing import Any
 
-from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.opened import KEYS
+from app.storage.keys import KeyRefusedError
+from app.storage.opened import KEYS, slots_of
 from devices.files.session_folder import write_session
 from devices.walker import DEMONSTRATION, simulate
 from tests.safety.random_visits import OPERATOR, PASSPHRASE
@@ -118,7 +118,7 @@ def _left(library: Path, closed_since: str | None) -> list[str]:
     if not (library / KEYS).exists():
         return []
     try:
-        held = HeldLibrary(library, KeySlots(library / KEYS).open(OPERATOR, PASSPHRASE))
+        held = HeldLibrary(library, slots_of(library).open(OPERATOR, PASSPHRASE))
     except KeyRefusedError:
         return []  # the user has changed the passphrase
     faults = [str(row[0]) for row in held.ask("PRAGMA integrity_check") if row[0] != "ok"]

@@ -37,7 +37,7 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.opened import KEYS
+from app.storage.opened import KEYS, OpenedLibrary
 from app.theme import Look, load_fonts
 from app.wizard import sources
 from app.wizard.worn_sensors import SourceChoice
@@ -80,7 +80,7 @@ class RandomLife(QObject):
         self._stale, self._stale_since_s = 0, 0.0
         self._to_try: list[QWidget] | None = None
         self._shut_since_s: float | None = None
-        self._key: tuple[Path, bytes | None] | None = None
+        self._held_now: tuple[OpenedLibrary, HeldLibrary] | None = None
         user.did = self.count
 
     def count(self, what: str) -> None:
@@ -189,15 +189,15 @@ class RandomLife(QObject):
         if state is None:
             return None
         folder = state.library.folder
-        if self._key is None or self._key[0] != folder:
+        if self._held_now is None or self._held_now[0] is not state.library:  # opened again: it may have another key
             data_key = None
             if not state.is_demonstration:
                 try:
                     data_key = KeySlots(folder / KEYS).open(OPERATOR, PASSPHRASE)
                 except KeyRefusedError:
                     return None  # the user has changed the passphrase
-            self._key = (folder, data_key)
-        return HeldLibrary(*self._key)
+            self._held_now = state.library, HeldLibrary(folder, data_key)
+        return self._held_now[1]
 
     # whether there is a way on
 

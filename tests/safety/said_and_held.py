@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import sqlcipher3.dbapi2 as sqlite
 
+from app.storage.data_key import KeyMaterial
+
 if TYPE_CHECKING:
     from app.home.home import Home
     from app.main_window import MainWindow
@@ -50,7 +52,7 @@ LEAST_JOURNAL = 4096  # bytes; three seconds of six sensors are a hundred times 
 class HeldLibrary:
     """A library's folder, read beside whoever has it open. `data_key` None: the demonstration's."""
 
-    def __init__(self, folder: Path, data_key: bytes | None) -> None:
+    def __init__(self, folder: Path, data_key: KeyMaterial | None) -> None:
         self.folder, self._data_key = folder, data_key
 
     def ask(self, statement: str, *values: object) -> list[tuple[Any, ...]]:

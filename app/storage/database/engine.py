@@ -13,6 +13,7 @@ from sqlalchemy.exc import TimeoutError as PoolTimeoutError
 from sqlalchemy.orm import Session as OrmSession
 from sqlalchemy.orm.exc import StaleDataError
 
+from app.storage.data_key import KeyMaterial, checked
 from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError, LibraryFaultError
 from app.wording import tr
 
@@ -21,6 +22,7 @@ BUSY_S = 30.0  # a scanner or backup may hold the file for so long; a clinician 
 TRY_S = 5.0  # how long one attempt waits
 WAL_AGAIN_S = 0.02
 PG_WRITE_LOCK = 0x6761_6974  # any number, the same at all stations
+HEX = b"0123456789abcdef"
 PG_LOCKED = "55P03"  # lock_not_available
 AS_WRITER = {"takes_write_lock": True}
 AS_BUILDER = {"takes_write_lock": True, "leaves_references": True}
@@ -126,7 +128,7 @@ class Database:
         self.engine.dispose()
 
 
-def sqlite_engine(path: Path, data_key: bytes | None, try_s: float = TRY_S, *, creates: bool = True) -> Engine:
+def sqlite_engine(path: Path, data_key: KeyMaterial | None, try_s: float = TRY_S, *, creates: bool = True) -> Engine:
     """An engine on `path`, readable by its owner only. No `data_key`: not encrypted.
 
     Not `creates`: where the file is missing nothing is made in its place.
@@ -195,15 +197,26 @@ def refuse_old_sqlite(version: tuple[int, ...]) -> None:
         )
 
 
-def _prepare(connection: sqlite.Connection, data_key: bytes | None) -> None:
+def _prepare(connection: sqlite.Connection, data_key: KeyMaterial | None) -> None:
     connection.execute("PRAGMA cipher_log_level = NONE")  # it would write to the terminal
     if data_key is not None:
-        connection.execute(f"PRAGMA key = \"x'{data_key.hex()}'\"")
+        _unlock(connection, data_key)
     connection.create_function("lower", 1, _lower, deterministic=True)
     connection.execute("PRAGMA temp_store = MEMORY")
     connection.execute("PRAGMA secure_delete = ON")
     _go_over_to_wal(connection)
     connection.execute("PRAGMA synchronous = FULL")
+
+
+def _unlock(connection: sqlite.Connection, data_key: KeyMaterial) -> None:
+    """Give SQLCipher the key itself, as x'HEX', in memory that is overwritten: a statement would stay as text."""
+    given = bytearray(b"x'" + bytes(2 * len(data_key)) + b"'")
+    for k, byte in enumerate(checked(data_key)):
+        given[2 + 2 * k], given[3 + 2 * k] = HEX[byte >> 4], HEX[byte & 15]
+    try:
+        connection.set_key(given)
+    finally:
+        given[:] = bytes(len(given))
 
 
 def _go_over_to_wal(connection: sqlite.Connection) -> None:

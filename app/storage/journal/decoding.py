@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from app.storage.data_key import KeyMaterial
 from app.storage.journal.header import JournalHeader
 from app.storage.journal.payloads import FLOAT, ROWS, STREAM, Rows, SampleLayout, SourceEntry, block_of
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
@@ -69,7 +70,7 @@ class DecodedJournal:
 
 def decode(
     segments: Sequence[Path],
-    data_key: bytes | None,
+    data_key: KeyMaterial | None,
     decoders: Decoders,
     wrapped_keys: Sequence[bytes | None] | None = None,
 ) -> DecodedJournal:

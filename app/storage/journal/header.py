@@ -20,6 +20,7 @@ from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 from cryptography.hazmat.primitives.hashes import SHA256
 from cryptography.hazmat.primitives.kdf.hkdf import HKDF
 
+from app.storage.data_key import KeyMaterial, checked
 from app.storage.files import sync_folder
 from app.wording import later, tr
 
@@ -108,14 +109,19 @@ class JournalHeader:
             raise JournalRefusedError(where, "the beginning of this recording is damaged", RESTORE)
         return header
 
-    def with_new_key(self, data_key: bytes) -> tuple["JournalHeader", bytes]:
+    def with_new_key(self, data_key: KeyMaterial) -> tuple["JournalHeader", bytes]:
         """Draw this journal's own key; returns the header that holds it wrapped, and the key."""
-        key, nonce = secrets.token_bytes(KEY_BYTES), secrets.token_bytes(NONCE_BYTES)
+        key = secrets.token_bytes(KEY_BYTES)
+        return self.with_key(key, data_key), key
+
+    def with_key(self, key: bytes, data_key: KeyMaterial) -> "JournalHeader":
+        """The same header with this journal's key wrapped by `data_key`."""
+        nonce = secrets.token_bytes(NONCE_BYTES)
         sealed = replace(self, wrapped_key=NO_KEY)  # being sealed is part of what the wrapping is bound to
         wrapped = nonce + AESGCM(_wrapping_key(data_key)).encrypt(nonce, key, sealed.identity)
-        return replace(self, wrapped_key=wrapped), key
+        return replace(self, wrapped_key=wrapped)
 
-    def key(self, data_key: bytes | None, where: str) -> bytes | None:
+    def key(self, data_key: KeyMaterial | None, where: str) -> bytes | None:
         """This journal's own key; None where it has none.
 
         Raises
@@ -141,9 +147,9 @@ class JournalHeader:
             ) from None
 
 
-def _wrapping_key(data_key: bytes) -> bytes:
+def _wrapping_key(data_key: KeyMaterial) -> bytes:
     # the data key also opens the database: no key serves two ciphers
-    return HKDF(SHA256(), KEY_BYTES, salt=None, info=b"gaitwright journal keys 1").derive(data_key)
+    return HKDF(SHA256(), KEY_BYTES, salt=None, info=b"gaitwright journal keys 1").derive(checked(data_key))
 
 
 def read_header(path: Path, wrapped_key: bytes | None = None) -> JournalHeader:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from app.storage.data_key import KeyMaterial
 from app.storage.journal.header import HEADER_BYTES, JournalHeader
 from app.storage.journal.payloads import Footer
 from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, OVERHEAD_BYTES, RECORD_MAGIC, Kind, Record, Seal
@@ -70,7 +71,7 @@ class JournalReader:
         The file cannot be read.
     """
 
-    def __init__(self, path: Path, data_key: bytes | None = None, wrapped_key: bytes | None = None) -> None:
+    def __init__(self, path: Path, data_key: KeyMaterial | None = None, wrapped_key: bytes | None = None) -> None:
         with path.open("rb") as file:
             self.header = JournalHeader.parsed(file.read(HEADER_BYTES), path.name, wrapped_key)
         self._path = path

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Self
 
+from app.storage.data_key import KeyMaterial
 from app.storage.journal.disk import JournalFile
 from app.storage.journal.header import JournalHeader, segment_path
 
@@ -40,7 +41,7 @@ class DrawnSegment:
     key: bytes | None
 
     @classmethod
-    def of(cls, folder: Path, header: JournalHeader, data_key: bytes | None) -> Self:
+    def of(cls, folder: Path, header: JournalHeader, data_key: KeyMaterial | None) -> Self:
         path, key = segment_path(folder, header.recording_id, header.segment), None
         if data_key is not None:
             header, key = header.with_new_key(data_key)

@@ -22,6 +22,7 @@ from types import TracebackType
 from typing import Self
 from uuid import UUID
 
+from app.storage.data_key import KeyMaterial
 from app.storage.journal.disk import FULL_RATE_BYTES_S, ROOM, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalHeader, find_segments
 from app.storage.journal.inlet import Inlet, Waiting
@@ -141,7 +142,7 @@ class JournalWriter:
         cls,
         folder: Path,
         recording_id: UUID,
-        data_key: bytes | None,
+        data_key: KeyMaterial | None,
         *,
         bytes_per_s: float = FULL_RATE_BYTES_S,
         room: Room = ROOM,

@@ -15,10 +15,11 @@ from app.acquisition.recorder import Recorder
 from app.storage.exchange import session_with_samples
 from app.storage.journal.disk import JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import FILE_NAME, Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.recovery import find_interrupted
+from app.storage.slots import Cost
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedSensor, RecordingState, Role
 from core.analysis import analyse
 from core.body import Joint, Site

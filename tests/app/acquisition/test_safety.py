@@ -17,6 +17,7 @@ import pytest
 from app.acquisition.acquisition import Acquisition
 from app.acquisition.recorder import ROW_WAIT_S, Recorder
 from app.review.viewer import Viewer
+from app.storage.data_key import DataKey
 from app.storage.journal.disk import JournalFile, Room
 from app.storage.journal.writer import JournalSummary
 from app.storage.library import FILE_NAME, Library
@@ -185,7 +186,7 @@ def test_a_viewer_that_is_killed_loses_nothing(
 def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
     folder = tmp_path / "library"
     library = Library.create(folder, KEY, Operator("hk", "H. Keller", Role.ADMINISTRATOR))
-    with OpenedLibrary(library, folder, KEY) as opened:
+    with OpenedLibrary(library, folder, DataKey(KEY)) as opened:
         yield opened
 
 

@@ -14,9 +14,10 @@ from app.exports.exports import Format, export_from_folder, export_from_library
 from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from core.analysis import analyse
 from core.body import Side

@@ -20,10 +20,11 @@ from app.exports.exports import (
 from app.storage.audit import about
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
+from app.storage.slots import Cost
 from app.storage.stored import Action, LibraryError, Operator, Role
 from core.results import Analysis
 from core.samples import Session

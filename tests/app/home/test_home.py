@@ -25,11 +25,13 @@ from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
 from app.storage.recovery import adopt_home, find_interrupted, recover
-from app.storage.stored import Operator, PlacedSensor, Role, StoredJournal, StoredPatient
+from app.storage.rollback import Rollback
+from app.storage.slots import Cost
+from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
 from app.widgets.button import Button
 from app.workers.library_desk import LibraryDesk, OpenedState
@@ -487,6 +489,69 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     page.backup_wished.emit()
     qtbot.waitUntil(lambda: "checked" in page._backup_said.text(), timeout=WAIT_MS)
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
+
+
+@pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
+def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_it(
+    qtbot: QtBot, home: Home, desk: LibraryDesk, first: int, role: Role
+) -> None:
+    state = desk.state
+    assert state is not None
+    home.show_library(state)
+    assert not home.rollback_banner.isVisible()
+    home.show_library(replace(state, operator=replace(state.operator, role=role), rollback=Rollback(first, 9)))
+    said = home.rollback_banner.text
+    assert said.startswith("This library is older than when this computer saw it last. What was done from entry 5 to 9")
+    button = home.rollback_banner.findChildren(Button)[0]
+    assert button.isVisible() is (role is Role.ADMINISTRATOR)
+    assert ("Tell an administrator" in said) is (role is Role.CLINICIAN)
+    if role is Role.ADMINISTRATOR:
+        button.click()
+        qtbot.waitUntil(lambda: not home.rollback_banner.isVisible(), timeout=WAIT_MS)
+
+
+def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(
+    qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path
+) -> None:
+    home.show_settings()
+    page = home.settings.page
+
+    def add(passphrase: str) -> None:
+        page.code.set_text("ab")
+        page.name.set_text("A. Bauer")
+        page.first.set_text(passphrase)
+        page._on_add()
+
+    def row() -> tuple[Button, str]:
+        found = page._rows.itemAt(0)
+        widget = found.widget() if found is not None else None
+        assert widget is not None
+        button = widget.findChild(Button)
+        assert button is not None
+        return button, button.text()
+
+    add("first words for now")
+    qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
+    shutil.copy(folder / KEYS, folder.parent / "old.json")
+    row()[0].click()
+    assert "Backups that were made before keep their old key" in page._leaving_words.text()
+    page.keep.click()
+    assert not page.remove.isVisible()
+    row()[0].click()
+    page.remove.click()
+    assert not page._operators.isEnabled()
+    qtbot.waitUntil(lambda: row()[1] == "Works here again", timeout=WAIT_MS)
+    assert "has a new key" in page._leaving_words.text()
+    stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
+    with pytest.raises(LibraryError):
+        Library.open(folder, stolen)
+    assert desk.state is not None
+    assert desk.state.library.data_key == KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    row()[0].click()
+    assert page.first.is_wrong
+    add("other words for then")
+    qtbot.waitUntil(lambda: row()[1] == "Works here no longer", timeout=WAIT_MS)
+    assert KeySlots(folder / KEYS).open("ab", "other words for then") == desk.state.library.data_key
 
 
 def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path) -> None:

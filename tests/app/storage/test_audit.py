@@ -12,15 +12,16 @@ from pathlib import Path
 import pytest
 from sqlalchemy import Engine, text
 
-from app.storage.audit import BEGINNING, audit_key, hash_of, verify
+from app.storage.audit import hash_of, verify
 from app.storage.database.engine import Database
+from app.storage.derived_keys import derived_from
 from app.storage.library import FILE_NAME, Library
-from app.storage.stored import Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
+from app.storage.stored import BEGINNING, Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from core.samples import Patient
 
 DATA_KEY = bytes(range(32))
-KEY = audit_key(DATA_KEY)
-FORGED = audit_key(bytes(32))
+KEY = derived_from(DATA_KEY).audit
+FORGED = derived_from(bytes(32)).audit
 TOLD = ("at", "operator", "action", "subject", "details")
 WRITE = """
 import sys

@@ -7,8 +7,10 @@ from types import ModuleType
 
 import pytest
 
+from app.storage.data_key import DataKey
 from app.storage.keyring_slot import SERVICE, forget, is_there_a_keyring, open_remembered, remember
-from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.slots import Cost
 
 OLD, NEW = "four short words here", "another four short words"
 CHEAP = Cost(passes=1, memory_kib=64)
@@ -58,11 +60,11 @@ def slots(tmp_path: Path) -> KeySlots:
 
 
 @pytest.fixture
-def data_key(slots: KeySlots) -> bytes:
+def data_key(slots: KeySlots) -> DataKey:
     return slots.create("hk", OLD)[0]
 
 
-def test_what_is_remembered_opens_without_a_passphrase(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_what_is_remembered_opens_without_a_passphrase(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     assert is_there_a_keyring()
     assert open_remembered(slots, "hk") is None
     remember(slots, data_key, " HK ")
@@ -71,7 +73,7 @@ def test_what_is_remembered_opens_without_a_passphrase(slots: KeySlots, data_key
 
 
 def test_neither_the_keyring_nor_the_file_alone_opens(
-    slots: KeySlots, data_key: bytes, keyring: Keyring, tmp_path: Path
+    slots: KeySlots, data_key: DataKey, keyring: Keyring, tmp_path: Path
 ) -> None:
     remember(slots, data_key, "hk")
     ((service, name), secret), *more = keyring.held.items()
@@ -83,7 +85,7 @@ def test_neither_the_keyring_nor_the_file_alone_opens(
     assert open_remembered(slots, "hk") is None
 
 
-def test_a_keyrings_slot_is_no_operator(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_a_keyrings_slot_is_no_operator(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     remember(slots, data_key, "hk")
     (secret,) = keyring.held.values()
     assert slots.codes == ("hk",)
@@ -98,7 +100,7 @@ def test_a_keyrings_slot_is_no_operator(slots: KeySlots, data_key: bytes, keyrin
     assert open_remembered(slots, "hk") == data_key
 
 
-def test_a_new_passphrase_or_recovery_key_leaves_it(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_a_new_passphrase_or_recovery_key_leaves_it(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     remember(slots, data_key, "hk")
     slots.set_passphrase(data_key, "hk", NEW)
     recovery = slots.renew_recovery_key(data_key)
@@ -106,7 +108,7 @@ def test_a_new_passphrase_or_recovery_key_leaves_it(slots: KeySlots, data_key: b
     assert slots.open_with_recovery_key(recovery) == data_key
 
 
-def test_it_goes_with_its_operator_and_with_no_other(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_it_goes_with_its_operator_and_with_no_other(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     slots.add(data_key, "ab", NEW)
     remember(slots, data_key, "ab")
     remember(slots, data_key, "hk")
@@ -117,14 +119,14 @@ def test_it_goes_with_its_operator_and_with_no_other(slots: KeySlots, data_key: 
     assert open_remembered(slots, "ab") is None
 
 
-def test_only_who_has_a_passphrase_is_remembered(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_only_who_has_a_passphrase_is_remembered(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     with pytest.raises(KeyRefusedError, match="Add the operator first"):
         remember(slots, data_key, "ab")
     assert keyring.held == {}
 
 
 def test_remembering_again_leaves_one_secret_and_forgetting_none(
-    slots: KeySlots, data_key: bytes, keyring: Keyring
+    slots: KeySlots, data_key: DataKey, keyring: Keyring
 ) -> None:
     remember(slots, data_key, "hk")
     first = dict(keyring.held)
@@ -140,7 +142,7 @@ def test_remembering_again_leaves_one_secret_and_forgetting_none(
 
 
 def test_two_libraries_of_one_operator_do_not_meet(
-    slots: KeySlots, data_key: bytes, keyring: Keyring, tmp_path: Path
+    slots: KeySlots, data_key: DataKey, keyring: Keyring, tmp_path: Path
 ) -> None:
     other = KeySlots(tmp_path / "other.json", CHEAP)
     other_key, _ = other.create("hk", OLD)
@@ -151,7 +153,7 @@ def test_two_libraries_of_one_operator_do_not_meet(
 
 @pytest.mark.parametrize("secret", ["00" * 32, "", "no secret of ours"])
 def test_another_secret_asks_for_the_passphrase(
-    slots: KeySlots, data_key: bytes, keyring: Keyring, secret: str
+    slots: KeySlots, data_key: DataKey, keyring: Keyring, secret: str
 ) -> None:
     remember(slots, data_key, "hk")
     keyring.held = dict.fromkeys(keyring.held, secret)
@@ -159,7 +161,7 @@ def test_another_secret_asks_for_the_passphrase(
 
 
 def test_a_slot_moved_to_another_operator_does_not_open(
-    slots: KeySlots, data_key: bytes, keyring: Keyring, tmp_path: Path
+    slots: KeySlots, data_key: DataKey, keyring: Keyring, tmp_path: Path
 ) -> None:
     remember(slots, data_key, "hk")
     content = json.loads((tmp_path / "keys.json").read_text())
@@ -169,7 +171,7 @@ def test_a_slot_moved_to_another_operator_does_not_open(
 
 
 def test_a_locked_keyring_asks_for_the_passphrase_and_forgets_all_the_same(
-    slots: KeySlots, data_key: bytes, keyring: Keyring
+    slots: KeySlots, data_key: DataKey, keyring: Keyring
 ) -> None:
     remember(slots, data_key, "hk")
     keyring.is_locked = True
@@ -179,7 +181,7 @@ def test_a_locked_keyring_asks_for_the_passphrase_and_forgets_all_the_same(
     assert open_remembered(slots, "hk") is None
 
 
-def test_a_keyring_that_takes_nothing_leaves_no_slot(slots: KeySlots, data_key: bytes, keyring: Keyring) -> None:
+def test_a_keyring_that_takes_nothing_leaves_no_slot(slots: KeySlots, data_key: DataKey, keyring: Keyring) -> None:
     keyring.is_locked = True
     with pytest.raises(KeyRefusedError, match="takes no key"):
         remember(slots, data_key, "hk")
@@ -187,7 +189,7 @@ def test_a_keyring_that_takes_nothing_leaves_no_slot(slots: KeySlots, data_key: 
     assert slots.open("hk", OLD) == data_key
 
 
-def check_nothing_is_remembered(slots: KeySlots, data_key: bytes) -> None:
+def check_nothing_is_remembered(slots: KeySlots, data_key: DataKey) -> None:
     assert not is_there_a_keyring()
     with pytest.raises(KeyRefusedError, match="has no keyring"):
         remember(slots, data_key, "hk")
@@ -198,7 +200,7 @@ def check_nothing_is_remembered(slots: KeySlots, data_key: bytes) -> None:
 
 
 def test_without_the_package_the_passphrase_opens(
-    slots: KeySlots, data_key: bytes, monkeypatch: pytest.MonkeyPatch
+    slots: KeySlots, data_key: DataKey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(sys.modules, "keyring", None)
     check_nothing_is_remembered(slots, data_key)
@@ -206,14 +208,14 @@ def test_without_the_package_the_passphrase_opens(
 
 @pytest.mark.parametrize("priority", [0, 0.5, -1], ids=["none", "in the open", "forgets all"])
 def test_a_keyring_that_keeps_nothing_safe_is_none(
-    slots: KeySlots, data_key: bytes, monkeypatch: pytest.MonkeyPatch, priority: float
+    slots: KeySlots, data_key: DataKey, monkeypatch: pytest.MonkeyPatch, priority: float
 ) -> None:
     use(monkeypatch, Keyring(priority))
     check_nothing_is_remembered(slots, data_key)
 
 
 def test_a_keyring_that_does_not_load_is_none(
-    slots: KeySlots, data_key: bytes, monkeypatch: pytest.MonkeyPatch
+    slots: KeySlots, data_key: DataKey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     package = ModuleType("keyring")  # without a get_keyring: what a broken set-up raises is anything
     monkeypatch.setitem(sys.modules, "keyring", package)

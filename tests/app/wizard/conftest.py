@@ -12,9 +12,10 @@ from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
 from app.settings import Settings
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS
+from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts
 from app.wizard.steps.sensors_step import SensorsStep
@@ -41,7 +42,9 @@ def simulated_session() -> Session:
 def untouched_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library of one operator, with one patient."""
     folder = tmp_path_factory.mktemp("wizard")
-    data_key, _ = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    data_key, recovery_key = slots.create("hk", PASSPHRASE)
+    slots.confirm_recovery_key(recovery_key)
     with Library.create(folder, data_key, Operator("hk", "H. Keller", Role.ADMINISTRATOR)) as library:
         library.patients.create(Patient(code="DEMO-1"))
     return folder

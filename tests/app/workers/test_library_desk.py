@@ -11,11 +11,13 @@ import pytest
 from PySide6.QtCore import QObject
 from pytestqt.qtbot import QtBot
 
+from app.storage.data_key import LibraryLockedError
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
-from app.storage.keys import Cost, KeyRefusedError, KeySlots
+from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary, held_alone
+from app.storage.opened import KEYS, OpenedLibrary, held_alone, open_library
+from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
@@ -377,3 +379,82 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
     monkeypatch.setattr("app.storage.keyring_slot.remember", refuse)
     with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open(folder, PASSPHRASE, "hk", must_remember=True)
+
+
+def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker = Asker()
+    state = opened(qtbot, desk, folder)
+    key = state.library.data_key
+    assert key is not None
+    before = bytes(key)
+    desk.lock()
+    qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
+    with pytest.raises(LibraryLockedError):
+        state.library.library.patients.search()
+    desk.run(lambda library: len(library.library.patients.search()), asker.on_done, asker.on_failed, asker)
+    desk.unlock("hk", "not this passphrase", None, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
+    assert not asker.results
+    assert not key
+    desk.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    assert asker.results == [None, len(state.library.library.patients.search())]
+    assert bytes(key) == before
+
+
+def test_a_lock_waits_for_long_work(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    asker, slow = Asker(), Event()
+    state = opened(qtbot, desk, folder)
+    key = state.library.data_key
+    assert key is not None
+
+    def work(library: OpenedLibrary, _report: Report) -> int:
+        slow.wait(60)
+        return len(library.library.patients.search())
+
+    desk.run_long(work, asker.on_done, asker.on_failed, None, asker)
+    desk.lock()
+    assert key
+    slow.set()
+    qtbot.waitUntil(lambda: bool(asker.results) and not key, timeout=WAIT_MS)
+
+
+def test_the_key_is_changed_and_who_left_opens_nothing(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    asker = Asker()
+    state = opened(qtbot, desk, folder)
+    before = state.library.data_key
+    assert before is not None
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.add(before, "ab", "another four short words")
+    desk.run(
+        lambda library: library.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN)), None, None, asker
+    )
+    desk.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    assert not desk.state  # nothing is begun meanwhile
+    qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+    assert asker.refusals == []
+    assert not before
+    now = desk.state
+    assert now is not None
+    assert now.library.data_key == slots.open("hk", PASSPHRASE)
+    assert slots.codes == ("hk", "vi")
+    desk.run(lambda library: library.library.operators.list(), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    operators = asker.results[1]
+    assert isinstance(operators, tuple)
+    assert [one.is_active for one in operators if one.code == "ab"] == [False]
+
+
+def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker = Asker()
+    opened(qtbot, desk, folder)
+    with open_library(folder, PASSPHRASE, "hk"):
+        desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+        qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
+    assert asker.refusals == [("Another program has the library open.", "Close it, then try again.")]
+    desk.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)

@@ -7,6 +7,8 @@ from pathlib import Path
 from uuid import UUID
 
 import pytest
+from PySide6.QtCore import QObject
+from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
 from app.home.settings_desk import _slots
@@ -15,11 +17,14 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.login_delay import LoginDelay
+from app.storage.opened import KEYS, OpenedLibrary, held_alone
+from app.storage.recovery import find_interrupted
 from app.storage.root import LibraryGoneError
-from app.storage.stored import Operator, Role
+from app.storage.slots import Cost
+from app.storage.stored import LibraryError, Operator, Role
 from app.workers.library_desk import LibraryDesk
 from core.samples import Patient, Recording, RecordingKind, Session
 
@@ -176,6 +181,147 @@ def test_keys_are_changed_of_the_library_that_is_open_only(qtbot: QtBot, desk: L
     KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
     with pytest.raises(LibraryGoneError):
         _slots(opened)
+
+
+class Asker(QObject):
+    """Notes what it is told."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.results: list[object] = []
+        self.refusals: list[tuple[str, str]] = []
+
+    def on_done(self, result: object) -> None:
+        self.results.append(result)
+
+    def on_failed(self, what: str, remedy: str) -> None:
+        self.refusals.append((what, remedy))
+
+    def on_progressed(self, share: float, what: str) -> None:
+        """Not what is asked here."""
+
+    @property
+    def has_heard(self) -> bool:
+        return bool(self.results or self.refusals)
+
+
+def test_after_a_change_of_the_key_the_library_is_watched_as_before(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    """Its database is another file then, and its folder the same."""
+    asker, before = Asker(), opened_of(desk)
+    gone = QSignalSpy(desk.gone)
+    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
+    assert asker.refusals == []
+    assert opened_of(desk) is not before
+    qtbot.wait(1200)
+    assert gone.count() == 0
+    with pytest.raises(LibraryError, match="open with this library already"), held_alone(folder):
+        pass
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    recording_id = record_away(opened_of(desk), visit_id := uuid7())
+    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+        elsewhere.rename(folder)
+    assert said.args is not None
+    assert said.args[1] == "1 recording that was made meanwhile is in it now."
+    (found,) = find_interrupted(opened_of(desk))
+    assert (found.recording_id, found.problem) == (recording_id, "")
+    assert found.belonging is not None
+    assert found.belonging.session_id == visit_id
+
+
+def test_the_key_is_not_changed_while_the_library_is_gone(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+    asker, opened = Asker(), opened_of(desk)
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(folder.with_name("renamed"))
+    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    assert asker.refusals == [desk.gone_words]
+    assert desk.is_gone
+    assert opened_of(desk) is opened
+
+
+def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_removed(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asker, opened = Asker(), opened_of(desk)
+    opened.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
+    assert opened.shelter is not None
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    record_away(opened, uuid7())
+
+    def full(_source: Path, _target: Path) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("app.storage.bringing_home._copy", full)
+    with qtbot.waitSignals([desk.refused, desk.back], timeout=WAIT_MS):
+        elsewhere.rename(folder)
+    desk.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
+    ((what, remedy),) = asker.refusals
+    assert what.startswith("What was recorded while the library was gone is not in it yet")
+    assert str(opened.shelter.folder) in remedy
+    assert [one.is_active for one in opened_of(desk).library.operators.list()] == [True, True]
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):  # it is watched all the same
+        folder.rename(elsewhere)
+
+
+def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker = Asker()
+    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
+        desk.close()
+    assert desk.state is None
+    assert desk._watch is None
+    with held_alone(folder):
+        assert not asker.has_heard
+
+
+def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker, opened = Asker(), opened_of(desk)
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    recording_id = record_away(opened, uuid7())
+    desk.lock()
+    qtbot.waitUntil(lambda: not opened.data_key, timeout=WAIT_MS)
+    with qtbot.waitSignal(desk.back, timeout=WAIT_MS):
+        elsewhere.rename(folder)
+    assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
+    desk.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
+    qtbot.wait(300)
+    assert not asker.has_heard
+    desk.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
+    (found,) = asker.results[1] if isinstance(asker.results[1], tuple) else ()
+    assert (found.recording_id, found.problem) == (recording_id, "")
+
+
+def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
+    qtbot: QtBot, desk: LibraryDesk, folder: Path
+) -> None:
+    asker, delay = Asker(), LoginDelay(folder, time.monotonic)
+    desk.lock()
+    elsewhere = folder.with_name("renamed")
+    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+        folder.rename(elsewhere)
+    for _ in range(4):
+        desk.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: len(asker.refusals) == 4, timeout=WAIT_MS)
+    assert {what for what, _ in asker.refusals} == {f"The library is gone from {folder}."}
+    assert delay.left_s("hk") == 0.0
+    assert not folder.exists()
+    elsewhere.rename(folder)
+    desk.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
+    qtbot.waitUntil(lambda: asker.results == [None], timeout=WAIT_MS)
 
 
 def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, desk: LibraryDesk) -> None:

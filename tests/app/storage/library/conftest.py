@@ -13,9 +13,10 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
-from app.storage.keys import Cost, KeySlots
+from app.storage.keys import KeySlots
 from app.storage.library import Library
 from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.slots import Cost
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role, StoredJournal, StoredRecording
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session

@@ -1,6 +1,7 @@
 """The command line opens a library with a passphrase that nobody sees, recovers, and analyses its sessions."""
 
 import sys
+import time
 from collections.abc import Callable
 from pathlib import Path
 from uuid import UUID, uuid4
@@ -189,3 +190,25 @@ def test_recover_brings_home_what_was_recorded_while_the_library_was_gone(
     assert cli.main(["recover", str(opened.folder), *key]) == 0
     assert f"was recovered into library:{session_id}" in capsys.readouterr().out
     assert not list((tmp_path / "data").rglob("*.journal"))
+
+
+def test_wrong_passphrases_make_the_command_line_wait_too(
+    opened: OpenedLibrary,
+    tmp_path: Path,
+    key: list[str],
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    waited: list[float] = []
+    monkeypatch.setattr(time, "sleep", waited.append)
+    (tmp_path / "wrong").write_text("nobody's passphrase")
+    where = ["recover", str(opened.folder)]
+    for expected in (0, 0, 0, 1):
+        assert cli.main([*where, "--passphrase-file", str(tmp_path / "wrong")]) != 0
+        assert len(waited) == expected
+    assert waited[0] == pytest.approx(2.0, abs=0.5)
+    assert "this waits for 2 s" in capsys.readouterr().err
+    assert cli.main([*where, *key]) == 0
+    assert waited[1] == pytest.approx(4.0, abs=0.5)
+    assert cli.main([*where, *key]) == 0
+    assert len(waited) == 2

@@ -1,0 +1,286 @@
+"""How does a library get another data key, so that who had the old one reads nothing of what comes?
+
+The database is copied under the new key, with the keys of all journals wrapped anew, then takes the place of the old
+one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with all of the
+new ones: `settle` looks which database stands there, by the salt in its first bytes, and takes the slots' file that
+belongs to it. What stands in the journals' own headers comes last; until then the database's copy opens them.
+
+Backups that were made before keep their old key. So does what a disk keeps of files that were replaced.
+"""
+
+import hashlib
+import json
+import os
+from collections.abc import Callable, Iterable
+from contextlib import closing
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from sqlalchemy import select
+
+from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
+from app.storage.database.engine import Database, sqlite_engine
+from app.storage.database.models import JournalRow, SettingRow
+from app.storage.derived_keys import derived_keys, keep_derived_keys
+from app.storage.files import held, replace_file, sync_folder
+from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError, find_segments
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.library import FILE_NAME
+from app.storage.opened import KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS, OpenedLibrary, Report
+from app.storage.recovery import find_interrupted
+from app.storage.stored import Action, LibraryBusyError, LibraryError
+from app.wording import tr
+
+HEADERS_DUE = "journal_headers_due"  # the setting that says that headers still hold the old wrapping
+PIECE_BYTES = 1 << 20
+PAGES = 256  # of the database, copied between two reports
+COPY_SHARE = 0.3  # of the progress; the journals take the rest
+
+
+@dataclass(frozen=True, slots=True)
+class ChangedKey:
+    """What came of a change.
+
+    Attributes
+    ----------
+    recovery_key
+        The text of a new recovery key, where the old one opens nothing any more; else empty.
+    left_out
+        Operators who need a new passphrase, because they have not logged in since slots have keys of their own.
+    """
+
+    data_key: DataKey
+    recovery_key: str = field(repr=False)
+    left_out: tuple[str, ...]
+
+
+def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Report) -> ChangedKey:
+    """Give a library a new data key that the operators `staying` have and nobody else; `opened` is closed.
+
+    Raises
+    ------
+    KeyRefusedError
+        Somebody else is changing the keys, or nobody would have one.
+    LibraryError
+        See `refuse_change`; or another program has the library open, or there is too little room.
+    OSError
+        A file cannot be written; what it was before is still there.
+    """
+    refuse_change(opened)
+    old = opened.data_key
+    assert old is not None  # else it was refused
+    opened.library.audit.note(Action.EDIT, "library", is_key_change_begun=True)
+    slots, new = KeySlots(opened.folder / KEYS), DataKey(os.urandom(KEY_BYTES))
+    report(0.0, "")
+    opened.library.close()
+    with slots.held():
+        sealed = slots.sealed_anew(old, new, staying)
+        _replace(opened.folder, old, new, sealed.content, report)
+    database = Database(sqlite_engine(opened.folder / FILE_NAME, new, creates=False))
+    try:
+        write_headers(database, opened.folder / RECORDINGS)
+    finally:
+        database.close()
+    report(1.0, "")
+    return ChangedKey(new, sealed.recovery_key, sealed.left_out)
+
+
+def refuse_change(opened: OpenedLibrary) -> None:
+    """See that nothing is under way which has the old key: only journals that are in the library get the new one.
+
+    Raises
+    ------
+    LibraryGoneError
+        The library is not there.
+    LibraryError
+        It has no key, or a recording goes on, was left over, or has not come home yet.
+    OSError
+        The folder of the recordings cannot be read.
+    """
+    shelter = opened.shelter
+    if shelter is None:
+        raise LibraryError("The demonstration has no key", "Open your own library")
+    opened.refuse_gone()
+    if find_segments(shelter.folder):
+        raise LibraryError(
+            "What was recorded while the library was gone is not in it yet, and could not be read under another key",
+            tr(
+                "It waits in {shelter} and is added by itself while Gaitwright is open. Try again once that is done"
+            ).format(shelter=shelter.folder),
+        )
+    if any(not one.problem for one in find_interrupted(opened)):
+        raise LibraryError(
+            "A recording goes on or was left over, so the key cannot be changed now",
+            "End it or look at it, then try again",
+        )
+
+
+def write_headers(database: Database, recordings: Path) -> None:
+    """Write into the journals' headers what the database has of them, where a change of the key left that to be done.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written; it is tried again at the next start.
+    """
+    with database.reading() as session:
+        if session.get(SettingRow, HEADERS_DUE) is None:
+            return
+        rows = [(row.file, row.wrapped_key) for row in session.scalars(select(JournalRow)) if row.wrapped_key]
+    for file, wrapped_key in rows:
+        path = recordings / file
+        if not path.exists():
+            continue
+        with path.open("r+b", buffering=0) as journal:
+            found = journal.read(HEADER_BYTES)
+            try:
+                wanted = JournalHeader.parsed(found, file, wrapped_key).packed()
+            except JournalRefusedError:
+                continue  # damaged before, and said so wherever it is read
+            if wanted != found:
+                journal.seek(0)
+                journal.write(wanted)
+                os.fsync(journal.fileno())
+    with database.writing() as session:
+        if (row := session.get(SettingRow, HEADERS_DUE)) is not None:
+            session.delete(row)
+
+
+def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], report: Report) -> None:
+    path, beside = folder / FILE_NAME, folder / NEW_DATABASE
+    _remove(beside)
+    engine = sqlite_engine(path, old, creates=False)
+    try:
+        with closing(engine.raw_connection()) as source:
+            connection = source.driver_connection
+            assert connection is not None  # it is open
+            _hold_alone(connection.execute)
+            _copy(connection, beside, new, report)
+            _wrap_anew(folder, beside, old, new, report)
+            salt = _salt(beside)
+            if salt is None:
+                raise LibraryError("The new database is not there", "Try again, or see to the disk")
+            replace_file(folder / NEW_KEYS, json.dumps({**keys, "database": salt}, indent=1).encode())
+            if os.name == "nt":
+                source.close()  # what is open is not replaced there
+            beside.replace(path)
+            sync_folder(folder)
+            (folder / NEW_KEYS).replace(folder / KEYS)
+            sync_folder(folder)
+    finally:
+        engine.dispose()
+        _remove(beside)
+
+
+def _hold_alone(execute: Callable[[str], object]) -> None:
+    """Leave the write-ahead log, which the new database must not find beside it, and let nobody read or write."""
+    try:
+        execute("PRAGMA locking_mode = EXCLUSIVE")  # locks that are taken are kept until the connection ends
+        execute("PRAGMA journal_mode = DELETE")
+        execute("BEGIN EXCLUSIVE")
+        execute("COMMIT")
+    except Exception as error:
+        if "locked" not in str(error):
+            raise
+        raise LibraryBusyError("Another program has the library open", "Close it, then try again") from None
+
+
+def _copy(connection: "object", beside: Path, new: KeyMaterial, report: Report) -> None:
+    def told(_status: int, left: int, total: int) -> None:
+        report(COPY_SHARE * (1 - left / max(total, 1)), "")
+
+    target = sqlite_engine(beside, new)
+    try:
+        with closing(target.raw_connection()) as writing:
+            connection.backup(writing.driver_connection, pages=PAGES, progress=told)  # type: ignore[attr-defined]  # a sqlcipher3 connection
+    finally:
+        target.dispose()
+
+
+def _wrap_anew(folder: Path, beside: Path, old: DataKey, new: DataKey, report: Report) -> None:
+    database = Database(sqlite_engine(beside, new, creates=False))
+    try:
+        with database.writing() as session:
+            keep_derived_keys(session, derived_keys(session, old), new)
+            session.add(SettingRow(name=HEADERS_DUE, value=True))
+            rows = [row for row in session.scalars(select(JournalRow)) if row.wrapped_key]
+            sizes = [_size(folder / RECORDINGS / row.file) for row in rows]
+            whole, done = max(sum(sizes), 1), 0
+            for row, size in zip(rows, sizes, strict=True):
+                share = COPY_SHARE + (1 - COPY_SHARE) * done / whole
+                _wrap_journal(folder / RECORDINGS / row.file, row, old, new)
+                done += size
+                report(share, "")
+        if database.faults():
+            raise LibraryError("The database could not be copied as it is", "Try again, or see to the disk")
+    finally:
+        database.close()
+    with beside.open("rb") as file:
+        os.fsync(file.fileno())
+
+
+def _wrap_journal(path: Path, row: JournalRow, old: DataKey, new: DataKey) -> None:
+    """Wrap a journal's key anew in its row, with the hash that its file is going to have."""
+    try:
+        with path.open("rb") as file:
+            found = file.read(HEADER_BYTES)
+            header = JournalHeader.parsed(found, path.name, row.wrapped_key)
+            key = header.key(old, path.name)
+            assert key is not None  # its row has one
+            wanted = header.with_key(key, new)
+            before, after = hashlib.sha256(found), hashlib.sha256(wanted.packed())
+            while row.sha256 and (piece := file.read(PIECE_BYTES)):
+                before.update(piece)
+                after.update(piece)
+    except (JournalRefusedError, FileNotFoundError):
+        return  # it was missing or damaged before, and is said to be wherever it is read
+    if row.sha256 == before.hexdigest():  # else it is not what it was when it was closed, and that stays to be seen
+        row.sha256 = after.hexdigest()
+    row.wrapped_key = wanted.wrapped_key
+
+
+def _size(path: Path) -> int:
+    try:
+        return path.stat().st_size
+    except FileNotFoundError:
+        return 0
+
+
+def settle(folder: Path) -> None:
+    """Finish or take back a change of the key that was interrupted. To be called before the slots are read.
+
+    Raises
+    ------
+    KeyRefusedError
+        Somebody is changing the keys just now.
+    OSError
+        A file cannot be written.
+    """
+    keys, new_keys, beside = folder / KEYS, folder / NEW_KEYS, folder / NEW_DATABASE
+    if not (new_keys.exists() or beside.exists()):
+        return
+    try:
+        with held(keys.with_name(f"{KEYS}.lock")):
+            if new_keys.exists():
+                if json.loads(new_keys.read_bytes())["database"] == _salt(folder / FILE_NAME):
+                    new_keys.replace(keys)
+                else:
+                    new_keys.unlink()
+            _remove(beside)
+            sync_folder(folder)
+    except BlockingIOError:
+        raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
+
+
+def _salt(database: Path) -> str | None:
+    """What tells one database of SQLCipher from another: random, in the open, drawn when it was made."""
+    try:
+        with database.open("rb") as file:
+            return file.read(16).hex()
+    except FileNotFoundError:
+        return None
+
+
+def _remove(database: Path) -> None:
+    for ending in ("", "-wal", "-shm", "-journal"):
+        database.with_name(database.name + ending).unlink(missing_ok=True)
