@@ -1,9 +1,10 @@
 """The report step shows what will print, keeps the clinician's words, and saves the files that were chosen."""
 
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
+from uuid import UUID
 
 import pypdf
 import pytest
@@ -51,7 +52,12 @@ def step(
     step.page.show()
     read: list[object] = []
     show_visits = step.page.report.show_visits
-    monkeypatch.setattr(step.page.report, "show_visits", lambda visits: (read.append(visits), show_visits(visits)))
+
+    def noted(visits: Sequence[tuple[UUID, str]]) -> None:
+        read.append(visits)
+        show_visits(visits)
+
+    monkeypatch.setattr(step.page.report, "show_visits", noted)
     step.enter()
     qtbot.waitUntil(lambda: bool(read), timeout=WAIT_MS)
     yield step
