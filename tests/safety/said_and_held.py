@@ -18,6 +18,7 @@ from app.storage.data_key import KeyMaterial
 if TYPE_CHECKING:
     from app.home.home import Home
     from app.main_window import MainWindow
+    from app.widgets.banner import Banner
     from app.wizard.visit import Visit
     from app.wizard.wizard import Wizard
 
@@ -67,14 +68,14 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
     """What the screen in sight says otherwise than the library; what is still on its way may be among it."""
     screen = window.screens.currentWidget()
     if window.home is not None and screen is window.home:
-        return [*_of_home(window.home, held), *_of_banner(window.home.banner.text, held)]
+        return [*_of_home(window.home, held), *_of_banner(window.home.banner, held)]
     wizard = window._wizard
     if wizard is not None and screen is wizard and wizard.visit is not None and wizard.visit.session is not None:
         visit = wizard.visit
         if not held.ask("SELECT 1 FROM sessions WHERE id = ?", wizard.visit.session.id.hex):
             return ["the session in sight is not held"]
         said = [*_of_frame(wizard, visit, held), *_of_rail(wizard, visit, held), *_of_page(wizard, visit, held)]
-        return [*said, *_of_banner(wizard.shell.banner.text, held)]
+        return [*said, *_of_banner(wizard.shell.banner, held)]
     return []
 
 
@@ -258,8 +259,11 @@ def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[
             yield f"the report shows the comment {step._comment!r}, held is {rows[0][0]!r}"
 
 
-def _of_banner(text: str, held: HeldLibrary) -> Iterator[str]:
-    """What is claimed of recordings that were recovered, or are safe."""
+def _of_banner(banner: "Banner", held: HeldLibrary) -> Iterator[str]:
+    """What is claimed of recordings that were recovered, or are safe; a banner that is hidden claims nothing."""
+    if banner.isHidden():
+        return
+    text = banner.text
     one = RECOVERED_ONE.search(text)
     if one and not held.ask("SELECT 1 FROM recordings WHERE state = 'recovered' AND name = ?", one[1]):
         yield f"the banner says {text!r}, held is no recovered {one[1]!r}"

@@ -112,6 +112,13 @@ def test_what_is_said_otherwise_on_home_is_seen(home_in_sight: Any, held: HeldLi
         assert any(words in one for one in said), said
 
 
+def test_a_banner_that_is_hidden_says_nothing(home_in_sight: Any, held: HeldLibrary) -> None:
+    home_in_sight.home.banner.tell("The program was closed while recording. 00:05 of standing 6 was recovered.")
+    assert any("no recovered 'standing 6'" in one for one in contradictions(home_in_sight, held))
+    home_in_sight.home.banner.hide()  # as where another library is opened
+    assert contradictions(home_in_sight, held) == []
+
+
 def test_a_recording_that_nobody_ended_is_seen(held: HeldLibrary, alter: Alter) -> None:
     assert left_open(held) == []
     alter("UPDATE recordings SET state = 'open' WHERE name = 'walk 1'")
