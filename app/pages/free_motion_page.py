@@ -126,6 +126,7 @@ class FreeMotionPage(QWidget):
 
     def _place(self, is_from_behind: bool) -> None:
         for number, joint in enumerate(FACING):
+            self._grid.removeWidget(self.gauges[joint])  # else PySide goes on holding its old item, which Qt deletes
             self._grid.addWidget(self.gauges[joint], number // 2, 2 * ((number + is_from_behind) % 2))
 
     def _on_look_changed(self) -> None:

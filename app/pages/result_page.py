@@ -374,6 +374,8 @@ class ResultPage(QWidget):
 
     def _place_peaks(self) -> None:
         """Put the peaks over the findings where there is room for one column of tables only."""
+        for layout in (self._right, self._columns):
+            layout.removeWidget(self.cycles.peaks)  # else PySide goes on holding its old item, which Qt deletes
         if self._columns_wanted == 2:
             self._right.insertWidget(0, self.cycles.peaks)
         else:

@@ -14,6 +14,7 @@ from app.theme import Look, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, Measure
 from app.widgets.hint import Hint
 from core.body import Joint, Site
+from tests.app.layout_items import item_of, items_held
 
 
 def measure(figure: str, unit: str = "°", share: float = 0.4) -> Measure:
@@ -123,3 +124,9 @@ def test_a_frame_in_which_all_four_gauges_move_is_painted_in_time(page: FreeMoti
         QApplication.processEvents()
         taken_ms.append(1000 * (time.perf_counter() - began))
     assert sorted(taken_ms)[5] < 30  # ten times a second leaves 100; a busy machine is no reason to fail
+
+
+def test_turned_round_it_leaves_no_layout_item_behind(page: FreeMotionPage) -> None:
+    page.set_from_behind(True)
+    held = items_held()
+    assert not held & {item_of(gauge, page._grid) for gauge in page.gauges.values()}

@@ -21,6 +21,7 @@ from core.results import Analysis, SideGait
 from core.verdicts.quantities import raw_values
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
+from tests.app.layout_items import item_of, items_held
 
 GROWN = AgeAndHeight(30, 1.70)
 WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
@@ -281,3 +282,10 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert not table.isColumnHidden(2)
     assert set(page.cycles.charts.knee.chart.cycles) == {Side.RIGHT}
     assert page.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
+
+
+def test_peaks_that_change_place_leave_no_layout_item_behind(page: ResultPage) -> None:
+    page.set_room(*COMPACT)
+    page.set_room(*WIDE)
+    held = items_held()
+    assert item_of(page.cycles.peaks, page._columns if page._columns_wanted != 2 else page._right) not in held
