@@ -11,7 +11,7 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
-from vqf import BasicVQF
+from vqf import offlineVQF
 
 from core.body import Joint, Side, Site
 from core.rotations import matrix_from_quaternion
@@ -78,8 +78,8 @@ def turn_about_vertical(block: ImuBlock) -> Turn:
     width = max(1, round(1.0 / (MEANS_HZ * track.step_s)))
     gyr, acc, time_s = (_means(v, width) for v in (track.gyr_rad_s, track.acc_m_s2, track.time_s))
     step_s = width * track.step_s
-    # which way is up, not how far by a degree: the filter without estimates of bias does, in a sixth of the time
-    vertical = matrix_from_quaternion(BasicVQF(step_s).updateBatch(gyr, acc)["quat6D"])[:, 2]
+    # a filter that does not estimate the gyroscopes' bias finds reversed accelerometers where there are none
+    vertical = matrix_from_quaternion(offlineVQF(gyr, acc, None, step_s)["quat6D"])[:, 2]
     return time_s, sosfiltfilt(_low_pass(step_s), np.sum(gyr * vertical, axis=1))
 
 

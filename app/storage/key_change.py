@@ -105,8 +105,8 @@ def refuse_change(opened: OpenedLibrary) -> None:
         raise LibraryError(
             "What was recorded while the library was gone is not in it yet, and could not be read under another key",
             tr(
-                "It waits in {shelter} and is added while Gaitwright is open, unless the library holds a file of that name "
-                "with other content. Try again once that folder is empty"
+                "It waits in {shelter} and is added while Gaitwright is open, unless the library holds a file of that "
+                "name with other content. Try again once that folder is empty"
             ).format(shelter=shelter.folder),
         )
     if any(not one.problem for one in find_interrupted(opened)):

@@ -419,6 +419,12 @@ def test_of_two_sensors_that_disagree_neither_is_used() -> None:
     assert {("walk 1", THIGH), ("walk 1", SHANK)} <= looked.unusable
 
 
+def test_gyroscopes_off_by_degrees_are_not_taken_for_reversed_accelerometers() -> None:
+    errors = SensorErrors(gyro_bias_sd_rad_s=np.deg2rad(1.5), acc_bias_sd_m_s2=0.1)
+    session = simulate(WalkerSettings(seed=2000, errors=errors)).session
+    assert "acc_reversed" not in {found.key for found in look_at(session).findings}
+
+
 def test_all_accelerometers_reversed_change_no_angle_and_need_no_word() -> None:
     session = simulate(replace(TURNING, recordings=(Standing(), FreeMotion(duration_s=5.0), Walk(strides=4)))).session
     plain, mirrored = analyse(session), analyse(changed(session, REVERSED))

@@ -60,7 +60,9 @@ while desk.state is None:
     app.processEvents()
 desk.run(lambda opened: len(KeySlots(folder / KEYS).open("hk", passphrase)), asker.on_done, asker.on_failed, asker)
 desk.run(lambda opened: opened.library.patients.create(Patient(code="P-001")), asker.on_done, asker.on_failed, asker)
-desk.run(lambda opened: back_up(opened, folder.parent / "backups"), asker.on_done, asker.on_failed, asker)
+backups = folder.parent / "backups"
+backups.mkdir()
+desk.run(lambda opened: back_up(opened, backups), asker.on_done, asker.on_failed, asker)
 desk.run(
     lambda opened: JournalWriter.create(opened.recordings, uuid7(), opened.data_key, room=Room(0, 0)),
     asker.on_done, asker.on_failed, asker,

@@ -97,6 +97,7 @@ def work(folder: Path) -> None:
         except OSError:
             log.exception("%s of %s is missing", folder / name, name)
         if number % 20 == 10:
+            (folder / f"backups{number}").mkdir()
             back_up(opened, folder / f"backups{number}")
         number += 1
 

@@ -16,6 +16,7 @@ from app.storage.audit import hash_of, verify
 from app.storage.database.engine import Database
 from app.storage.derived_keys import derived_from
 from app.storage.library import FILE_NAME, Library
+from app.storage.root import ID_FILE
 from app.storage.stored import BEGINNING, Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from core.samples import Patient
 
@@ -232,7 +233,7 @@ def test_eight_processes_at_once_make_one_chain(tmp_path: Path) -> None:
         report = library.audit.verify()
         assert report.faults == ()
         assert report.end.number == 2 + 8 * 201
-    assert [path.name for path in tmp_path.iterdir()] == [FILE_NAME]
+    assert {path.name for path in tmp_path.iterdir()} == {FILE_NAME, ID_FILE}
 
 
 def test_nobody_logged_in_can_neither_read_nor_write_it(library: Library) -> None:
