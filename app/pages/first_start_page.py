@@ -74,7 +74,7 @@ class FirstStartPage(EntryPage):
             tr(
                 "It was made, but nobody has typed it back, so perhaps nobody has it. It opens the library when the "
                 "passphrase is forgotten; nothing else does. Type it from the paper or the file. If it is not to be "
-                "found, make a new one: the old one then opens nothing any more."
+                "found, make a new one: the old one then opens only older backups."
             ),
             tone="ink2",
             wraps=True,

@@ -132,7 +132,7 @@ class SettingsPage(QWidget):
 
     def show_passphrase_changed(self) -> None:
         self.forget_typed()
-        self._said.setText(tr("The passphrase is changed. The old one opens nothing any more."))
+        self._said.setText(tr("The passphrase is changed. Only backups made before still open with the old one."))
 
     def refuse_passphrase(self, sentence: str) -> None:
         self.old.set_wrong(sentence)
@@ -211,8 +211,8 @@ class SettingsPage(QWidget):
         self._key_hint = Text(
             look,
             tr(
-                "The old recovery key opens nothing any more. Print this one or write it down; it is not shown again. "
-                "You are asked to type it back at your next log in."
+                "The old recovery key opens only backups made before. Print this one or write it down; it is not shown "
+                "again. You are asked to type it back at your next log in."
             ),
             tone="ink2",
             wraps=True,
