@@ -1,7 +1,7 @@
 """The patient of a visit, kept as it is typed."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import fields, replace
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -21,6 +21,8 @@ class PatientRecord(QObject):
     """
 
     changed = Signal()
+    read_anew = Signal()
+    """What stands on the screen was old."""
     code_taken = Signal(str)
     refused = Signal(str, str)
 
@@ -32,7 +34,8 @@ class PatientRecord(QObject):
         """So another code is a correction of this patient's."""
         self.told = Patient()
         self.stored: StoredPatient | None = None
-        self._is_saving = False
+        self._is_busy = False  # saves or reads
+        self._is_to_be_read = False
         self._pause = QTimer(self)
         self._pause.setSingleShot(True)
         self._pause.setInterval(SAVED_AFTER_MS)
@@ -40,11 +43,17 @@ class PatientRecord(QObject):
 
     @property
     def is_saved(self) -> bool:
-        return self.stored is not None and self.stored.told == self.told
+        return not self._is_to_be_read and self.stored is not None and self.stored.told == self.told
 
     def choose(self, stored: StoredPatient) -> None:
         self.stored, self.told = stored, stored.told
         self.changed.emit()
+
+    def choose_from_list(self, listed: StoredPatient) -> None:
+        """Choose a patient as a list has it: the visit before may have changed what was told since it was read."""
+        self._is_to_be_read = True
+        self.choose(listed)
+        self._read(listed)
 
     def edit(self, told: Patient) -> None:
         """Take what is on the screen; a patient of the library is changed once the typing pauses."""
@@ -55,7 +64,10 @@ class PatientRecord(QObject):
     def commit(self) -> None:
         """Save what is on the screen now, and make the patient if there is none yet."""
         self._pause.stop()
-        if self._is_saving or self.is_saved or not self.told.code:
+        if self._is_busy or self.is_saved or not self.told.code:
+            return
+        if self._is_to_be_read and self.stored is not None:
+            self._read(self.stored)
             return
         if self.stored is not None and self.told.code != self.stored.told.code:
             what, remedy = self._refuses(self.told.code)
@@ -63,7 +75,7 @@ class PatientRecord(QObject):
                 self.told = self.stored.told  # what was typed is another's
                 self.refused.emit(what, remedy)
                 return
-        self._is_saving = True
+        self._is_busy = True
         stored, told = self.stored, self.told
         is_renamed = self.has_this_session_only
 
@@ -81,8 +93,26 @@ class PatientRecord(QObject):
 
         self._desk.run(save, self._on_saved, self._on_refused, self)
 
+    def _read(self, listed: StoredPatient) -> None:
+        self._is_busy = True
+        self._desk.run(lambda opened: opened.library.patients.get(listed.id), self._on_read, self._on_refused, self)
+
+    def _on_read(self, stored: StoredPatient) -> None:
+        self._is_busy = self._is_to_be_read = False
+        if self.stored is None or self.stored.id != stored.id:
+            return  # another was chosen meanwhile
+        listed, self.stored = self.stored.told, stored
+        every = ((field.name, getattr(self.told, field.name)) for field in fields(Patient))
+        typed = {name: told for name, told in every if told != getattr(listed, name)}
+        self.told = replace(stored.told, **typed)
+        if stored.told != listed:
+            self.read_anew.emit()
+        self.changed.emit()
+        if not self.is_saved:
+            self._pause.start()  # typed meanwhile
+
     def _on_saved(self, stored: StoredPatient | None) -> None:
-        self._is_saving = False
+        self._is_busy = False
         if stored is None:
             self.code_taken.emit(self.told.code)
             return
@@ -92,5 +122,5 @@ class PatientRecord(QObject):
             self._pause.start()  # typed on meanwhile
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        self._is_saving = False
+        self._is_busy = False
         self.refused.emit(what, remedy)

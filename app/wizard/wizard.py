@@ -101,7 +101,7 @@ class Wizard(QWidget):
         visit = self._begin_visit()
         visit.begin_stopwatch()
         if patient is not None:
-            visit.patient.choose(patient)
+            visit.patient.choose_from_list(patient)
         self._go_to(PATIENT)
 
     def show_session(self, session_id: UUID) -> None:

@@ -1,6 +1,7 @@
 """Does the watchdog bite those who hold up the screen, and nobody else?"""
 
 import gc
+import linecache
 import os
 import subprocess
 import sys
@@ -108,3 +109,28 @@ def test_what_lay_in_memory_before_is_kept_from_the_collector(qapp: QApplication
     assert gc.get_freeze_count() > 0
     dog.stop()
     assert gc.get_freeze_count() == 0
+
+
+class _Ended:
+    """Notes which thread ends it."""
+
+    def __init__(self, by: list[int]) -> None:
+        self._by = by
+
+    def __del__(self) -> None:
+        self._by.append(threading.get_ident())
+
+
+def test_what_a_late_function_holds_is_not_kept_alive(
+    qtbot: QtBot, dog: Watchdog, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(linecache, "checkcache", lambda *_: time.sleep(0.3))  # telling a stack takes as long as it may
+    by: list[int] = []
+
+    def paint() -> None:
+        _painter = _Ended(by)
+        work_for(0.15)
+
+    run(qtbot, paint)
+    assert by == [threading.get_ident()]
+    assert "paint" in str(dog.late[0])

@@ -36,6 +36,7 @@ class PatientStep(Step):
         self._last_of: UUID | None = None
         self._is_going_on = False
         self._taken_code = ""
+        visit.patient.read_anew.connect(self._fill)
         visit.patient.changed.connect(self._on_patient_changed)
         visit.patient.code_taken.connect(self._on_code_taken)
         visit.patient.refused.connect(self._on_refused)

@@ -1,6 +1,7 @@
 """The step of the patient: made, found and gone on with, each once the library has answered."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.patient_page import PatientDraft
 from app.storage.opened import OpenedLibrary
-from app.storage.stored import PlacedSensor
+from app.storage.stored import PlacedSensor, StoredPatient
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.steps.patient_step import PatientStep
@@ -119,3 +120,29 @@ def make_with_visit(opened: OpenedLibrary) -> None:
     library.sessions.place(session.id, placed)
     walk = Recording("walk 1", RecordingKind.WALKING, "", {}, condition="barefoot")
     library.recordings.start(session.id, walk, is_simulated=True)
+
+
+def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+) -> None:
+    listed: list[StoredPatient] = []
+
+    def change(opened: OpenedLibrary) -> None:
+        patients = opened.library.patients
+        stored = patients.create(Patient(code="DEMO-10", birth_year=1966, device="foot, carbon"))
+        patients.change(stored, replace(stored.told, birth_year=1982))
+        listed.append(stored)
+
+    desk.run(change, None, None, step)
+    qtbot.waitUntil(lambda: bool(listed), timeout=5000)
+    visit.patient.choose_from_list(listed[0])
+    step.enter()
+    assert step.page.draft.patient.birth_year == 1966
+    type_in(step, replace(listed[0].told, mass_kg=70.0))  # before the library has answered
+    assert not visit.patient.is_saved
+    with qtbot.waitSignal(step.done, timeout=5000):
+        step.on_primary()
+    stored = visit.patient.stored
+    assert stored is not None
+    assert visit.patient.told == stored.told == step.page.draft.patient
+    assert (stored.told.birth_year, stored.told.mass_kg) == (1982, 70.0)
