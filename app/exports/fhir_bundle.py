@@ -18,7 +18,6 @@ from app.exports.figures import RESEARCH, SIMULATED, WalkFigure, reason_of, soft
 from app.gates_in_words import gate_sentence
 from app.storage.pseudonyms import AGE
 from core.body import Side
-from core.norms import MIN_STRIDES_FOR_SD
 from core.results import Analysis
 from core.samples import Session
 from core.verdicts.model import Verdict
@@ -43,7 +42,6 @@ ABSENT = "http://terminology.hl7.org/CodeSystem/data-absent-reason"
 WITHHELD = {"system": ABSENT, "code": "error", "display": "Error"}
 NOT_PERFORMED = {"system": ABSENT, "code": "not-performed", "display": "Not Performed"}
 ERROR = "half of what the difference of two walks with the sensors left on has to exceed (95 %)"
-FEW = f"Fewer than {MIN_STRIDES_FOR_SD} strides."
 YEARS_OLD = {"system": "http://loinc.org", "code": "30525-0", "display": "Age"}
 AGE_TOLD = re.compile(r"(\d{1,3})(\+?)")
 GENDERS = ("male", "female", "other")
@@ -119,8 +117,7 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
         yield "dataAbsentReason", why_not
     else:
         yield "valueQuantity", _quantity(one.mean, unit_of(one.name))
-    few = [FEW] if _status(one) == "preliminary" and not one.assessment.reasons else []
-    doubts = [gate_sentence(reason) for reason in one.assessment.reasons] + few
+    doubts = [gate_sentence(reason) for reason in one.assessment.reasons]
     yield "note", [{"text": text} for text in dict.fromkeys([*notes, *doubts])]
     if one.side is not None:
         yield "bodySite", {"coding": [LEG], "text": f"{one.side} leg"}
@@ -141,11 +138,10 @@ def _observation(one: WalkFigure, patient_url: str, when: str, notes: list[str])
 
 
 def _status(one: WalkFigure) -> str:
-    """Final only where nothing is in doubt, over ten strides or more; what was not worn came to nothing."""
+    """Final only where nothing is in doubt, too few strides included; what was not worn came to nothing."""
     if one.assessment.verdict is Verdict.NOT_MEASURED:
         return "cancelled"
-    is_few = one.strides is not None and one.strides < MIN_STRIDES_FOR_SD
-    return "final" if one.assessment.verdict is Verdict.READ and not is_few else "preliminary"
+    return "final" if one.assessment.verdict is Verdict.READ else "preliminary"
 
 
 def _notes(walk: str, condition: str) -> Iterator[str]:
