@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 os.environ["QT_QPA_PLATFORM"] = "offscreen"  # before anything imports Qt
+os.environ["PYSIDE6_OPTION_LAZY"] = "0"  # as the application has it
 os.environ["OPENBLAS_NUM_THREADS"] = "1"  # before anything imports numpy: small matrices, two cores
 
 import pytest
