@@ -247,8 +247,8 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
 def _counted(folder: Path, code: str) -> Iterator[None]:
     """Try a passphrase when it is time for the next try."""
     from app.storage.keys import KeySlots
+    from app.storage.layout import KEYS
     from app.storage.login_delay import LoginDelay
-    from app.storage.opened import KEYS
 
     slots, delay = KeySlots(folder / KEYS), LoginDelay(folder, time.monotonic)
     if not slots.exists or not (code or len(slots.codes) == 1):

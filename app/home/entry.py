@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 from app.pages.first_start_page import FirstStartPage
 from app.pages.log_in_page import LogInPage
 from app.settings import Settings
+from app.storage.layout import KEYS
 from app.theme import Look
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from app.storage.login_delay import LoginDelay
     from app.storage.opened import OpenedLibrary
 
-KEYS = "keys.json"  # as app.storage.opened has it, whose import the window does not wait for
 ADMINISTRATOR = "administrator"  # as app.storage.stored has it
 SHORTEST = 10  # as app.storage.keys has it
 

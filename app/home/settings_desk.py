@@ -341,7 +341,7 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
 
 def _slots(opened: "OpenedLibrary") -> "KeySlots":
     from app.storage.keys import KeySlots
-    from app.storage.opened import KEYS
+    from app.storage.layout import KEYS
 
     opened.refuse_gone()  # another library's keys may be in its place
     return KeySlots(opened.folder / KEYS)

@@ -30,8 +30,9 @@ from app.storage.database.models import JournalRow
 from app.storage.derived_keys import derived_keys
 from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import SUFFIX, JournalRefusedError, read_header
-from app.storage.library import FILE_NAME, Library, now_utc
-from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, Report, made_beside
+from app.storage.layout import DATABASE, KEYS, RECORDINGS
+from app.storage.library import Library, now_utc
+from app.storage.opened import OpenedLibrary, Report, made_beside
 from app.storage.stored import Action, AuditFault, Checkpoint, LibraryError
 from app.wording import tr
 
@@ -92,7 +93,7 @@ def back_up(
     opened.library.audit.note(Action.BACKUP, "library")
     with made_beside(folder) as beside:
         # the database first: what it knows of is then there, and what came later is found as left over
-        work = _Work(report, opened.folder / FILE_NAME, [opened.folder / KEYS, *opened.recordings.glob(f"*{SUFFIX}")])
+        work = _Work(report, opened.folder / DATABASE, [opened.folder / KEYS, *opened.recordings.glob(f"*{SUFFIX}")])
         work.refuse_too_little_room(into)
         _copy_database(opened.folder, beside, opened.data_key, work)
         journals = sorted(opened.recordings.glob(f"*{SUFFIX}"))
@@ -157,9 +158,9 @@ def restore(
     """
     told, hashes = _read_list(backup)
     with made_beside(folder) as beside:
-        work = _Work(report, backup / FILE_NAME, [backup / name for name in hashes])
+        work = _Work(report, backup / DATABASE, [backup / name for name in hashes])
         work.refuse_too_little_room(folder.resolve().parent)
-        _copy(backup / FILE_NAME, beside / FILE_NAME, work)
+        _copy(backup / DATABASE, beside / DATABASE, work)
         _copy_files(backup, beside, hashes, work)
         faults = _check(beside, data_key, told.checkpoint, hashes, work)
         with Library.open(beside, data_key) as library:  # who may not work there restores nothing
@@ -201,8 +202,8 @@ class _Work:
 
 def _copy_database(library: Path, folder: Path, data_key: KeyMaterial | None, work: _Work) -> None:
     """Copy page by page, as the library is at this moment, while others go on writing to it."""
-    source = sqlite_engine(library / FILE_NAME, data_key, creates=False)
-    target = sqlite_engine(folder / FILE_NAME, data_key)
+    source = sqlite_engine(library / DATABASE, data_key, creates=False)
+    target = sqlite_engine(folder / DATABASE, data_key)
     try:
         with closing(source.raw_connection()) as reading, closing(target.raw_connection()) as writing:
             connection, copy = reading.driver_connection, writing.driver_connection
@@ -261,7 +262,7 @@ def _check(
             raise LibraryError(
                 tr("{file} was not copied as it is").format(file=name), "Try again, or choose another disk"
             )
-    database = Database(sqlite_engine(folder / FILE_NAME, data_key, creates=False))
+    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
     try:
         if database.faults():
             raise LibraryError("The database of this copy is damaged", "Choose an earlier backup, or another disk")
@@ -304,7 +305,7 @@ def _sha256(path: Path, work: _Work) -> str:
 
 
 def _end_of_audit(folder: Path, data_key: KeyMaterial | None) -> Checkpoint:
-    database = Database(sqlite_engine(folder / FILE_NAME, data_key, creates=False))
+    database = Database(sqlite_engine(folder / DATABASE, data_key, creates=False))
     try:
         with database.reading() as session:
             return end_of_audit(session)

@@ -2,8 +2,9 @@
 
 The database is copied under the new key, with the keys of all journals wrapped anew, then takes the place of the old
 one, and the slots' file after it. Killed at any point, the library opens with the keys that it had or with all of the
-new ones: `settle` looks which database stands there, by the salt in its first bytes, and takes the slots' file that
-belongs to it. What stands in the journals' own headers comes last; until then the database's copy opens them.
+new ones: `settle` (`app.storage.key_change_rest`) looks which database stands there, by the salt in its first bytes,
+and takes the slots' file that belongs to it. What stands in the journals' own headers comes last; until then the
+database's copy opens them.
 
 Backups that were made before keep their old key. So does what a disk keeps of files that were replaced.
 """
@@ -22,16 +23,17 @@ from app.storage.data_key import KEY_BYTES, DataKey, KeyMaterial
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import JournalRow, SettingRow
 from app.storage.derived_keys import derived_keys, keep_derived_keys
-from app.storage.files import held, replace_file, sync_folder
+from app.storage.files import replace_file, sync_folder
 from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError, find_segments
-from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.library import FILE_NAME
-from app.storage.opened import KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS, OpenedLibrary, Report
+from app.storage.journal_headers import HEADERS_DUE, write_headers
+from app.storage.key_change_rest import remove_database, salt_of
+from app.storage.keys import KeySlots
+from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS, RECORDINGS
+from app.storage.opened import OpenedLibrary, Report
 from app.storage.recovery import find_interrupted
 from app.storage.stored import Action, LibraryBusyError, LibraryError
 from app.wording import tr
 
-HEADERS_DUE = "journal_headers_due"  # the setting that says that headers still hold the old wrapping
 PIECE_BYTES = 1 << 20
 PAGES = 256  # of the database, copied between two reports
 COPY_SHARE = 0.3  # of the progress; the journals take the rest
@@ -76,7 +78,7 @@ def change_data_key(opened: OpenedLibrary, staying: Iterable[str], report: Repor
     with slots.held():
         sealed = slots.sealed_anew(old, new, staying)
         _replace(opened.folder, old, new, sealed.content, report)
-    database = Database(sqlite_engine(opened.folder / FILE_NAME, new, creates=False))
+    database = Database(sqlite_engine(opened.folder / DATABASE, new, creates=False))
     try:
         write_headers(database, opened.folder / RECORDINGS)
     finally:
@@ -116,40 +118,9 @@ def refuse_change(opened: OpenedLibrary) -> None:
         )
 
 
-def write_headers(database: Database, recordings: Path) -> None:
-    """Write into the journals' headers what the database has of them, where a change of the key left that to be done.
-
-    Raises
-    ------
-    OSError
-        A file cannot be written; it is tried again at the next start.
-    """
-    with database.reading() as session:
-        if session.get(SettingRow, HEADERS_DUE) is None:
-            return
-        rows = [(row.file, row.wrapped_key) for row in session.scalars(select(JournalRow)) if row.wrapped_key]
-    for file, wrapped_key in rows:
-        path = recordings / file
-        if not path.exists():
-            continue
-        with path.open("r+b", buffering=0) as journal:
-            found = journal.read(HEADER_BYTES)
-            try:
-                wanted = JournalHeader.parsed(found, file, wrapped_key).packed()
-            except JournalRefusedError:
-                continue  # damaged before, and said so wherever it is read
-            if wanted != found:
-                journal.seek(0)
-                journal.write(wanted)
-                os.fsync(journal.fileno())
-    with database.writing() as session:
-        if (row := session.get(SettingRow, HEADERS_DUE)) is not None:
-            session.delete(row)
-
-
 def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], report: Report) -> None:
-    path, beside = folder / FILE_NAME, folder / NEW_DATABASE
-    _remove(beside)
+    path, beside = folder / DATABASE, folder / NEW_DATABASE
+    remove_database(beside)
     engine = sqlite_engine(path, old, creates=False)
     try:
         with closing(engine.raw_connection()) as source:
@@ -158,7 +129,7 @@ def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], 
             _hold_alone(connection.execute)
             _copy(connection, beside, new, report)
             _wrap_anew(folder, beside, old, new, report)
-            salt = _salt(beside)
+            salt = salt_of(beside)
             if salt is None:
                 raise LibraryError("The new database is not there", "Try again, or see to the disk")
             replace_file(folder / NEW_KEYS, json.dumps({**keys, "database": salt}, indent=1).encode())
@@ -170,7 +141,7 @@ def _replace(folder: Path, old: DataKey, new: DataKey, keys: dict[str, object], 
             sync_folder(folder)
     finally:
         engine.dispose()
-        _remove(beside)
+        remove_database(beside)
 
 
 def _hold_alone(execute: Callable[[str], object]) -> None:
@@ -245,43 +216,3 @@ def _size(path: Path) -> int:
         return path.stat().st_size
     except FileNotFoundError:
         return 0
-
-
-def settle(folder: Path) -> None:
-    """Finish or take back a change of the key that was interrupted. To be called before the slots are read.
-
-    Raises
-    ------
-    KeyRefusedError
-        Somebody is changing the keys just now.
-    OSError
-        A file cannot be written.
-    """
-    keys, new_keys, beside = folder / KEYS, folder / NEW_KEYS, folder / NEW_DATABASE
-    if not (new_keys.exists() or beside.exists()):
-        return
-    try:
-        with held(keys.with_name(f"{KEYS}.lock")):
-            if new_keys.exists():
-                if json.loads(new_keys.read_bytes())["database"] == _salt(folder / FILE_NAME):
-                    new_keys.replace(keys)
-                else:
-                    new_keys.unlink()
-            _remove(beside)
-            sync_folder(folder)
-    except BlockingIOError:
-        raise KeyRefusedError("Somebody else is changing the keys", "Try again in a moment") from None
-
-
-def _salt(database: Path) -> str | None:
-    """What tells one database of SQLCipher from another: random, in the open, drawn when it was made."""
-    try:
-        with database.open("rb") as file:
-            return file.read(16).hex()
-    except FileNotFoundError:
-        return None
-
-
-def _remove(database: Path) -> None:
-    for ending in ("", "-wal", "-shm", "-journal"):
-        database.with_name(database.name + ending).unlink(missing_ok=True)

@@ -15,13 +15,13 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Self
 
 from app.storage.data_key import KeyMaterial
+from app.storage.layout import DATABASE
 from app.storage.stored import Action, LibraryError, NotAllowedError, Operator, Role
 
 if TYPE_CHECKING:
     from app.storage.database.engine import Database
     from app.storage.root import LibraryRoot
 
-FILE_NAME = "library.db"
 DEMONSTRATOR = Operator("demo", "Demonstration", Role.ADMINISTRATOR)
 
 
@@ -112,10 +112,10 @@ class Library:
         """
         from app.storage.database.write_ahead_log import is_end_lost
 
-        if not (folder / FILE_NAME).exists():
+        if not (folder / DATABASE).exists():
             raise LibraryError("This folder holds no library", "Choose another folder, or restore it from a backup")
         try:
-            is_lost = is_end_lost(folder / f"{FILE_NAME}-wal")
+            is_lost = is_end_lost(folder / f"{DATABASE}-wal")
         except OSError as error:
             raise LibraryError("The library's files cannot be read", "See to the rights of its folder") from error
         database = _database(folder, data_key, creates=False)
@@ -239,7 +239,7 @@ class Library:
         OSError
             A file cannot be written.
         """
-        from app.storage.key_change import write_headers
+        from app.storage.journal_headers import write_headers
 
         write_headers(self._database, recordings)
 
@@ -259,4 +259,4 @@ class Library:
 def _database(folder: Path, data_key: KeyMaterial | None, creates: bool) -> "Database":
     from app.storage.database.engine import Database, sqlite_engine
 
-    return Database(sqlite_engine(folder / FILE_NAME, data_key, creates=creates))
+    return Database(sqlite_engine(folder / DATABASE, data_key, creates=creates))

@@ -1,16 +1,4 @@
-"""What stands where in a library's folder, and how is it opened with a passphrase?
-
-keys.json                          who may open it
-library.db                         the encrypted database
-recordings/ID.SEGMENT.journal      the samples
-library-id                         which library it is, for whoever has no key
-in-use                             locked by the program that records here
-tries.json                         how many wrong passphrases were typed
-keys-next.json, library-next.db    a change of the key that is not finished
-
-All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made anew:
-recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
-"""
+"""How is a library opened with a passphrase, and held while it is open?"""
 
 import shutil
 import tempfile
@@ -24,15 +12,12 @@ from typing import Self
 from app.storage.data_key import DataKey
 from app.storage.files import held, sync_folder
 from app.storage.journal.shelter import Shelter
+from app.storage.key_change_rest import settle
 from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.layout import IN_USE, KEYS, RECORDINGS
 from app.storage.library import Library
 from app.storage.stored import LibraryError, Operator
 from app.wording import tr
-
-KEYS = "keys.json"
-NEW_KEYS, NEW_DATABASE = "keys-next.json", "library-next.db"
-RECORDINGS = "recordings"
-IN_USE = "in-use"
 
 Report = Callable[[float, str], None]
 """Called with the share done (0 to 1) and what is being done. What it raises ends the work."""
@@ -92,10 +77,7 @@ def slots_of(folder: Path) -> KeySlots:
     OSError
         A file cannot be written.
     """
-    if (folder / NEW_KEYS).exists() or (folder / NEW_DATABASE).exists():
-        from app.storage.key_change import settle
-
-        settle(folder)
+    settle(folder)
     return KeySlots(folder / KEYS)
 
 

@@ -17,15 +17,16 @@ from pytestqt.qtbot import QtBot
 
 from app import main_window
 from app.home import session_screen
-from app.home.entry import KEYS, SHORTEST
+from app.home.entry import SHORTEST
 from app.main_window import MainWindow
 from app.settings import Scheme, Settings
-from app.storage import keys, opened
+from app.storage import keys
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
@@ -509,7 +510,6 @@ def test_every_word_fits(
 
 
 def test_what_the_window_may_not_import_is_the_same_there() -> None:
-    assert KEYS == opened.KEYS
     assert SHORTEST == keys.MIN_PASSPHRASE
 
 

@@ -29,8 +29,9 @@ from PySide6.QtWidgets import QApplication, QStackedWidget, QWidget
 from app.settings import Settings
 from app.storage.exchange import import_session
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary, open_library
+from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts

@@ -17,10 +17,12 @@ from app.storage.database.engine import Database, sqlite_engine
 from app.storage.journal.header import find_segments
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.writer import JournalWriter
-from app.storage.key_change import change_data_key, write_headers
+from app.storage.journal_headers import write_headers
+from app.storage.key_change import change_data_key
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.library import FILE_NAME, Library
-from app.storage.opened import KEYS, NEW_DATABASE, NEW_KEYS, OpenedLibrary, open_library
+from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
+from app.storage.library import Library
+from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, RecordingState, Role, StoredJournal
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -84,7 +86,7 @@ def faults_after(folder: Path) -> tuple[bool, list[str]]:
     """Whether the key is the new one, and what is wrong."""
     faults: list[str] = []
     with open_library(folder, PASSPHRASE, "hk") as opened:
-        database = Database(sqlite_engine(folder / FILE_NAME, opened.data_key))
+        database = Database(sqlite_engine(folder / DATABASE, opened.data_key))
         write_headers(database, opened.recordings)
         database.close()
         faults += opened.library.faults()

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 
@@ -30,7 +30,6 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
-from app.storage.opened import KEYS
 from app.workers.library_desk import LibraryDesk
 from core.samples import Patient
 

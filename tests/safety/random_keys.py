@@ -29,7 +29,8 @@ from pathlib import Path
 from typing import Any
 
 from app.storage.keys import KeyRefusedError
-from app.storage.opened import KEYS, slots_of
+from app.storage.layout import KEYS
+from app.storage.opened import slots_of
 from devices.files.session_folder import write_session
 from devices.walker import DEMONSTRATION, simulate
 from tests.safety.random_visits import OPERATOR, PASSPHRASE

@@ -37,7 +37,8 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.layout import KEYS
+from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
 from app.wizard import sources
 from app.wizard.worn_sensors import SourceChoice

@@ -16,8 +16,9 @@ from app.storage.exchange import session_with_samples
 from app.storage.journal.disk import JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError
 from app.storage.keys import KeySlots
-from app.storage.library import FILE_NAME, Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.layout import DATABASE, KEYS
+from app.storage.library import Library
+from app.storage.opened import OpenedLibrary
 from app.storage.recovery import find_interrupted
 from app.storage.slots import Cost
 from app.storage.stored import LibraryBusyError, LibraryError, Operator, PlacedSensor, RecordingState, Role
@@ -318,4 +319,4 @@ def test_a_disk_that_fails_is_told_and_what_was_written_is_kept(
     assert stored.state is RecordingState.RECOVERED
     assert all(len(block) > 20 for block in recording.imu.values())
     assert len(recording.imu) == 2
-    assert (opened.folder / FILE_NAME).exists()
+    assert (opened.folder / DATABASE).exists()

@@ -20,7 +20,8 @@ from app.review.viewer import Viewer
 from app.storage.data_key import DataKey
 from app.storage.journal.disk import JournalFile, Room
 from app.storage.journal.writer import JournalSummary
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role
 from core.results import Analysis, Method
@@ -214,7 +215,7 @@ def test_a_database_that_is_locked_loses_nothing(
     opened.library.sessions.place(visit.id, worn)
     told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     room = Room(start_s=0.0, start_bytes=0, warn_s=0.0, kept_bytes=0)
-    with locked(opened.folder / FILE_NAME, seconds):
+    with locked(opened.folder / DATABASE, seconds):
         begin_s = time.monotonic()
         recorder = Recorder.begin(opened, acquisition, visit.id, told, room=room)
         assert time.monotonic() - begin_s < ROW_WAIT_S + 1.0

@@ -15,8 +15,9 @@ from app.exports.spreadsheet import write_spreadsheet
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.opened import OpenedLibrary
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from core.analysis import analyse

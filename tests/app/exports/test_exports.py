@@ -21,8 +21,9 @@ from app.storage.audit import about
 from app.storage.exchange import import_session
 from app.storage.journal.disk import Room
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.opened import OpenedLibrary
 from app.storage.pseudonyms import Pseudonyms, Typed, age_in_words
 from app.storage.slots import Cost
 from app.storage.stored import Action, LibraryError, Operator, Role

@@ -26,8 +26,9 @@ from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.opened import OpenedLibrary
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
 from app.storage.slots import Cost

@@ -12,7 +12,8 @@ from sqlalchemy import Engine, create_engine, event, text
 
 from app.storage.database.engine import Database, postgres_engine, sqlite_engine
 from app.storage.database.schema import bring_up_to_date
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.stored import Operator, Role
 
 DATA_KEY = bytes(range(32))
@@ -45,7 +46,7 @@ def make_engine(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Make
     if request.param == "sqlite":
 
         def make() -> Engine:
-            made.append(sqlite_engine(tmp_path / FILE_NAME, DATA_KEY, try_s=0.1))
+            made.append(sqlite_engine(tmp_path / DATABASE, DATA_KEY, try_s=0.1))
             return made[-1]
 
         yield make

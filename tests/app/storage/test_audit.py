@@ -15,7 +15,8 @@ from sqlalchemy import Engine, text
 from app.storage.audit import hash_of, verify
 from app.storage.database.engine import Database
 from app.storage.derived_keys import derived_from
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.root import ID_FILE
 from app.storage.stored import BEGINNING, Action, AuditEntry, Checkpoint, LibraryError, NotAllowedError, Operator, Role
 from core.samples import Patient
@@ -233,7 +234,7 @@ def test_eight_processes_at_once_make_one_chain(tmp_path: Path) -> None:
         report = library.audit.verify()
         assert report.faults == ()
         assert report.end.number == 2 + 8 * 201
-    assert {path.name for path in tmp_path.iterdir()} == {FILE_NAME, ID_FILE}
+    assert {path.name for path in tmp_path.iterdir()} == {DATABASE, ID_FILE}
 
 
 def test_nobody_logged_in_can_neither_read_nor_write_it(library: Library) -> None:

@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 from app.storage.database.engine import Database, sqlite_engine
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.stored import (
     AnalysedRecording,
     AnalysisInputs,
@@ -85,8 +86,8 @@ def test_a_library_is_not_made_over_another(tmp_path: Path) -> None:
 
 def test_making_a_library_that_was_interrupted_is_finished(tmp_path: Path) -> None:
     Library.create(tmp_path, DATA_KEY, FIRST).close()
-    (tmp_path / FILE_NAME).unlink()
-    engine = sqlite_engine(tmp_path / FILE_NAME, DATA_KEY)
+    (tmp_path / DATABASE).unlink()
+    engine = sqlite_engine(tmp_path / DATABASE, DATA_KEY)
     Library(Database(engine), DATA_KEY).close()  # it has tables, and nobody yet
     with Library.create(tmp_path, DATA_KEY, FIRST) as library:
         assert [operator.code for operator in library.operators.list()] == ["hk"]
@@ -103,7 +104,7 @@ def test_no_library_and_no_rights_are_said(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("content", [b"", b"SQLite format 3\0" + bytes(4080), b"x" * 8192])
 def test_what_is_no_library_is_refused(tmp_path: Path, content: bytes) -> None:
-    (tmp_path / FILE_NAME).write_bytes(content)
+    (tmp_path / DATABASE).write_bytes(content)
     if content:
         with pytest.raises(LibraryError, match="does not open"):
             Library.open(tmp_path, DATA_KEY)

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.root import ID_FILE
 
 NAMES = 200
@@ -108,7 +109,7 @@ def test_no_planted_name_is_found_after_a_kill_amid_a_write(
         folder.mkdir()
         written_and_killed(folder, "5a" * 32, names, rounds, rng.uniform(0.5, 1.5))
         left = {path.name for path in (folder / "library").iterdir()}
-        assert left == {FILE_NAME, ID_FILE, f"{FILE_NAME}-wal", f"{FILE_NAME}-shm"}  # it was killed while open
+        assert left == {DATABASE, ID_FILE, f"{DATABASE}-wal", f"{DATABASE}-shm"}  # it was killed while open
         assert found(folder, names) == set()
         with Library.open(folder / "library", b"\x5a" * 32) as library:
             library.log_in("hk")

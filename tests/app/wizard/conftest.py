@@ -13,8 +13,8 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.acquisition import Acquisition
 from app.settings import Settings
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts

@@ -15,8 +15,9 @@ from app.storage.data_key import LibraryLockedError
 from app.storage.journal.disk import Room
 from app.storage.journal.header import JournalRefusedError
 from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary, held_alone, open_library
+from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report

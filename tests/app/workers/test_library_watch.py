@@ -18,9 +18,10 @@ from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
-from app.storage.opened import KEYS, OpenedLibrary, held_alone
+from app.storage.opened import OpenedLibrary, held_alone
 from app.storage.recovery import find_interrupted
 from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost

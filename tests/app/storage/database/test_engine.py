@@ -17,7 +17,7 @@ from sqlalchemy import Engine, event, select, text
 from app.storage.database.engine import Database, postgres_engine, refuse_old_sqlite, sqlite_engine
 from app.storage.database.models import SettingRow
 from app.storage.database.schema import bring_up_to_date
-from app.storage.library import FILE_NAME
+from app.storage.layout import DATABASE
 from app.storage.stored import ChangedMeanwhileError, LibraryBusyError, LibraryError
 
 DATA_KEY = bytes(range(32))
@@ -34,7 +34,7 @@ sys.stdin.readline()
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    return tmp_path / FILE_NAME
+    return tmp_path / DATABASE
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_what_is_written_is_synced_wiped_and_checked(encrypted: Database) -> Non
 def test_only_the_owner_can_read_the_files(encrypted: Database, file: Path) -> None:
     put(encrypted, "one", 1)
     files = list(file.parent.iterdir())
-    assert {path.name for path in files} == {FILE_NAME, f"{FILE_NAME}-wal", f"{FILE_NAME}-shm"}
+    assert {path.name for path in files} == {DATABASE, f"{DATABASE}-wal", f"{DATABASE}-shm"}
     assert [path.name for path in files if path.stat().st_mode & 0o077] == []
 
 

@@ -10,11 +10,12 @@ import sqlcipher3.dbapi2 as sqlite
 from app.storage.database.engine import Database, sqlite_engine
 from app.storage.database.models import SettingRow
 from app.storage.database.write_ahead_log import is_end_lost
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.stored import Operator, Role
 
 DATA_KEY = bytes(range(32))
-LOG = f"{FILE_NAME}-wal"
+LOG = f"{DATABASE}-wal"
 
 
 def crashed(folder: Path, times: int) -> Path:
@@ -90,13 +91,13 @@ def test_what_is_half_written_at_the_end_had_not_been_saved(tmp_path: Path) -> N
 
 
 def test_frames_of_an_older_log_or_of_a_change_taken_back_are_not_missed(tmp_path: Path) -> None:
-    database = Database(sqlite_engine(tmp_path / FILE_NAME, DATA_KEY))
+    database = Database(sqlite_engine(tmp_path / DATABASE, DATA_KEY))
     log = tmp_path / LOG
     with database.rebuilding() as connection:
         SettingRow.__table__.create(connection)  # type: ignore[attr-defined]  # it is a table, typed as what it selects from
     for k in range(10):
         put(database, f"setting {k}")
-    other = sqlite.connect(str(tmp_path / FILE_NAME), isolation_level=None)
+    other = sqlite.connect(str(tmp_path / DATABASE), isolation_level=None)
     other.execute(f"PRAGMA key = \"x'{DATA_KEY.hex()}'\"")
     assert other.execute("PRAGMA wal_checkpoint(RESTART)").fetchone()[0] == 0
     long = log.stat().st_size

@@ -14,8 +14,9 @@ from app.storage.journal.disk import Room
 from app.storage.journal.payloads import Belonging, layout_of
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.storage.library import Library
-from app.storage.opened import KEYS, OpenedLibrary
+from app.storage.opened import OpenedLibrary
 from app.storage.slots import Cost
 from app.storage.stored import Operator, PlacedSensor, RecordingState, Role, StoredJournal, StoredRecording
 from core.body import Site

@@ -14,8 +14,8 @@ import pytest
 from app.storage.backup import LIST, back_up, find_backups, remove_old_backups, restore
 from app.storage.journal.reader import JournalReader
 from app.storage.keys import KeySlots
-from app.storage.library import FILE_NAME
-from app.storage.opened import KEYS, RECORDINGS, OpenedLibrary, open_library
+from app.storage.layout import DATABASE, KEYS, RECORDINGS
+from app.storage.opened import OpenedLibrary, open_library
 from app.storage.stored import Action, LibraryError, StoredRecording
 from core.samples import Patient
 
@@ -61,7 +61,7 @@ def test_a_backup_is_encrypted_and_its_owners(opened: OpenedLibrary, record: Rec
     opened.library.patients.create(Patient(code="Kowalczyk"))
     folder = back_up(opened, tmp_path / "backups").folder
     files = [path for path in folder.rglob("*") if path.is_file()]
-    assert {path.name for path in files if path.parent == folder} == {FILE_NAME, KEYS, LIST}
+    assert {path.name for path in files if path.parent == folder} == {DATABASE, KEYS, LIST}
     assert not [path for path in files if b"Kowalczyk" in path.read_bytes() or b"walk 1" in path.read_bytes()]
     if os.name != "nt":
         assert {stat.S_IMODE(path.stat().st_mode) for path in files} == {0o600}
@@ -141,7 +141,7 @@ def test_what_the_library_lacks_already_is_told_and_the_rest_is_kept(
     assert restore(backup.folder, tmp_path / "restored", opened.data_key, "hk") == backup.faults
 
 
-@pytest.mark.parametrize("what", [FILE_NAME, KEYS, RECORDINGS])
+@pytest.mark.parametrize("what", [DATABASE, KEYS, RECORDINGS])
 def test_a_backup_that_was_damaged_since_is_not_restored(
     opened: OpenedLibrary, record: Record, tmp_path: Path, what: str
 ) -> None:

@@ -25,10 +25,12 @@ from app.storage.journal.header import find_segments, read_header
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.reader import JournalReader
 from app.storage.journal.writer import JournalWriter
-from app.storage.key_change import change_data_key, write_headers
+from app.storage.journal_headers import write_headers
+from app.storage.key_change import change_data_key
 from app.storage.keys import KeyRefusedError, KeySlots
-from app.storage.library import FILE_NAME, Library
-from app.storage.opened import KEYS, NEW_DATABASE, NEW_KEYS, OpenedLibrary, open_library
+from app.storage.layout import DATABASE, KEYS, NEW_DATABASE, NEW_KEYS
+from app.storage.library import Library
+from app.storage.opened import OpenedLibrary, open_library
 from app.storage.recovery import adopt_home, find_interrupted
 from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
@@ -88,7 +90,7 @@ def test_who_leaves_opens_nothing_new_with_an_old_copy_of_the_keys(
         assert not again.library.faults()
         assert not again.library.audit.verify().faults
     left = sorted(path.name for path in opened.folder.iterdir())
-    assert left == ["keys.json", "keys.json.lock", "library-id", FILE_NAME, "recordings"]
+    assert left == ["keys.json", "keys.json.lock", "library-id", DATABASE, "recordings"]
 
 
 def test_all_others_and_the_recovery_key_open_as_before(opened: OpenedLibrary, slots: KeySlots) -> None:
@@ -245,7 +247,7 @@ def test_headers_that_a_kill_left_are_written_at_the_next_start(
         assert row
         with pytest.raises(Exception, match="damaged or another library's"):
             JournalReader(recording, again.data_key)
-        database = Database(sqlite_engine(again.folder / FILE_NAME, again.data_key))
+        database = Database(sqlite_engine(again.folder / DATABASE, again.data_key))
         write_headers(database, again.recordings)
         database.close()
         assert samples_of(again)
@@ -276,7 +278,7 @@ def test_a_kill_at_any_point_leaves_the_old_key_or_the_new_one(
             os._exit(0)
     os.waitpid(child, 0)
     with open_library(opened.folder, PASSPHRASE, "hk") as after:
-        database = Database(sqlite_engine(after.folder / FILE_NAME, after.data_key))
+        database = Database(sqlite_engine(after.folder / DATABASE, after.data_key))
         write_headers(database, after.recordings)
         database.close()
         assert samples_of(after) == expected

@@ -24,7 +24,8 @@ from app.storage.journal.disk import JournalFile, Trouble
 from app.storage.journal.header import JournalRefusedError, destroy_key, find_segments
 from app.storage.journal.payloads import Belonging
 from app.storage.journal.writer import JournalWriter, State
-from app.storage.library import FILE_NAME, Library
+from app.storage.layout import DATABASE
+from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, create_library, open_library
 from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.root import ID_FILE, LibraryGoneError
@@ -234,7 +235,7 @@ def test_another_library_at_the_same_path_is_not_mistaken_for_it(
             assert bring_home(other) == frozenset()
             assert find_interrupted(other) == ()
             assert other.library.patients.search() == ()
-        assert [path for path in sorted(opened.folder.rglob("*")) if path.name != f"{FILE_NAME}-wal"] == before
+        assert [path for path in sorted(opened.folder.rglob("*")) if path.name != f"{DATABASE}-wal"] == before
         shutil.rmtree(opened.folder)
     assert bring_home(opened) == {lines.id}
 

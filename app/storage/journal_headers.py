@@ -1,0 +1,43 @@
+"""The keys in the journals' own headers, after a change of the library's data key (`app.storage.key_change`)."""
+
+import os
+from pathlib import Path
+
+from sqlalchemy import select
+
+from app.storage.database.engine import Database
+from app.storage.database.models import JournalRow, SettingRow
+from app.storage.journal.header import HEADER_BYTES, JournalHeader, JournalRefusedError
+
+HEADERS_DUE = "journal_headers_due"  # the setting that says that headers still hold the old wrapping
+
+
+def write_headers(database: Database, recordings: Path) -> None:
+    """Write into the journals' headers what the database has of them, where a change of the key left that to be done.
+
+    Raises
+    ------
+    OSError
+        A file cannot be written; it is tried again at the next start.
+    """
+    with database.reading() as session:
+        if session.get(SettingRow, HEADERS_DUE) is None:
+            return
+        rows = [(row.file, row.wrapped_key) for row in session.scalars(select(JournalRow)) if row.wrapped_key]
+    for file, wrapped_key in rows:
+        path = recordings / file
+        if not path.exists():
+            continue
+        with path.open("r+b", buffering=0) as journal:
+            found = journal.read(HEADER_BYTES)
+            try:
+                wanted = JournalHeader.parsed(found, file, wrapped_key).packed()
+            except JournalRefusedError:
+                continue  # damaged before, and said so wherever it is read
+            if wanted != found:
+                journal.seek(0)
+                journal.write(wanted)
+                os.fsync(journal.fileno())
+    with database.writing() as session:
+        if (row := session.get(SettingRow, HEADERS_DUE)) is not None:
+            session.delete(row)

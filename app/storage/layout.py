@@ -1,0 +1,18 @@
+"""What stands where in a library's folder.
+
+keys.json                          who may open it
+library.db                         the encrypted database
+recordings/ID.SEGMENT.journal      the samples
+library-id                         which library it is, for whoever has no key
+in-use                             locked by the program that records here
+tries.json                         how many wrong passphrases were typed
+keys-next.json, library-next.db    a change of the key that is not finished
+
+All of this is in the library's own folder, which `create_library` alone makes. One that is gone is never made anew:
+recordings then go into a shelter on this computer (`app.storage.root`) until it is back (`app.storage.bringing_home`).
+"""
+
+KEYS, NEW_KEYS = "keys.json", "keys-next.json"
+DATABASE, NEW_DATABASE = "library.db", "library-next.db"
+RECORDINGS = "recordings"
+IN_USE = "in-use"
