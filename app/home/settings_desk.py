@@ -64,6 +64,7 @@ class SettingsDesk(QObject):
         self.page.renew.setVisible(is_administrator)
         self.page.choose_folder.setVisible(is_administrator)
         self._show_screen()
+        self._on_backup_folder_read("")  # the one in sight is another library's
         if is_own:
             self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
             self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)  # no passphrase holds its name

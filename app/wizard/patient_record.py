@@ -57,7 +57,7 @@ class PatientRecord(QObject):
 
     def edit(self, told: Patient) -> None:
         """Take what is on the screen; a patient of the library is changed once the typing pauses."""
-        self.told = replace(told, code=told.code.strip())
+        self.told = replace(told, code=told.code.strip(), device=told.device.strip())
         if self.stored is not None and self.told.code == self.stored.told.code:
             self._pause.start()
 

@@ -1,6 +1,7 @@
 """The recordings of a visit: begun, stopped, kept or not. What is shown live is a preview of what comes back here."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
+from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from datetime import datetime
 from typing import TYPE_CHECKING, NamedTuple
@@ -17,8 +18,6 @@ from core.body import Side
 from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future
-
     from app.acquisition.acquisition import Acquisition
     from app.acquisition.recorder import Recorder
     from app.storage.opened import OpenedLibrary
@@ -97,7 +96,8 @@ class Takes(QObject):
         self._must_stop, self._must_keep = False, True
         self._strides: Mapping[Side, int] | None = None
         self._is_stopping = False
-        self._is_restrapped = False
+        self._is_restrapped = self._is_closed = False
+        self._beginning: Future[Recorder]
         self._again = QTimer(self)
         self._again.setSingleShot(True)
         self._again.setInterval(READ_AGAIN_MS)
@@ -208,11 +208,16 @@ class Takes(QObject):
         self._latest, self._trouble, self._is_without_row = None, None, False
         self._acquisition, self._lost_before = acquisition, acquisition.lost()
         session_id = self.session.id
+        begun = self._beginning = Future["Recorder"]()
 
         def start(opened: "OpenedLibrary", turn: "Future[None]") -> "Recorder":
             from app.acquisition.recorder import Recorder
 
-            return Recorder.begin(opened, acquisition, session_id, told, self._on_trouble, turn)
+            try:
+                begun.set_result(Recorder.begin(opened, acquisition, session_id, told, self._on_trouble, turn))
+            except BaseException as error:
+                begun.set_exception(error)
+            return begun.result()
 
         self._desk.record(start, self._on_started, self._on_not_started, self)
         self.changed.emit()
@@ -239,6 +244,18 @@ class Takes(QObject):
         if not self._again.isActive():
             self._read_back()
         self.changed.emit()
+
+    def close(self) -> None:
+        """Stop for good: of one that has not begun yet nobody may hear any more, so the library ends it itself."""
+        if self.ongoing is None or self._recorder is not None or self._is_stopping:
+            self.stop()
+            return
+        begun, self._is_closed = self._beginning, True
+
+        def end(opened: "OpenedLibrary") -> None:
+            begun.result().stop(opened)
+
+        self._desk.run(end, self._on_closed, self._on_not_closed, self)
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
@@ -374,7 +391,17 @@ class Takes(QObject):
         if self._trouble in ENDS:
             self.stop()
 
+    def _on_closed(self, _nothing: None) -> None:
+        self.ongoing = None
+        self.changed.emit()
+
+    def _on_not_closed(self, what: str, remedy: str) -> None:
+        """What was recorded, if anything was, is found at the next start."""
+        self._on_not_started(what, remedy)
+
     def _on_started(self, recorder: "Recorder") -> None:
+        if self._is_closed:
+            return
         self._recorder = self._latest = recorder
         self._is_restrapped = False
         self._is_without_row = not recorder.has_row

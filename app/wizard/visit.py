@@ -307,7 +307,7 @@ class Visit(QObject):
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
         if self.takes.is_recording and (acquisition := self.sensors.detach()) is not None:
-            self.takes.stop()
+            self.takes.close()
 
             def close(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
                 acquisition.close()

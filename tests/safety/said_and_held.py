@@ -131,7 +131,7 @@ def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
         yield f"settings list {page._rows.count()} operators, held are {operators}"
     said = re.match(r"Backups go to (.+)\.$", page._backup_folder.text())
     kept = held.ask("SELECT value FROM settings WHERE name = 'backup_folder'")
-    if said is not None and (not kept or said[1] not in str(kept[0][0])):
+    if page._backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
         yield f"settings say {said[0]!r}, held is {kept}"
 
 

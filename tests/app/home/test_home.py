@@ -492,6 +492,17 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
 
 
+def test_the_settings_of_one_library_name_no_folder_of_another(
+    qtbot: QtBot, home: Home, desk: LibraryDesk, tmp_path: Path
+) -> None:
+    page, state = home.settings.page, desk.state
+    assert state is not None
+    home.settings.set_backup_folder(str(tmp_path / "disk"))
+    qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
+    home.settings.show_library(replace(state, is_demonstration=True))
+    assert page._backup_folder.text() == "No folder is chosen for backups yet."
+
+
 @pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
 def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_it(
     qtbot: QtBot, home: Home, desk: LibraryDesk, first: int, role: Role

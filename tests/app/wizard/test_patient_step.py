@@ -71,12 +71,13 @@ def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, s
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
         step.page.code_committed.emit()
     assert step.bar().note == "Saved as you type."
-    type_in(step, Patient(code="DEMO-9", mass_kg=82.0))
+    type_in(step, Patient(code="DEMO-9", mass_kg=82.0, device="knee K2  "))
     assert step.bar().note == "Not saved yet."
     qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=5000)
     assert step.bar().note == "Saved as you type."
     assert visit.patient.stored is not None
     assert visit.patient.stored.told.mass_kg == 82.0
+    assert visit.patient.stored.told.device == "knee K2"
 
 
 def test_the_set_up_of_the_last_visit_is_taken_over(

@@ -1,12 +1,14 @@
 """A visit is begun, recorded, evaluated and taken up again, and loses nothing on the way."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 from pytestqt.qtbot import QtBot
 
 from app.storage.analysis_content import packed
 from app.storage.audit import about
+from app.storage.opened import open_library
 from app.storage.stored import Limits, RecordingState
 from app.theme import Look
 from app.widgets.rail_row import StepState
@@ -18,7 +20,7 @@ from app.workers.library_desk import LibraryDesk
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
-from tests.app.wizard.conftest import SPEED
+from tests.app.wizard.conftest import PASSPHRASE, SPEED
 
 
 def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
@@ -219,6 +221,20 @@ def test_closing_in_mid_walk_loses_nothing(
     assert walk.recording is not None
     assert all(np.ptp(block.time_s) > 0.8 * 0.5 * SPEED for block in walk.recording.imu.values())
     again.finish()
+
+
+def test_what_has_hardly_begun_when_the_program_ends_is_ended_too(
+    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site], tmp_path: Path
+) -> None:
+    begin(qtbot, visit, worn)
+    acquisition, session = visit.sensors.acquisition, visit.session
+    assert acquisition is not None
+    assert session is not None
+    visit.takes.begin(acquisition, RecordingKind.STANDING)
+    visit.close()
+    desk.finish()  # no event loop runs in between
+    with open_library(tmp_path / "library", PASSPHRASE) as opened:
+        assert [one.state for one in opened.library.sessions.get(session.id).recordings] == [RecordingState.CLOSED]
 
 
 def test_another_code_typed_over_a_patient_with_sessions_is_somebody_else(qtbot: QtBot, visit: Visit) -> None:
