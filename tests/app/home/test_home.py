@@ -499,7 +499,7 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
     assert state is not None
     home.settings.set_backup_folder(str(tmp_path / "disk"))
     qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
-    home.settings.show_library(replace(state, is_demonstration=True))
+    home.settings.show_library(replace(state, library=replace(state.library, data_key=None)))
     assert page._backup_folder.text() == "No folder is chosen for backups yet."
 
 
