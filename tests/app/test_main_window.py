@@ -202,6 +202,25 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
     assert slots.is_recovery_key_confirmed
 
 
+def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_question_of_that_library(
+    qtbot: QtBot, open_window: Open, folder: Path
+) -> None:
+    slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
+    slots.renew_recovery_key(slots.open("hk", PASSPHRASE))  # which nobody has typed back
+    window = open_window(folder)
+    assert window.entry is not None
+    log_in, shown = window.entry.log_in, []
+    qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
+    window.entry.shown.connect(shown.append)
+    log_in.passphrase.set_text(PASSPHRASE)
+    QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
+    window.open_demonstration()
+    qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home, timeout=WAIT_MS)
+    assert window.desk.state is not None
+    assert window.desk.state.is_demonstration
+    assert shown == [window.entry.waiting]
+
+
 def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))

@@ -260,15 +260,18 @@ def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[
 
 
 def _of_banner(banner: "Banner", held: HeldLibrary) -> Iterator[str]:
-    """What is claimed of recordings that were recovered, or are safe; a banner that is hidden claims nothing."""
+    """What is claimed of recordings that were recovered, or are safe; a banner that is hidden claims nothing.
+
+    What was recovered wholly is held as closed.
+    """
     if banner.isHidden():
         return
     text = banner.text
     one = RECOVERED_ONE.search(text)
-    if one and not held.ask("SELECT 1 FROM recordings WHERE state = 'recovered' AND name = ?", one[1]):
+    if one and not held.ask(f"SELECT 1 FROM recordings WHERE state IN {READ_BACK} AND name = ?", one[1]):
         yield f"the banner says {text!r}, held is no recovered {one[1]!r}"
     many = RECOVERED_MANY.search(text)
-    if many and held.ask("SELECT COUNT(*) FROM recordings WHERE state = 'recovered'")[0][0] < int(many[1]):
+    if many and held.ask(f"SELECT COUNT(*) FROM recordings WHERE state IN {READ_BACK}")[0][0] < int(many[1]):
         yield f"the banner says {text!r}, held are fewer"
     if "safe on the disk" in text and not any((held.folder / "recordings").glob("*.journal")):
         yield f"the banner says {text!r}, there is no journal"
