@@ -29,7 +29,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
     from app.known_columns import known_columns
     from devices.catalogue import DRIVERS
     from devices.live import SourceRefusedError
-    from devices.search import Found, search, search_streams
+    from devices.search import SearchResult, search, search_streams
 
     found = search(columns=known_columns())
     if streams_in:
@@ -38,7 +38,7 @@ def list_devices(streams_in: str = "") -> Iterator[str]:
         except SourceRefusedError as refusal:
             yield str(refusal)
         else:
-            found = Found(found.sensors + streams.sensors, found.passed + streams.passed, found.lines)
+            found = SearchResult(found.sensors + streams.sensors, found.passed + streams.passed, found.lines)
     names = {driver.key: driver.name for driver in DRIVERS}
     yield "Sensors that were heard:" if found.sensors else "No sensor was heard."
     for sensor in found.sensors:
@@ -100,7 +100,7 @@ def _ask(patient: "EmulatedPatient", asked: Iterable[str], tell: Callable[[str],
 @contextmanager
 def _emulations(patient: "EmulatedPatient", kind: str, count: int) -> "Iterator[list[Emulation]]":
     from devices.emulators.patient import EmulatedSensor
-    from devices.emulators.transports import Emulation, Terminal
+    from devices.emulators.transports import Emulation, PseudoTerminal
 
     with tempfile.TemporaryDirectory(prefix="gaitwright-ports-") as folder:
         emulations: list[Emulation] = []
@@ -108,7 +108,7 @@ def _emulations(patient: "EmulatedPatient", kind: str, count: int) -> "Iterator[
             for number in range(count):
                 link = Path(folder) / f"{kind}-{number + 1}"
                 voice = EmulatedSensor(patient, kind, number).voice
-                emulations.append(Emulation(voice, partial(Terminal, link)))
+                emulations.append(Emulation(voice, partial(PseudoTerminal, link)))
             yield emulations
         finally:
             for emulation in emulations:

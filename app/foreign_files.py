@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from core.body import Site
     from core.samples import Session
-    from devices.files.imports import Imported
+    from devices.files.imports import ImportedFiles
     from devices.files.limited_reader import LimitedReader, Waiting
 
 
@@ -57,7 +57,7 @@ def import_foreign(
     recording: str,
     rate_hz: float | None,
     waiting: "Waiting",
-) -> "Imported":
+) -> "ImportedFiles":
     """The samples of one recording of another program, as its importer in `devices.files` gives them.
 
     Raises

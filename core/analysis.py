@@ -82,16 +82,16 @@ def analyse(
     has_stood = any(r.is_kept and r.kind is RecordingKind.STANDING for r in session.recordings)
     for number, span in enumerate(spans):
         steps = _Steps(progress, number / len(spans), 1 / len(spans))
-        tracks, told = tracks_of_kind(session, span, quality.unusable)
-        findings += told
+        tracks, noticed = tracks_of_kind(session, span, quality.unusable)
+        findings += noticed
         findings += about_labels(tracks)
         drifts = clock_drifts(tracks)
         findings += about_clocks(drifts)
         bases = _bases(tracks)
         steps.expect(len(set(bases.values())) + len(bases))
         identified = _identify(tracks, bases, method, tau_s, steps)
-        lags, told = _lags(tracks, bases, identified)
-        findings += told
+        lags, noticed = _lags(tracks, bases, identified)
+        findings += noticed
         measured = _measure(tracks, bases, identified, lags, steps)
         calibrated = calibrate(tracks, bases, identified, measured, method)
         for basis, calibration in calibrated.items():
@@ -100,8 +100,8 @@ def analyse(
             findings += about_joint(calibration, identified[basis], turned, is_zero_typed, has_stood)
         by_walk = _by_walk(span, bases, calibrated)
         calibrations += by_walk
-        slipped, told = _slipped(tracks, by_walk, lags)
-        findings += told
+        slipped, noticed = _slipped(tracks, by_walk, lags)
+        findings += noticed
         for recording in _moving(span):
             found = _angles(tracks, recording, bases, calibrated, measured, lags)
             found = _before_slips(found, slipped)

@@ -163,7 +163,7 @@ def _sign_of_foot(tracks: SensorTracks, found: Identified) -> ClinicalSign | Non
         if recording.name not in found.basis.walks or not tracks.is_usable(recording, joint.distal):
             continue
         for motion in tracks.foot_motions(recording, joint.distal, tracks.blocks(recording)[0]):
-            told = ankle_sign_from_foot(float(found.geometry.axis_2 @ motion.pitch_axis), len(motion.swings))
-            if motion.is_direction_certain and told.is_certain:
-                return told
+            sign = ankle_sign_from_foot(float(found.geometry.axis_2 @ motion.pitch_axis), len(motion.swings))
+            if motion.is_direction_certain and sign.is_certain:
+                return sign
     return None

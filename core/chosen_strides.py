@@ -35,7 +35,7 @@ def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
     left = judged(replace(analysis, recordings=walks))
     findings = list(analysis.findings)
     for walk, found in zip(analysis.recordings, left.recordings, strict=True):
-        told = [
+        noticed = [
             Finding(
                 "strides_left_out_by_hand",
                 Severity.INFO,
@@ -45,11 +45,11 @@ def leave_out(analysis: Analysis, recordings: Sequence[Recording]) -> Analysis:
             for side, gait in found.gait.items()
             if (count := left_out_by_hand(gait))
         ]
-        if told:
+        if noticed:
             before, after = about_walk(walk, _sites(walk)), about_walk(found, _sites(walk))
             findings = [finding for finding in findings if finding not in before or finding in after]
             findings += [finding for finding in after if finding not in findings]
-            findings += told
+            findings += noticed
     return replace(left, findings=tuple(findings))
 
 

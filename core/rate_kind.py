@@ -31,7 +31,7 @@ def tracks_of_kind(
     """The tracks of a span, of the kind that the data show where sensors do not tell it; a finding says so."""
     instants = SensorTracks(session, span, unusable, RateKind.INSTANTANEOUS)
     evidence = 0.0
-    for recording, joint in _untold(instants):
+    for recording, joint in _undeclared(instants):
         evidence += _evidence(instants, recording, joint)
         if abs(evidence) > ENOUGH_EVIDENCE:
             break
@@ -41,14 +41,14 @@ def tracks_of_kind(
     return SensorTracks(session, span, unusable, RateKind.AVERAGED), [found]
 
 
-def _untold(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
+def _undeclared(tracks: SensorTracks) -> list[tuple[Recording, Joint]]:
     """The first recordings of each joint of which no sensor tells its kind."""
-    told = {site for site, info in tracks.session.sensors.items() if info.rate_kind is not None}
+    declared = {site for site, info in tracks.session.sensors.items() if info.rate_kind is not None}
     moving = [recording for recording in tracks.span if recording.kind is not RecordingKind.STANDING]
     found = []
     for joint in Joint:
         sites = joint.proximal, joint.distal
-        if told.isdisjoint(sites):
+        if declared.isdisjoint(sites):
             usable = [(recording, joint) for recording in moving if tracks.is_usable(recording, *sites)]
             found += usable[:MAX_RECORDINGS]
     return found

@@ -10,7 +10,7 @@ from devices.shimmer3 import DRIVER as SHIMMER3
 from devices.shimmer3 import KNOCK as KNOCK_SHIMMER3
 from devices.shimmer3 import Shimmer3
 from devices.source import StreamDecoder
-from devices.stream import Decoder, Dialect
+from devices.stream import Decoder, SensorProtocol
 from devices.witmotion import DRIVER as WITMOTION
 from devices.witmotion import WitMotion
 from devices.ximu3 import DRIVER as XIMU3
@@ -32,8 +32,8 @@ class Driver:
         Against what it was tried, and against what not.
     decoder
         Of the bytes in a journal; None: samples are kept, and need none.
-    dialect
-        A new one as a search uses it; None: it has to be told more first.
+    protocol
+        A new one as a search uses it; None: settings are needed before one can be made.
     bauds
         Of its serial ports, the likeliest first.
     hint
@@ -46,7 +46,7 @@ class Driver:
     name: str
     proof: str
     decoder: Callable[[], StreamDecoder] | None
-    dialect: Callable[[], Dialect] | None = None
+    protocol: Callable[[], SensorProtocol] | None = None
     bauds: tuple[int, ...] = ()
     hint: str = ""
     knock: bytes = b""

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass
 
 from devices.channels import Channel
 from devices.clock import Unwrapping
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import Framer, Heard, listen
 
@@ -83,11 +83,11 @@ class Columns:
         ValueError, TypeError
             It is something else.
         """
-        told = settings.get("columns")
-        if not isinstance(told, Mapping):
+        columns = settings.get("columns")
+        if not isinstance(columns, Mapping):
             raise ValueError("the journal does not say what the columns mean")
-        lists = {key: tuple(told[key]) for key in ("rate", "force", "signs") if key in told}
-        return cls(**{**told, **lists})
+        lists = {key: tuple(columns[key]) for key in ("rate", "force", "signs") if key in columns}
+        return cls(**{**columns, **lists})
 
 
 class CsvFramer:
@@ -165,7 +165,7 @@ class CsvSerial:
     def identifying(self) -> bytes:
         return b""
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         if self._columns is None:
             raise ValueError("nobody said what the columns mean")
         framer = CsvFramer(self._columns)
@@ -178,4 +178,4 @@ class CsvSerial:
             )
         sensor = self._name or channel.serial or channel.place
         info = SourceInfo(DRIVER, VERSION, channel.serial, (sensor,), self._columns.settings())
-        return info, SensorTold(MODEL, channel.serial, "", self._columns.rate_hz)
+        return info, SensorDetails(MODEL, channel.serial, "", self._columns.rate_hz)

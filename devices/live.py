@@ -28,7 +28,7 @@ class SourceLostError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class SensorTold:
+class SensorDetails:
     """What a sensor says of itself. `rate_hz`, `rate_kind` and `battery` (0 to 1) None: it does not tell."""
 
     model: str = ""
@@ -81,7 +81,7 @@ class LiveSource(Protocol):
     def close(self) -> None:
         """Stop listening; never raises, and may be called of a source that is closed."""
 
-    def told(self) -> Mapping[str, SensorTold]:
+    def details(self) -> Mapping[str, SensorDetails]:
         """What each sensor says of itself, by name."""
 
     def identify(self, sensor: str) -> bool:

@@ -23,7 +23,7 @@ import numpy as np
 from core.samples import ImuBlock, RecordingKind
 from devices.clock import LiveClock
 from devices.host_clock import host_time_ns
-from devices.live import Keep, SensorTold, SourceLostError, SourceRefusedError
+from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.networks import THIS_COMPUTER
 from devices.source import SourceInfo
 
@@ -94,7 +94,7 @@ class LslStream:
     rate_hz: float | None
 
 
-class _Asked:
+class _QueriedNetwork:
     """Where this process asks for streams: the library reads its settings once, before it does anything."""
 
     changing = threading.Lock()
@@ -110,16 +110,16 @@ def ask_in(address: str) -> None:
         The library is not installed, or streams were asked for elsewhere before.
     """
     pylsl = _imported()
-    with _Asked.changing:
-        if not _Asked.address:
+    with _QueriedNetwork.changing:
+        if not _QueriedNetwork.address:
             settings = ON_THIS_COMPUTER if address == THIS_COMPUTER else IN_A_NETWORK
             pylsl.set_config_content(settings.format(address=address, group=GROUP))
-            _Asked.address = address
-        elif _Asked.address != address:
+            _QueriedNetwork.address = address
+        elif _QueriedNetwork.address != address:
             raise SourceRefusedError(
                 "Lab Streaming Layer has been asked in the network of {other}, and asks there until the program ends",
                 "Close Gaitwright and start it again to ask elsewhere",
-                other=_Asked.address,
+                other=_QueriedNetwork.address,
             )
 
 
@@ -131,7 +131,7 @@ def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...
     return tuple(sorted((_stream(one) for one in found), key=lambda one: (one.name, one.host)))
 
 
-def told_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
+def announced_sensors(stream: LslStream) -> tuple[LslSensor, ...]:
     """Ask a stream what its channels are.
 
     Raises
@@ -205,8 +205,8 @@ def _parsed(label: str) -> tuple[str, str, str] | None:
 
 
 def _scale(stream: str, units: Sequence[str], columns: Sequence[int], known: Mapping[str, float]) -> float:
-    told = {re.sub(r"[\s()]", "", units[column] if column < len(units) else "").lower() for column in columns}
-    if len(told) == 1 and (scale := known.get(told.pop())) is not None:
+    unit_words = {re.sub(r"[\s()]", "", units[column] if column < len(units) else "").lower() for column in columns}
+    if len(unit_words) == 1 and (scale := known.get(unit_words.pop())) is not None:
         return scale
     raise SourceRefusedError(
         "The stream {name} does not tell its units", "Tell them where it is sent, such as deg/s and m/s^2", name=stream
@@ -261,9 +261,9 @@ class LslSource:
             )
         inlet = pylsl.StreamInlet(found[0], max_buflen=BUFFER_S, recover=False)
         try:
-            told = inlet.info(timeout=OPEN_S)
+            info = inlet.info(timeout=OPEN_S)
             sensors = self._given or sensors_of(
-                self._stream.name, _texts(told.get_channel_labels()), _texts(told.get_channel_units())
+                self._stream.name, _texts(info.get_channel_labels()), _texts(info.get_channel_units())
             )
             inlet.open_stream(timeout=OPEN_S)
             with suppress(pylsl.util.TimeoutError):  # arrivals tell until it is known
@@ -308,8 +308,8 @@ class LslSource:
         if inlet is not None:
             inlet.close_stream()
 
-    def told(self) -> Mapping[str, SensorTold]:
-        one = SensorTold(model=self._stream.kind, serial=self._stream.source, rate_hz=self._stream.rate_hz)
+    def details(self) -> Mapping[str, SensorDetails]:
+        one = SensorDetails(model=self._stream.kind, serial=self._stream.source, rate_hz=self._stream.rate_hz)
         return {sensor.name: one for sensor in self._sensors}
 
     def identify(self, sensor: str) -> bool:
@@ -343,13 +343,13 @@ def _stream(found: Any) -> LslStream:
     return LslStream(found.name(), found.type(), found.source_id(), found.hostname(), rate_hz if rate_hz > 0 else None)
 
 
-def _texts(told: Sequence[str | None] | None) -> list[str]:
-    return [text or "" for text in told or ()]
+def _texts(texts: Sequence[str | None] | None) -> list[str]:
+    return [text or "" for text in texts or ()]
 
 
 def _library() -> ModuleType:
     """The library, which asks this computer only where nobody has chosen."""
-    if not _Asked.address:
+    if not _QueriedNetwork.address:
         ask_in(THIS_COMPUTER)
     return _imported()
 

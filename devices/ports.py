@@ -29,7 +29,7 @@ class PortInfo:
     description: str = ""
     serial: str = ""
     usb: tuple[int, int] | None = None
-    is_told: bool = False
+    is_named: bool = False
     """Somebody named it, so that it is looked at whatever it is."""
 
     @property
@@ -40,7 +40,7 @@ class PortInfo:
     @property
     def is_likely(self) -> bool:
         """Whether a sensor may be there: most other ports of a machine are empty, or another's and slow to open."""
-        return bool(self.usb or self.is_told or any(name in self.device for name in SENSORS_RADIO))
+        return bool(self.usb or self.is_named or any(name in self.device for name in SENSORS_RADIO))
 
     def is_same(self, other: "PortInfo") -> bool:
         """Whether the same thing is plugged in, at whichever port it is now."""
@@ -60,9 +60,9 @@ def list_ports() -> tuple[PortInfo, ...]:
         )
         for port in listing.comports()
     ]
-    told = [path for path in os.environ.get(MORE_PORTS, "").split(os.pathsep) if path]
-    found += [PortInfo(path, "named by " + MORE_PORTS, is_told=True) for path in told if Path(path).exists()]
-    return tuple(sorted(found, key=lambda port: (port.usb is None and not port.is_told, port.device)))
+    named = [path for path in os.environ.get(MORE_PORTS, "").split(os.pathsep) if path]
+    found += [PortInfo(path, "named by " + MORE_PORTS, is_named=True) for path in named if Path(path).exists()]
+    return tuple(sorted(found, key=lambda port: (port.usb is None and not port.is_named, port.device)))
 
 
 class SerialPort:

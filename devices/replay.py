@@ -11,7 +11,7 @@ import numpy as np
 from core.body import Site
 from core.samples import BoolArray, ImuBlock, Recording, RecordingKind, SensorInfo, Session
 from devices.host_clock import host_time_ns
-from devices.live import Keep, SensorTold, SourceLostError, SourceRefusedError
+from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.source import SourceInfo
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, WalkerSettings, simulate
 
@@ -118,13 +118,13 @@ class ReplaySource:
         self._by_kind = {kind: [r for r in session.recordings if r.kind is kind] for kind in RecordingKind}
         self._turns = {kind: count() for kind in RecordingKind}
         self._idle = (self._by_kind[RecordingKind.STANDING] or list(session.recordings))[0]
-        self._told = {
-            name: _told(session.sensors.get(site, SensorInfo()), name, _longest(session, site))
+        self._details = {
+            name: _details(session.sensors.get(site, SensorInfo()), name, _longest(session, site))
             for site, name in self._names.items()
         }
-        self._steps_s = {name: 1.0 / told.rate_hz for name, told in self._told.items() if told.rate_hz}
+        self._steps_s = {name: 1.0 / details.rate_hz for name, details in self._details.items() if details.rate_hz}
         self._info = SourceInfo(DRIVER, VERSION, name, tuple(self._names.values()), is_simulated=True)
-        self._chance = {name: np.random.default_rng([faults.seed, k]) for k, name in enumerate(self._told)}
+        self._chance = {name: np.random.default_rng([faults.seed, k]) for k, name in enumerate(self._details)}
         self._lock = threading.Lock()  # of all below, which is changed from any thread
         self._clips: list[_Clip] = []
         self._asked: RecordingKind | None = None  # and not begun yet
@@ -156,7 +156,7 @@ class ReplaySource:
             now_s = self._now_s()
             from_s = max(self._read_to_s, now_s - self._buffer_s)
             self._play_on(now_s)
-            blocks = [block for name in self._told for block in self._sent(name, from_s, now_s)]
+            blocks = [block for name in self._details for block in self._sent(name, from_s, now_s)]
             oldest_s = min(from_s, now_s) - max(self._faults.lag_s.values(), default=0.0)
             self._clips = [clip for clip in self._clips if clip.end_s > oldest_s]
             self._read_to_s = now_s
@@ -166,8 +166,8 @@ class ReplaySource:
         with self._lock:
             self.is_open = False
 
-    def told(self) -> Mapping[str, SensorTold]:
-        return self._told
+    def details(self) -> Mapping[str, SensorDetails]:
+        return self._details
 
     def identify(self, sensor: str) -> bool:
         """Shake it: nobody sees a light on it."""
@@ -315,9 +315,9 @@ def _longest(session: Session, site: Site) -> ImuBlock:
     return max((recording.imu[site] for recording in session.recordings if site in recording.imu), key=len)
 
 
-def _told(info: SensorInfo, name: str, block: ImuBlock) -> SensorTold:
+def _details(info: SensorInfo, name: str, block: ImuBlock) -> SensorDetails:
     rate_hz = info.rate_hz or (float(1.0 / np.median(np.diff(block.time_s))) if len(block) > 1 else 1.0)
-    return SensorTold(info.model, info.serial or name, info.firmware, rate_hz, info.rate_kind)
+    return SensorDetails(info.model, info.serial or name, info.firmware, rate_hz, info.rate_kind)
 
 
 def _faster(now_ns: Callable[[], int], speed: float) -> Callable[[], int]:

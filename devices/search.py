@@ -17,7 +17,7 @@ from devices.csv_serial import Columns, CsvSerial
 from devices.lines import LinesAt, columns_in
 from devices.live import LiveSource, SourceLostError, SourceRefusedError
 from devices.lsl import DRIVER as LSL
-from devices.lsl import LslSource, OtherStreamError, find_streams, told_sensors
+from devices.lsl import LslSource, OtherStreamError, announced_sensors, find_streams
 from devices.ports import PortInfo, SerialPort, list_ports
 from devices.source import SourceInfo
 from devices.stream import ByteSource
@@ -57,7 +57,7 @@ class Passed:
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class SearchResult:
     sensors: tuple[FoundSensor, ...] = ()
     passed: tuple[Passed, ...] = ()
     lines: tuple[LinesAt, ...] = ()
@@ -70,7 +70,7 @@ def search(
     ports: Sequence[PortInfo] | None = None,
     announced_at: int = ANNOUNCED_AT,
     columns: Mapping[str, Columns] = NO_COLUMNS,
-) -> Found:
+) -> SearchResult:
     """Listen to all ports at once and to the network; takes a second or two. Each sensor is named once.
 
     Nothing is sent but to ports. Who wants streams asks for them: `search_streams`.
@@ -102,11 +102,11 @@ def search(
     for one in [*at_ports, *on_network]:  # by cable rather than by radio
         by_name.setdefault((one.driver, one.name), one)
     passed = sorted((one for one in heard if isinstance(one, Passed)), key=lambda one: one.port.device)
-    return Found(tuple(by_name.values()), tuple(passed), tuple(lines))
+    return SearchResult(tuple(by_name.values()), tuple(passed), tuple(lines))
 
 
 def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Passed | LinesAt:
-    bauds = dict.fromkeys(baud for driver in DRIVERS if driver.dialect for baud in driver.bauds)
+    bauds = dict.fromkeys(baud for driver in DRIVERS if driver.protocol for baud in driver.bauds)
     for baud in bauds:
         channel = SerialPort(port, baud)
         try:
@@ -116,8 +116,8 @@ def _at_port(port: PortInfo, columns: Mapping[str, Columns]) -> FoundSensor | Pa
                 return LinesAt(port, baud, count, columns.get(port.key))
             if not is_sure:
                 driver = _answering(channel) or driver
-            if driver is not None and driver.dialect is not None:
-                info, _ = driver.dialect().greet(channel)
+            if driver is not None and driver.protocol is not None:
+                info, _ = driver.protocol().greet(channel)
                 return FoundSensor(
                     driver.key, info.sensors[0], port.device, _making(driver, port, baud), info.is_simulated
                 )
@@ -152,9 +152,9 @@ def _recognised(channel: Channel, port: PortInfo) -> tuple[Driver | None, bool, 
     """
     said = b""
     candidates = [
-        (driver, driver.dialect().framer(SourceInfo(driver.key, "")))
+        (driver, driver.protocol().framer(SourceInfo(driver.key, "")))
         for driver in DRIVERS
-        if driver.dialect is not None
+        if driver.protocol is not None
     ]
     until_s = time.monotonic() + LISTEN_S
     while time.monotonic() < until_s:
@@ -190,8 +190,8 @@ def _answering(channel: SerialPort) -> Driver | None:
 
 def _making(driver: Driver, port: PortInfo, baud: int) -> Callable[[], LiveSource]:
     def make() -> LiveSource:
-        assert driver.dialect is not None
-        return ByteSource(driver.dialect(), SerialPort(port, baud))
+        assert driver.protocol is not None
+        return ByteSource(driver.protocol(), SerialPort(port, baud))
 
     return make
 
@@ -218,7 +218,7 @@ def _announced(at_port: int) -> list[FoundSensor]:
     return list(found.values())
 
 
-def search_streams(address: str) -> Found:
+def search_streams(address: str) -> SearchResult:
     """Ask for the sensors among the streams of Lab Streaming Layer; see `devices.lsl.ask_in`.
 
     Raises
@@ -231,13 +231,13 @@ def search_streams(address: str) -> Found:
     for stream in find_streams(address):
         place = f"Lab Streaming Layer, {stream.name}"
         try:
-            names = [sensor.name for sensor in told_sensors(stream)]
+            names = [sensor.name for sensor in announced_sensors(stream)]
             found.append(FoundSensor(LSL, ", ".join(names), place, partial(LslSource, stream), count=len(names)))
         except OtherStreamError:  # of a heart or a brain
             continue
         except SourceRefusedError as refusal:
             passed.append(Passed(PortInfo(place), refusal))
-    return Found(tuple(found), tuple(passed))
+    return SearchResult(tuple(found), tuple(passed))
 
 
 def _has_network() -> bool:
@@ -252,12 +252,12 @@ def _has_network() -> bool:
 def announcement(datagram: bytes, address: str) -> FoundSensor | None:
     """What an x-IMU3 says of itself on the network; None where it is something else."""
     try:
-        told = json.loads(datagram)
+        details = json.loads(datagram)
     except (ValueError, RecursionError):
         return None
-    if not isinstance(told, dict) or not isinstance(serial := told.get("sn"), str) or not serial:
+    if not isinstance(details, dict) or not isinstance(serial := details.get("sn"), str) or not serial:
         return None
-    tcp, send, receive = (_port(told.get(key)) for key in ("port", "send", "receive"))
+    tcp, send, receive = (_port(details.get(key)) for key in ("port", "send", "receive"))
     # what the sensor told is its address is not believed: a datagram is no reason to speak with somebody else
     channel: Callable[[], Channel]
     if tcp:
@@ -269,5 +269,5 @@ def announcement(datagram: bytes, address: str) -> FoundSensor | None:
     return FoundSensor(XIMU3, serial, place, lambda: ByteSource(Ximu3(), channel()))
 
 
-def _port(told: object) -> int:
-    return told if isinstance(told, int) and 0 < told < 65536 else 0
+def _port(details: object) -> int:
+    return details if isinstance(details, int) and 0 < details < 65536 else 0

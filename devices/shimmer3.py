@@ -19,7 +19,7 @@ import numpy as np
 from core.samples import FloatArray, RateKind
 from devices.channels import Channel
 from devices.clock import Unwrapping
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import Heard
 
@@ -233,8 +233,8 @@ class _Shape:
     def is_whole(self, held: bytes, at: int) -> bool:
         """Whether the checksum of what is at `at` is right, in full length."""
         end = at + self.size
-        told = held[end - 2] | held[end - 1] << 8
-        return held[at] == Command.PACKET and crc_hqx(held[at : end - 2] + self.padding, CHECKSUM_SEED) == told
+        checksum = held[end - 2] | held[end - 1] << 8
+        return held[at] == Command.PACKET and crc_hqx(held[at : end - 2] + self.padding, CHECKSUM_SEED) == checksum
 
     def find_due(self, held: bytes, at: int, last: int) -> int:
         """Where within the packet at `at` one begins that is due after `last`; -1 if none does."""
@@ -299,7 +299,7 @@ class Shimmer3:
     def framer(self, info: SourceInfo) -> Shimmer3Framer:
         return Shimmer3Framer(info)
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         talk = _Talk(channel)
         talk.quieten()
         firmware = talk.asked(Command.FIRMWARE, Command.FIRMWARE_ANSWER, lambda _: 6)
@@ -312,7 +312,7 @@ class Shimmer3:
         name = talk.asked(Command.NAME, Command.NAME_ANSWER, lambda said: 1 + said[0])[1:].decode("ascii", "replace")
         kind, major, minor, internal = struct.unpack("<HHBB", firmware)
         period = self._wanted_period or _owned_period(talk)
-        if not name or not all(talk.told(bytes(wish)) for wish in _wishes(period)):
+        if not name or not all(talk.commanded(bytes(wish)) for wish in _wishes(period)):
             raise _unwilling(channel)
         calibration = talk.asked(Command.CALIBRATION, Command.CALIBRATION_ANSWER, lambda _: 4 * CALIBRATION_SIZE)
         inquiry = talk.asked(Command.INQUIRY, Command.INQUIRY_ANSWER, lambda said: 8 + said[6])
@@ -339,11 +339,11 @@ class Shimmer3:
                 place=channel.place,
             ) from problem
         if has_checksum:
-            talk.told(bytes([Command.SET_CHECKSUM, 2]))
+            talk.commanded(bytes([Command.SET_CHECKSUM, 2]))
         channel.write(bytes([Command.START]))
         version = f"LogAndStream {major}.{minor}.{internal}" if kind == 3 else f"{major}.{minor}.{internal}"
         info = SourceInfo(DRIVER, VERSION, name, (name,), settings, is_simulated=name.startswith(EMULATED))
-        return info, SensorTold("Shimmer3", name, version, TICK_HZ / period, RateKind.INSTANTANEOUS)
+        return info, SensorDetails("Shimmer3", name, version, TICK_HZ / period, RateKind.INSTANTANEOUS)
 
     def identifying(self) -> bytes:
         return bytes([Command.TOGGLE_LED])
@@ -351,8 +351,8 @@ class Shimmer3:
 
 def _owned_period(talk: "_Talk") -> int:
     """How far apart its owner let it sample, in ticks, where that is of use; else the nearest that is."""
-    told = int.from_bytes(talk.asked(Command.RATE, Command.RATE_ANSWER, lambda _: 2), "little")
-    return min(max(told or SLOWEST_PERIOD, FASTEST_PERIOD), SLOWEST_PERIOD)
+    period = int.from_bytes(talk.asked(Command.RATE, Command.RATE_ANSWER, lambda _: 2), "little")
+    return min(max(period or SLOWEST_PERIOD, FASTEST_PERIOD), SLOWEST_PERIOD)
 
 
 def _wishes(period: int) -> Sequence[tuple[int, ...]]:
@@ -384,7 +384,7 @@ class _Talk:
                 if self._channel.read():
                     quiet_s = time.monotonic() + QUIET_S
 
-    def told(self, command: bytes) -> bool:
+    def commanded(self, command: bytes) -> bool:
         """Whether it did as it was told."""
         self._channel.write(command)
         return self._heard(lambda said: said[:1])[:1] == bytes([Command.DONE])

@@ -1,8 +1,8 @@
-"""How does one sensor's stream of bytes become samples, live and once more from a journal?
+"""Decoding of one sensor's byte stream, live and once more from a journal.
 
-A driver is a `Dialect`: how to greet the sensor, and the `Framer` that finds messages in its bytes. All else is the
-same for all of them and stands here. A framer uses nothing but the bytes and what `SourceInfo` holds, and what it finds
-does not depend on how the bytes were cut.
+A driver is a `SensorProtocol`: how to greet the sensor, and the `Framer` that finds messages in its bytes. All else is
+the same for all of them and stands here. A framer uses nothing but the bytes and what `SourceInfo` holds, and what it
+finds does not depend on how the bytes were cut.
 """
 
 import time
@@ -17,7 +17,7 @@ from core.samples import FloatArray, ImuBlock, RecordingKind
 from devices.channels import Channel
 from devices.clock import LiveClock, Ordered, put_in_order
 from devices.host_clock import host_time_ns
-from devices.live import Keep, SensorTold
+from devices.live import Keep, SensorDetails
 from devices.source import DecodedSensor, SourceInfo
 
 Row = tuple[float, ...]
@@ -67,7 +67,7 @@ class Framer(Protocol):
         """Nothing follows: take what was held back for what might follow."""
 
 
-class Dialect(Protocol):
+class SensorProtocol(Protocol):
     """What is particular about one maker's sensors."""
 
     @property
@@ -79,7 +79,7 @@ class Dialect(Protocol):
     def framer(self, info: SourceInfo) -> Framer:
         """A new framer for what is sent under `info`."""
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         """Find out who is there, and set it up as wanted.
 
         Raises
@@ -109,12 +109,12 @@ def decoded(
 
 
 class Decoder:
-    """The `StreamDecoder` of every dialect: all samples in order, each once, stamped by the host's clock."""
+    """The `StreamDecoder` of every protocol: all samples in order, each once, stamped by the host's clock."""
 
-    def __init__(self, dialect: Dialect) -> None:
-        self._dialect = dialect
+    def __init__(self, protocol: SensorProtocol) -> None:
+        self._protocol = protocol
         self._framer: Framer | None = None
-        self._info = SourceInfo(dialect.driver, dialect.version)
+        self._info = SourceInfo(protocol.driver, protocol.version)
         self._heard = Heard()
         self._host_s: list[float] = []
         self._begins: list[int] = []
@@ -122,7 +122,7 @@ class Decoder:
     def begin(self, source: SourceInfo) -> None:
         self._end()
         self._begins.append(len(self._host_s))
-        self._info, self._framer = source, self._dialect.framer(source)
+        self._info, self._framer = source, self._protocol.framer(source)
 
     def feed(self, data: bytes, host_time_s: float) -> None:
         if self._framer is not None:
@@ -183,14 +183,14 @@ class _Noting:
 
 
 class ByteSource:
-    """The `LiveSource` of every dialect: journal first, then messages, then stamps. One sensor."""
+    """The `LiveSource` of every protocol: journal first, then messages, then stamps. One sensor."""
 
     has_bytes = True
 
-    def __init__(self, dialect: Dialect, channel: Channel, now_ns: Callable[[], int] = host_time_ns) -> None:
-        self._dialect, self._channel, self._now_ns = dialect, _Noting(channel), now_ns
-        self._info = SourceInfo(dialect.driver, dialect.version)
-        self._told = SensorTold()
+    def __init__(self, protocol: SensorProtocol, channel: Channel, now_ns: Callable[[], int] = host_time_ns) -> None:
+        self._protocol, self._channel, self._now_ns = protocol, _Noting(channel), now_ns
+        self._info = SourceInfo(protocol.driver, protocol.version)
+        self._details = SensorDetails()
         self._framer: Framer | None = None
         self._clock = LiveClock()
         self._damaged = 0
@@ -217,14 +217,14 @@ class ByteSource:
     def open(self) -> None:
         self._channel.open()
         try:
-            info, told = self._dialect.greet(self._channel)
+            info, details = self._protocol.greet(self._channel)
         except BaseException:
             self._channel.close()
             raise
         if self._info.sensors:  # it keeps its name, whatever it says of itself after it was lost
             info = replace(info, sensors=self._info.sensors)
-        self._info, self._told = info, told
-        self._framer, self._is_open = self._dialect.framer(info), True
+        self._info, self._details = info, details
+        self._framer, self._is_open = self._protocol.framer(info), True
         self._clock.begin()
 
     def read(self, keep: Keep) -> Sequence[ImuBlock]:
@@ -237,8 +237,8 @@ class ByteSource:
         framer.feed(data, now_s)
         heard, framer.heard = framer.heard, Heard(battery=framer.heard.battery)
         self._damaged += heard.damaged
-        if heard.battery is not None and heard.battery != self._told.battery:
-            self._told = replace(self._told, battery=heard.battery)
+        if heard.battery is not None and heard.battery != self._details.battery:
+            self._details = replace(self._details, battery=heard.battery)
         if not heard.rows:
             return ()
         rows = np.array(heard.rows, dtype=float)
@@ -249,11 +249,11 @@ class ByteSource:
         self._is_open = False
         self._channel.close()
 
-    def told(self) -> Mapping[str, SensorTold]:
-        return dict.fromkeys(self._info.sensors, self._told)
+    def details(self) -> Mapping[str, SensorDetails]:
+        return dict.fromkeys(self._info.sensors, self._details)
 
     def identify(self, sensor: str) -> bool:
-        command = self._dialect.identifying()
+        command = self._protocol.identifying()
         if not command or not self._is_open or sensor not in self._info.sensors:
             return False
         with suppress(Exception):  # what is lost is noticed by whoever reads
@@ -290,8 +290,8 @@ def _orientation(rows: Sequence[Row], ordered: Ordered) -> FloatArray | None:
     """The orientation (n, 4) that was told of the same instant as each sample; NaN where none was."""
     if not rows:
         return None
-    told = np.array(rows, dtype=float)
-    told = told[np.argsort(told[:, 0], kind="stable")]
-    place = np.minimum(told[:, 0].searchsorted(ordered.device_s), len(told) - 1)
-    is_told = told[place, 0] == ordered.device_s
-    return np.where(is_told[:, None], told[place, 1:], np.nan)
+    details = np.array(rows, dtype=float)
+    details = details[np.argsort(details[:, 0], kind="stable")]
+    place = np.minimum(details[:, 0].searchsorted(ordered.device_s), len(details) - 1)
+    is_known = details[place, 0] == ordered.device_s
+    return np.where(is_known[:, None], details[place, 1:], np.nan)

@@ -34,9 +34,9 @@ from devices.walker_gait import plan_standing, plan_walk, walk_leg
 from devices.walker_motion import Z_AXIS, LegMotion, move_freely, rotation_about
 from devices.walker_sensors import (
     SEGMENT_ROW,
-    Clock,
     Mounting,
     Ride,
+    SensorClock,
     SensorFaults,
     draw_faults,
     draw_mounting,
@@ -45,7 +45,15 @@ from devices.walker_sensors import (
     record,
     sensor_poses,
 )
-from devices.walker_truth import FootTruth, JointTruth, RecordingTruth, SessionTruth, Take, tell_truth, truth_table
+from devices.walker_truth import (
+    FootTruth,
+    JointTruth,
+    MovedRecording,
+    RecordingTruth,
+    SessionTruth,
+    tell_truth,
+    truth_table,
+)
 from devices.walker_variation import NO_CHANGES, StepChanges, draw_changes, draw_gain, follow_joint
 
 __all__ = [
@@ -83,7 +91,7 @@ MAX_LATE_S = 0.2  # what the margin leaves for a clock
 
 
 @dataclass(frozen=True, slots=True)
-class Worn:
+class StrappedSensors:
     """How the sensors were strapped before recording `strapping`; `gains` as in `JointTruth`."""
 
     strapping: int
@@ -117,18 +125,18 @@ def simulate(settings: WalkerSettings) -> SimulatedSession:
     mountings = _mount(settings, strapping)
     rides: dict[tuple[Site, type], Ride] = {}
     recordings: list[Recording] = []
-    takes: list[Take] = []
+    moved: list[MovedRecording] = []
     for number, wanted in enumerate(settings.recordings):
         if wanted.is_restrapped_before:
             strapping = number
             mountings, rides = _mount(settings, strapping), {}
         soft = [joint for joint in Joint if not _is_bare(legs, joint.distal)]
         gains = {joint: draw_gain(settings, joint, strapping) if joint in soft else 0.0 for joint in Joint}
-        worn = Worn(strapping, mountings, gains)
+        worn = StrappedSensors(strapping, mountings, gains)
         recording, take, faults = _take(settings, number, legs, worn, faults, rides)
         recordings.append(recording)
-        takes.append(take)
-    truth = tell_truth(settings, legs, takes, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
+        moved.append(take)
+    truth = tell_truth(settings, legs, moved, {site: fault.acc_bias_m_s2 for site, fault in start_faults.items()})
     return SimulatedSession(_session(settings, recordings), truth)
 
 
@@ -167,10 +175,10 @@ def _take(
     settings: WalkerSettings,
     number: int,
     legs: Mapping[Side, Leg],
-    worn: Worn,
+    worn: StrappedSensors,
     faults: Mapping[Site, SensorFaults],
     rides: dict[tuple[Site, type], Ride],
-) -> tuple[Recording, Take, dict[Site, SensorFaults]]:
+) -> tuple[Recording, MovedRecording, dict[Site, SensorFaults]]:
     """Recording `number`, how it was moved, and the sensors' faults at its end.
 
     `rides` holds how each sensor rode when these straps were first moved so, and is filled where this is the first.
@@ -178,7 +186,7 @@ def _take(
     wanted = settings.recordings[number]
     motions, duration_s = _move(settings, number, worn.strapping, legs)
     imu: dict[Site, ImuBlock] = {}
-    clocks: dict[Site, Clock] = {}
+    clocks: dict[Site, SensorClock] = {}
     biases: dict[Site, FloatArray] = {}
     after: dict[Site, SensorFaults] = {}
     for site in settings.sites:
@@ -203,7 +211,7 @@ def _take(
     )
     return (
         recording,
-        Take(wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains),
+        MovedRecording(wanted.name, isinstance(wanted, Standing), motions, clocks, worn.mountings, biases, worn.gains),
         after,
     )
 
@@ -249,7 +257,7 @@ def _stand_or_walk(
     per_leg: Mapping[Side, np.random.Generator],
 ) -> tuple[dict[Side, LegMotion], float]:
     if isinstance(wanted, Walk):
-        # no stride takes longer than 2.2 s; the plan says how much of this is needed
+        # no stride moved longer than 2.2 s; the plan says how much of this is needed
         slowest = max(1.0, float(changes.of_steps(2 * wanted.strides)[0].max()))
         ample = wanted.standing_before_s + wanted.standing_after_s + 2.2 * slowest * (wanted.strides + 2)
         time_s = _fine_clock(settings, ample)

@@ -19,9 +19,9 @@ from devices.walker_manners import Gait, gait_at, gaits_of_walk
 from devices.walker_motion import (
     Y_AXIS,
     Z_AXIS,
-    FootEvents,
     JointAngles,
     LegMotion,
+    TrueFootEvents,
     ankle_rotation,
     hang_from_hip,
     knee_rotation,
@@ -216,7 +216,7 @@ def walk_leg(
         if gait.drag > 0.0:
             _drag_toes(hip, foot, hanging[2], swing, gait.drag)
     rotations, origins = hang_from_hip(leg, thigh, hip, angles)
-    events = FootEvents(steps.contact_s[1:], steps.full_contact_s[1:], steps.heel_rise_s[:-1], steps.toe_off_s[:-1])
+    events = TrueFootEvents(steps.contact_s[1:], steps.full_contact_s[1:], steps.heel_rise_s[:-1], steps.toe_off_s[:-1])
     return LegMotion(time_s, angles, rotations, origins, events, place)
 
 

@@ -22,7 +22,7 @@ class JointAngles:
 
 
 @dataclass(frozen=True, slots=True)
-class FootEvents:
+class TrueFootEvents:
     """When one foot lands and leaves, seconds, each ascending."""
 
     initial_contact_s: FloatArray
@@ -31,7 +31,7 @@ class FootEvents:
     toe_off_s: FloatArray
 
 
-NO_EVENTS = FootEvents(*(np.empty(0) for _ in range(4)))
+NO_EVENTS = TrueFootEvents(*(np.empty(0) for _ in range(4)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +47,7 @@ class LegMotion:
     angles: JointAngles
     rotations: FloatArray
     origins_m: FloatArray
-    events: FootEvents
+    events: TrueFootEvents
     footholds_m: FloatArray
 
 

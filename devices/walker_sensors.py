@@ -260,14 +260,14 @@ def _mean_before(signal: FloatArray, at: FloatArray, width: float) -> FloatArray
 
 
 @dataclass(frozen=True, slots=True)
-class Clock:
+class SensorClock:
     """The instants of one sensor's samples (m,) that were kept, and the stamps they got."""
 
     true_s: FloatArray
     stamp_s: FloatArray
 
 
-def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> Clock:
+def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> SensorClock:
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
     late_s, pace = settings.clock_late_s.get(site, 0.0), settings.clock_rate.get(site, 1.0)
     # samples come at the rate that the sensor's own clock calls `rate_hz`
@@ -276,7 +276,7 @@ def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.
     true = stamp / pace - late_s
     jitter, lost = rng.normal(size=count), _lost(count, settings.loss_fraction, rng)
     stamp = stamp + np.clip(settings.stamp_jitter_s * jitter, -0.4 / rate_hz, 0.4 / rate_hz)
-    return Clock(true[~lost], stamp[~lost])
+    return SensorClock(true[~lost], stamp[~lost])
 
 
 def _lost(count: int, fraction: float, rng: np.random.Generator) -> BoolArray:
@@ -292,7 +292,7 @@ def _lost(count: int, fraction: float, rng: np.random.Generator) -> BoolArray:
 def record(
     settings: WalkerSettings,
     site: Site,
-    clock: Clock,
+    clock: SensorClock,
     fine_s: FloatArray,
     poses: tuple[FloatArray, FloatArray],
     faults: SensorFaults,

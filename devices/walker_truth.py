@@ -8,8 +8,8 @@ import numpy as np
 from core.body import Joint, Side, Site
 from core.samples import FloatArray
 from devices.walker_body import Leg, WalkerSettings
-from devices.walker_motion import FootEvents, JointAngles, LegMotion, ankle_rotation, knee_rotation
-from devices.walker_sensors import Clock, Mounting, angular_rate, interpolate
+from devices.walker_motion import JointAngles, LegMotion, TrueFootEvents, ankle_rotation, knee_rotation
+from devices.walker_sensors import Mounting, SensorClock, angular_rate, interpolate
 
 FUNCTIONAL_EVERY = 5  # fine samples; the principal direction of a motion needs no more
 
@@ -58,7 +58,7 @@ class FootTruth:
         Earth axes, z up, at the instants `time_s` (m,).
     """
 
-    events: FootEvents
+    events: TrueFootEvents
     footholds_m: FloatArray
     time_s: FloatArray
     ankle_path_m: FloatArray
@@ -89,27 +89,30 @@ class SessionTruth:
 
 
 @dataclass(frozen=True, slots=True)
-class Take:
+class MovedRecording:
     """One recording as it was moved: the legs, the clocks, the mountings in force, the mean gyroscope biases."""
 
     name: str
     is_standing: bool
     legs: Mapping[Side, LegMotion]
-    clocks: Mapping[Site, Clock]
+    clocks: Mapping[Site, SensorClock]
     mountings: Mapping[Site, Mounting]
     gyro_bias_rad_s: Mapping[Site, FloatArray]
     gains: Mapping[Joint, float]
 
 
 def tell_truth(
-    settings: WalkerSettings, legs: Mapping[Side, Leg], takes: Sequence[Take], acc_bias_m_s2: Mapping[Site, FloatArray]
+    settings: WalkerSettings,
+    legs: Mapping[Side, Leg],
+    moved: Sequence[MovedRecording],
+    acc_bias_m_s2: Mapping[Site, FloatArray],
 ) -> SessionTruth:
-    """All that is known of `takes`, in the terms of the sensors."""
+    """All that is known of `moved`, in the terms of the sensors."""
     joints = [j for j in Joint if j.proximal in settings.sites and j.distal in settings.sites]
-    functional = {joint: _functional_axes(joint, legs[joint.side], takes) for joint in joints}
-    standing = {joint: _standing_angle(joint, takes) for joint in joints}
+    functional = {joint: _functional_axes(joint, legs[joint.side], moved) for joint in joints}
+    standing = {joint: _standing_angle(joint, moved) for joint in joints}
     recordings = {}
-    for take in takes:
+    for take in moved:
         feet = {side: _foot(motion) for side, motion in take.legs.items()}
         recordings[take.name] = RecordingTruth(
             joints={
@@ -127,7 +130,7 @@ def _joint(
     settings: WalkerSettings,
     joint: Joint,
     leg: Leg,
-    take: Take,
+    take: MovedRecording,
     functional: tuple[FloatArray, FloatArray],
     standing_rad: float,
 ) -> JointTruth:
@@ -158,11 +161,11 @@ def _angle(joint: Joint, motion: LegMotion) -> FloatArray:
     return motion.angles.knee if joint.is_knee else motion.angles.ankle
 
 
-def _functional_axes(joint: Joint, leg: Leg, takes: Sequence[Take]) -> tuple[FloatArray, FloatArray]:
+def _functional_axes(joint: Joint, leg: Leg, moved: Sequence[MovedRecording]) -> tuple[FloatArray, FloatArray]:
     """Principal directions of the relative rate in both segments' axes, signed as the joint's axis."""
     axis = leg.knee_axis if joint.is_knee else leg.ankle_axis
     moments = np.zeros((2, 3, 3))
-    for take in takes:
+    for take in moved:
         motion = take.legs[joint.side]
         some = slice(None, None, FUNCTIONAL_EVERY)
         angles = JointAngles(*(getattr(motion.angles, k)[some] for k in ("knee", "ankle", "inversion", "rotation")))
@@ -175,8 +178,8 @@ def _functional_axes(joint: Joint, leg: Leg, takes: Sequence[Take]) -> tuple[Flo
     return signed[0], signed[1]
 
 
-def _standing_angle(joint: Joint, takes: Sequence[Take]) -> float:
-    for take in takes:
+def _standing_angle(joint: Joint, moved: Sequence[MovedRecording]) -> float:
+    for take in moved:
         if take.is_standing:
             return float(np.mean(_angle(joint, take.legs[joint.side])))
     return float("nan")
@@ -201,12 +204,12 @@ def truth_table(truth: SessionTruth) -> tuple[list[str], list[list[str]]]:
     header = ["recording", "time_s", *(f"{joint.value}_deg" for joint in joints), "side", "event"]
     rows: list[list[str]] = []
     for name, recording in truth.recordings.items():
-        told: dict[float, list[str]] = {}
+        cells: dict[float, list[str]] = {}
         for column, joint in enumerate(joints):
             known = recording.joints[joint]
             for time_s, angle in zip(known.time_s, np.rad2deg(known.angle_rad), strict=True):
-                told.setdefault(round(float(time_s), 6), [""] * len(joints))[column] = f"{angle:.5f}"
-        rows += [[name, f"{time_s:.6f}", *told[time_s], "", ""] for time_s in sorted(told)]
+                cells.setdefault(round(float(time_s), 6), [""] * len(joints))[column] = f"{angle:.5f}"
+        rows += [[name, f"{time_s:.6f}", *cells[time_s], "", ""] for time_s in sorted(cells)]
         events = [
             (float(time_s), side.value, event)
             for side, foot in recording.feet.items()

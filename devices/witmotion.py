@@ -10,7 +10,7 @@ from datetime import date
 from struct import Struct
 
 from devices.channels import Channel
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import Framer, Heard, ask, listen
 
@@ -192,7 +192,7 @@ class WitMotion:
     def identifying(self) -> bytes:
         return b""
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         framer = WitFramer()
         channel.write(UNLOCK)
         channel.write(writing(CONTENT_AT, CONTENT))
@@ -208,7 +208,7 @@ class WitMotion:
         sensor = serial or channel.serial or channel.place
         settings = {"rate_hz": rate_hz} if rate_hz else {}
         info = SourceInfo(DRIVER, VERSION, serial, (sensor,), settings, is_simulated=serial.startswith(EMULATED))
-        return info, SensorTold(MODEL, serial, "", rate_hz)
+        return info, SensorDetails(MODEL, serial, "", rate_hz)
 
 
 def _registers(channel: Channel, framer: WitFramer, first: int) -> bytes:

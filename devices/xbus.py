@@ -131,7 +131,7 @@ def _reals(number_format: int, count: int, data: bytes) -> tuple[float, ...]:
     return FLOAT64[count].unpack(data)
 
 
-class Framer:
+class XbusFramer:
     """Cuts a stream into messages, in pieces of any size; never raises and holds one message at most.
 
     Whatever does not begin a message is passed over byte by byte, so that a message inside it is still found.

@@ -10,7 +10,7 @@ from pathlib import Path
 from struct import Struct
 
 from devices.channels import Channel
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import Framer, Heard, ask, decoded
 
@@ -188,7 +188,7 @@ class Ximu3:
     def identifying(self) -> bytes:
         return command("strobe")
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         framer = Ximu3Framer()
         ping = self._ping(channel, framer)
         if self._wanted_hz is not None:
@@ -206,8 +206,8 @@ class Ximu3:
             {"rate_hz": rate_hz} if rate_hz else {},
             is_simulated=name == EMULATED,
         )
-        told = SensorTold(MODEL, serial, firmware if isinstance(firmware, str) else "", rate_hz)
-        return info, told
+        details = SensorDetails(MODEL, serial, firmware if isinstance(firmware, str) else "", rate_hz)
+        return info, details
 
     def _ping(self, channel: Channel, framer: Ximu3Framer) -> object:
         for _ in range(PINGS):
@@ -242,8 +242,8 @@ class _Answers:
         self._key = key
 
     def __call__(self, reply: bytes) -> bool:
-        told = json.loads(reply)
-        return isinstance(told, dict) and self._key in told
+        details = json.loads(reply)
+        return isinstance(details, dict) and self._key in details
 
 
 def _asked(channel: Channel, framer: Ximu3Framer, key: str) -> object:
@@ -252,7 +252,7 @@ def _asked(channel: Channel, framer: Ximu3Framer, key: str) -> object:
     return json.loads(answer)[key] if answer else None
 
 
-def _text(told: object, *keys: str) -> str:
+def _text(details: object, *keys: str) -> str:
     """The first of these entries that is a text."""
-    entries = told if isinstance(told, dict) else {}
+    entries = details if isinstance(details, dict) else {}
     return next((entries[key] for key in keys if isinstance(entries.get(key), str)), "")

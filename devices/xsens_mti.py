@@ -12,18 +12,18 @@ from typing import NamedTuple
 from core.samples import RateKind
 from devices.channels import Channel
 from devices.clock import Unwrapping
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.source import SourceInfo
 from devices.stream import Heard, Row, ask
 from devices.xbus import (
     AXES_MASK,
     ITEM_MASK,
     NORTH_EAST_DOWN,
-    Framer,
     Item,
     Items,
     Message,
     Mid,
+    XbusFramer,
     message,
     values,
 )
@@ -51,7 +51,7 @@ class MtiFramer:
 
     def __init__(self, info: SourceInfo) -> None:
         self.heard = Heard()
-        self._framer = Framer()
+        self._framer = XbusFramer()
         self._damaged = 0
         self._host_s = 0.0
         rate_hz = info.settings.get("rate_hz")
@@ -80,25 +80,25 @@ class MtiFramer:
 
     def _sample(self, items: Items) -> None:
         here = self._where(items)
-        rate, force = _told(items, here.rate), _told(items, here.acceleration)
+        rate, force = _values(items, here.rate), _values(items, here.acceleration)
         if not rate or not force:
             self.heard.skipped += 1  # what the satellites told
             return
         if not _is_meant(rate, MOST_RAD_S) or not _is_meant(force, MOST_M_S2):
             self.heard.damaged += 1  # a checksum of 8 bits is right by chance one time in 256
             return
-        if fine := _told(items, here.fine):
+        if fine := _values(items, here.fine):
             device_s = self._fine.ticks(int(fine[0]), self._host_s) / FINE_HZ
             if self._turns_s is None:  # so that the clock goes on after a cut, although it may have begun anew
                 self._turns_s = round((self._host_s - device_s) / FINE_TURN_S) * FINE_TURN_S
             device_s += self._turns_s
-        elif (counter := _told(items, here.counter)) and self._rate_hz:
+        elif (counter := _values(items, here.counter)) and self._rate_hz:
             device_s = self._counter.ticks(int(counter[0]), self._host_s) / self._rate_hz
         else:
             self.heard.damaged += 1
             return
         self.heard.rows.append((device_s, *rate, *force))
-        if q := _told(items, here.orientation):
+        if q := _values(items, here.orientation):
             is_down = here.orientation & AXES_MASK == NORTH_EAST_DOWN
             self.heard.orientations.append((device_s, *(_upward(q) if is_down else q)))
 
@@ -129,12 +129,12 @@ def _whole(items: Items, kind: int) -> int:
     return next((identifier for identifier in items if identifier & ITEM_MASK == kind), 0)
 
 
-def _told(items: Items, identifier: int) -> tuple[float, ...]:
+def _values(items: Items, identifier: int) -> tuple[float, ...]:
     return values(identifier, items[identifier]) if identifier else ()
 
 
-def _is_meant(told: tuple[float, ...], most: float) -> bool:
-    x, y, z = told
+def _is_meant(values: tuple[float, ...], most: float) -> bool:
+    x, y, z = values
     return -most < x < most and -most < y < most and -most < z < most
 
 
@@ -161,7 +161,7 @@ class XsensMti:
     def framer(self, info: SourceInfo) -> MtiFramer:
         return MtiFramer(info)
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
         framer = MtiFramer(SourceInfo(DRIVER, VERSION))
         if not any(_asked(channel, framer, Mid.GO_TO_CONFIG) for _ in range(TRIES)):
             raise SourceRefusedError(
@@ -181,7 +181,7 @@ class XsensMti:
             )
         settings = {"rate_hz": rate_hz}
         info = SourceInfo(DRIVER, VERSION, serial, (f"MTi {serial}",), settings, is_simulated=model == EMULATED)
-        return info, SensorTold(model, serial, firmware, rate_hz, RateKind.AVERAGED)
+        return info, SensorDetails(model, serial, firmware, rate_hz, RateKind.AVERAGED)
 
     def identifying(self) -> bytes:
         return b""

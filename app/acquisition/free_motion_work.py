@@ -8,7 +8,7 @@ import numpy as np
 from app.acquisition.chain_search import ChainSearch
 from app.acquisition.motion_memory import KEPT_S, Looks, MotionMemory, tracks_in_steps
 from core.body import Side, Site
-from core.live.free_motion import FreeMotion, FreeMotionState
+from core.live.free_motion import FreeMotionState, LiveFreeMotion
 from core.live.sensors import LiveSensor
 from core.placement.arrangements import joints_between
 from core.placement.chains import LIFTED_RAD_S, Chains
@@ -112,9 +112,9 @@ class FreeMotionWork:
             site_of=self._site_of,
         )
 
-    def _new_leg(self, side: Side) -> FreeMotion:
+    def _new_leg(self, side: Side) -> LiveFreeMotion:
         of_leg = {site: sensor for site, sensor in self._sensors.items() if site.side is side}
-        return FreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
+        return LiveFreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
 
 
 class UnplacedFreeMotionWork:

@@ -7,7 +7,7 @@ import numpy as np
 
 from app.acquisition.ring_buffer import RingBuffer
 from core.samples import BoolArray, FloatArray, ImuBlock
-from devices.live import SensorTold
+from devices.live import SensorDetails
 from devices.source import SensorCounts
 
 KEPT_S = 30.0
@@ -39,7 +39,7 @@ class SensorStatus:
 
     sensor: str
     source: int
-    told: SensorTold
+    told: SensorDetails
     heard_hz: float
     silent_s: float
     movement_rad_s: float
@@ -81,7 +81,7 @@ class HeardSensor:
         """How many samples are missing since it was first heard; none of a sensor whose rate is not known."""
         return self._lost
 
-    def status(self, source: int, told: SensorTold, now_s: float) -> SensorStatus:
+    def status(self, source: int, told: SensorDetails, now_s: float) -> SensorStatus:
         return SensorStatus(
             sensor=self.name,
             source=source,

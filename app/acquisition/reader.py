@@ -11,13 +11,13 @@ from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from app.acquisition.source_tape import SourceTape
 from app.storage.journal.writer import JournalWriter
 from core.samples import ImuBlock
-from devices.live import LiveSource, SensorTold, SourceLostError, SourceRefusedError
+from devices.live import LiveSource, SensorDetails, SourceLostError, SourceRefusedError
 
 REOPEN_S = 0.5
 RECALLED_S = 2.0  # a journal may be opened so long before it is handed over
 CLOSE_S = 5.0  # some ports answer no sooner
 LAST_READ_S = 0.5  # how long a stop waits for what already lies at the source
-NOTHING_TOLD = SensorTold()
+NO_DETAILS = SensorDetails()
 
 _log = logging.getLogger(__name__)
 
@@ -71,10 +71,10 @@ class Reader:
         return tuple(self._sensors)
 
     def status(self, source: int, now_s: float) -> Sequence[SensorStatus]:
-        told = self.source.told()
+        told = self.source.details()
         with self._lock:
             return [
-                sensor.status(source, told.get(sensor.name, NOTHING_TOLD), now_s) for sensor in self._sensors.values()
+                sensor.status(source, told.get(sensor.name, NO_DETAILS), now_s) for sensor in self._sensors.values()
             ]
 
     def since(self, sensor: str, time_s: float) -> ImuBlock:
@@ -184,4 +184,4 @@ class Reader:
         return self._sensors[name]
 
     def _rate_hz(self, sensor: str) -> float | None:
-        return self.source.told().get(sensor, NOTHING_TOLD).rate_hz
+        return self.source.details().get(sensor, NO_DETAILS).rate_hz

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from core.calibration.rest import MAX_SPREAD_RAD_S
-from core.live.standing import WANTED_S, Standing, StandingState
+from core.live.standing import WANTED_S, LiveStanding, StandingState
 from core.samples import ImuBlock
 
 LIMIT_DEG_S = float(np.rad2deg(MAX_SPREAD_RAD_S))  # of the rate's spread: what rest may sway and tremble
@@ -33,7 +33,7 @@ class StandingWork:
 
     def __init__(self, sensors: Iterable[str], wanted_s: float = WANTED_S) -> None:
         self._names = frozenset(sensors)
-        self._standing = Standing(sorted(self._names), wanted_s)
+        self._standing = LiveStanding(sorted(self._names), wanted_s)
         self.state = StandingView(self._standing.state)
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:

@@ -34,8 +34,8 @@ from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import capitalised, joined, name_of, sentence, tr
 from core.body import Joint, Side
+from core.diagnostics import JointDiagnostics
 from core.findings import Finding
-from core.how_found import HowFound
 from core.results import Method
 
 SIDE_BY_SIDE_FROM = 940  # what the first two pictures need beside each other
@@ -114,7 +114,7 @@ class FoundPage(QWidget):
         )
         self._stack.setCurrentWidget(self.waiting)
 
-    def show_found(self, found: HowFound, findings: Sequence[Finding], is_simulated: bool) -> None:
+    def show_found(self, found: JointDiagnostics, findings: Sequence[Finding], is_simulated: bool) -> None:
         """Show one joint, and what was noticed about it."""
         figures = figures_of(found)
         self.save.setEnabled(True)
@@ -262,7 +262,7 @@ class _AxisCard(Card):
         ways = QBoxLayout.Direction
         self._row.setDirection(ways.LeftToRight if is_side_by_side else ways.TopToBottom)
 
-    def show_found(self, found: HowFound, figures: dict[str, FoundFigure]) -> None:
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
         calibration = found.calibration
         segments = [segment_name(site.segment) for site in (found.joint.proximal, found.joint.distal)]
         for name, chart, cost, segment in zip(self._names, self.maps, found.costs, segments, strict=True):
@@ -275,7 +275,7 @@ class _AxisCard(Card):
         self._verdict.setText(f"{said} {_why_apart(found)}".strip())
 
 
-def _why_apart(found: HowFound) -> str:
+def _why_apart(found: JointDiagnostics) -> str:
     if found.calibration.method is Method.PUBLISHED:
         return ""
     if found.calibration.is_hinge:
@@ -304,7 +304,7 @@ class _PairingCard(Card):
         self.column.addWidget(self._verdict)
         self.column.addStretch(1)
 
-    def show_found(self, found: HowFound, figures: dict[str, FoundFigure]) -> None:
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
         near, far = (segment_name(site.segment) for site in (found.joint.proximal, found.joint.distal))
         self._keys.show_keys([(self.plot.near_pen, near), (self.plot.far_pen, far)])
         self.plot.show_rates(found.projected, found.joint.side)
@@ -313,7 +313,7 @@ class _PairingCard(Card):
         self._verdict.setText(" ".join(filter(None, [_paired(found, figures), _decided(found, figures)])))
 
 
-def _paired(found: HowFound, figures: dict[str, FoundFigure]) -> str:
+def _paired(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     if found.projected is None:
         return tr("No second of this motion turned enough beside the axis to draw it.")
     apart = found.projected.congruence - found.projected.reversed_congruence
@@ -328,7 +328,7 @@ def _paired(found: HowFound, figures: dict[str, FoundFigure]) -> str:
     return said.format(paired=paired, reverse=reverse)
 
 
-def _decided(found: HowFound, figures: dict[str, FoundFigure]) -> str:
+def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     margin = found.calibration.sign_margin
     if found.calibration.method is Method.PUBLISHED or margin is None:
         return ""
@@ -368,7 +368,7 @@ class _AngleCard(Card):
         self.column.addWidget(self._verdict)
         self.stretch.chosen.connect(self._on_stretch_chosen)
 
-    def show_found(self, found: HowFound, figures: dict[str, FoundFigure]) -> None:
+    def show_found(self, found: JointDiagnostics, figures: dict[str, FoundFigure]) -> None:
         ways = found.ways
         angles = (ways.from_rates_rad, ways.from_accelerations_rad, ways.fused_rad)
         self.chart.show_angles(found.joint, ways.time_s, *(np.rad2deg(found.clinical(angle)) for angle in angles))
@@ -395,7 +395,7 @@ class _AngleCard(Card):
         self._cut.setVisible(bool(self._cut.text()))
 
 
-def _drifted(found: HowFound, figures: dict[str, FoundFigure]) -> str:
+def _drifted(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
     scatter = tr("The accelerometers scatter by {scatter}.").format(scatter=figures["scatter_deg"].in_words)
     if not math.isfinite(found.ways.drift_rad_s):
         return scatter

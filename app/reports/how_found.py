@@ -11,7 +11,7 @@ from app.body_words import segment_name
 from app.reports.csv_report import write_table
 from app.wording import tr
 from core.body import Joint
-from core.how_found import HowFound
+from core.diagnostics import JointDiagnostics
 from core.samples import ComplexArray, FloatArray
 
 AXIS_COST, PROJECTED_RATES, TWO_WAYS, FIGURES = "axis_cost", "projected_rates", "two_ways", "figures"
@@ -42,7 +42,7 @@ class FoundFigure:
         return f"{number}{unit}" if unit == "°" else f"{number} {unit}".strip()
 
 
-def figures_of(found: HowFound) -> dict[str, FoundFigure]:
+def figures_of(found: JointDiagnostics) -> dict[str, FoundFigure]:
     """All figures of one joint by their column, in the order of reading."""
     calibration, ways, shown = found.calibration, found.ways, found.projected
     unknown = math.nan
@@ -94,7 +94,7 @@ def figures_of(found: HowFound) -> dict[str, FoundFigure]:
     return {row[0]: FoundFigure(*row) for row in rows}
 
 
-def _centre_rows(found: HowFound, near: str, far: str) -> list[tuple[str, str, float, str, int]]:
+def _centre_rows(found: JointDiagnostics, near: str, far: str) -> list[tuple[str, str, float, str, int]]:
     calibration = found.calibration
     centres = (calibration.centre_proximal_m, calibration.centre_distal_m)
     rows = [
@@ -117,7 +117,7 @@ def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:
     return {what: f"{first}{joint}_{what}.csv" for what in (AXIS_COST, PROJECTED_RATES, TWO_WAYS, FIGURES)}
 
 
-def write_how_found(found: HowFound, is_simulated: bool, folder: Path) -> list[Path]:
+def write_how_found(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
     """Write every number that the page draws or says into `folder`, which is made where it is missing.
 
     Raises
@@ -145,7 +145,7 @@ def write_how_found(found: HowFound, is_simulated: bool, folder: Path) -> list[P
     return list(paths.values())
 
 
-def _write_costs(found: HowFound, path: Path) -> None:
+def _write_costs(found: JointDiagnostics, path: Path) -> None:
     header = ("sensor", "what", "x", "y", "z", "rms_deg_s")
     rows: list[Sequence[str]] = []
     for sensor, cost in zip(SENSORS, found.costs, strict=True):
@@ -159,7 +159,7 @@ def _write_costs(found: HowFound, path: Path) -> None:
     write_table(header, rows, path)
 
 
-def _write_projected(found: HowFound, path: Path) -> None:
+def _write_projected(found: JointDiagnostics, path: Path) -> None:
     shown = found.projected
     curves = [] if shown is None else [shown.proximal, shown.distal, shown.reversed_distal]
     columns = [] if shown is None else [shown.time_s, *(part for z in curves for part in parts_deg_s(z))]

@@ -16,7 +16,7 @@ from app.wording import later, tr, tr_n
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
-    from devices.search import Found, FoundSensor
+    from devices.search import FoundSensor, SearchResult
 
 DEMONSTRATION = "demonstration"
 SEARCH = "search"
@@ -40,10 +40,10 @@ class Sources(Sequence[SourceChoice]):
     Read it from the screen's thread: that never waits for the search.
     """
 
-    def __init__(self, search: "Callable[[], Found]", networks: Sequence[str] = ()) -> None:
+    def __init__(self, search: "Callable[[], SearchResult]", networks: Sequence[str] = ()) -> None:
         self._search, self._networks = search, networks
         self._searching = threading.Lock()  # two searches would take each other's ports
-        self._found: Found | None = None
+        self._found: SearchResult | None = None
         self._is_over = threading.Event()
         self._is_over.set()
 
@@ -75,7 +75,7 @@ class Sources(Sequence[SourceChoice]):
         finally:
             self._is_over.set()
 
-    def _looked(self) -> "Found":
+    def _looked(self) -> "SearchResult":
         with self._searching:
             return self._search()
 
@@ -179,7 +179,7 @@ def _opening(sensors: "Sequence[FoundSensor]") -> "Acquisition":
     return Acquisition([sensor.make() for sensor in sensors])
 
 
-def _search() -> "Found":
+def _search() -> "SearchResult":
     from app.known_columns import known_columns
     from devices.search import search
 

@@ -14,7 +14,7 @@ from app.reports.how_found import write_how_found
 from app.wording import tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint
-from core.how_found import HowFound, how_found
+from core.diagnostics import JointDiagnostics, diagnostics_of
 from core.results import Analysis, JointCalibration, RecordingAnalysis
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ class HowFoundDesk(QObject):
         self._recording: RecordingAnalysis | None = None
         self._calibrated: Mapping[Joint, JointCalibration] = {}
         self._joint = Joint.LEFT_KNEE
-        self._found: HowFound | None = None
+        self._found: JointDiagnostics | None = None
         self._dialog: QFileDialog | None = None
         self._background.done.connect(self._on_done)
         self._background.failed.connect(self._on_failed)
@@ -94,7 +94,7 @@ class HowFoundDesk(QObject):
         self._joint = Joint(joint)
         self._begin()
 
-    def _on_done(self, found: HowFound | None) -> None:
+    def _on_done(self, found: JointDiagnostics | None) -> None:
         self._found = found
         if found is None:
             self._page.show_nothing(self._joint)
@@ -152,12 +152,12 @@ def cannot_write(folder: Path) -> tuple[str, str]:
 
 def _finding(session: "Session", calibration: JointCalibration, recording: str) -> Work:
     def work(_report: Report) -> object:
-        return how_found(session, calibration, recording)
+        return diagnostics_of(session, calibration, recording)
 
     return work
 
 
-def _writing(found: HowFound, is_simulated: bool, folder: Path) -> Callable[[], None]:
+def _writing(found: JointDiagnostics, is_simulated: bool, folder: Path) -> Callable[[], None]:
     def write() -> None:
         write_how_found(found, is_simulated, folder)
 

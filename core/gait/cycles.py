@@ -20,7 +20,7 @@ class MeanCycle:
 
 
 @dataclass(frozen=True, slots=True)
-class Window:
+class PeakWindow:
     """Where in a stride a peak is looked for, percent, and whether it is a maximum."""
 
     name: str
@@ -30,15 +30,15 @@ class Window:
 
 
 KNEE_WINDOWS = (
-    Window("knee_loading_peak", 5, 30, True),
-    Window("knee_stance_minimum", 25, 60, False),
-    Window("knee_swing_peak", 55, 90, True),
+    PeakWindow("knee_loading_peak", 5, 30, True),
+    PeakWindow("knee_stance_minimum", 25, 60, False),
+    PeakWindow("knee_swing_peak", 55, 90, True),
 )
 ANKLE_WINDOWS = (
-    Window("ankle_loading_plantarflexion", 0, 20, False),
-    Window("ankle_stance_dorsiflexion", 20, 60, True),
-    Window("ankle_push_off_plantarflexion", 50, 80, False),
-    Window("ankle_swing_dorsiflexion", 70, 95, True),
+    PeakWindow("ankle_loading_plantarflexion", 0, 20, False),
+    PeakWindow("ankle_stance_dorsiflexion", 20, 60, True),
+    PeakWindow("ankle_push_off_plantarflexion", 50, 80, False),
+    PeakWindow("ankle_swing_dorsiflexion", 70, 95, True),
 )
 
 
@@ -86,7 +86,7 @@ def mean_cycle(cycles: FloatArray) -> MeanCycle:
     return MeanCycle(mean, sd, len(known))
 
 
-def find_peak(cycles: FloatArray, window: Window) -> Peak:
+def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
     """The extremum of each stride (k, 101) within the window; missing strides are NaN throughout.
 
     One at the window's edge in half of the strides or more is no peak: the angle only passes through.

@@ -199,7 +199,7 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
     without_stray_toe_offs(timing, swings.fastest, motion.step_s)
     for k in np.flatnonzero(~(timing.index[:, FULL_CONTACT] >= timing.index[:, CONTACT])).tolist():
         timing.put(k, FULL_CONTACT, _settled(rate, timing.index[k, CONTACT], spans[k][2], usual), EventSource.PITCH)
-    return _told(motion, timing, is_measured)
+    return _as_events(motion, timing, is_measured)
 
 
 def _time_by_sole(timing: Timing, sole: SoleTravel, is_lifted: bool, is_landed: BoolArray) -> None:
@@ -227,7 +227,7 @@ def _settled(rate: FloatArray, contact: float, rest: int, usual: Usual) -> Onset
     return Onset(full.index + first, full.reach)
 
 
-def _told(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> FootEvents:
+def _as_events(motion: FootMotion, timing: Timing, is_measured: BoolArray) -> FootEvents:
     swings = motion.swings
     times = motion.time_of(timing.index)
     missing = np.concatenate([[0], np.cumsum(~is_measured)])

@@ -55,7 +55,7 @@ class Swings:
 
 
 @dataclass(frozen=True, slots=True)
-class Rest:
+class FootRest:
     """One stance as zero velocity sees it: the calmest sample, the samples around it and how much each counts.
 
     A sensor may shake on its foot. Over a stance that averages out, in one instant it does not. The weights fade
@@ -187,13 +187,15 @@ def _integral(rate: FloatArray, step_s: float) -> FloatArray:
     return total
 
 
-def _instants(anchors: IntArray, n: int, step_s: float) -> list[Rest]:
+def _instants(anchors: IntArray, n: int, step_s: float) -> list[FootRest]:
     """The shortest rests: no more than the calm around each anchor."""
     reach = max(1, round(0.5 * CALM_WINDOW_S / step_s))
     return [_rest(i, max(0, i - reach), min(n, i + reach + 1)) for i in anchors.tolist()]
 
 
-def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float, tilt_rad: float) -> list[Rest]:
+def _stances(
+    anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: float, tilt_rad: float
+) -> list[FootRest]:
     """The longest rests: all samples around each anchor in which the foot stands as it does there.
 
     Parameters
@@ -217,17 +219,17 @@ def _stances(anchors: IntArray, up: FloatArray, speed_m_s: FloatArray, step_s: f
     return rests
 
 
-def _rest(anchor: int, begin: int, end: int) -> Rest:
+def _rest(anchor: int, begin: int, end: int) -> FootRest:
     weights = np.hanning(end - begin + 2)[1:-1]
-    return Rest(anchor, slice(begin, end), weights / weights.sum())
+    return FootRest(anchor, slice(begin, end), weights / weights.sum())
 
 
-def _at_rest(signal: FloatArray, rests: list[Rest]) -> FloatArray:
+def _at_rest(signal: FloatArray, rests: list[FootRest]) -> FloatArray:
     """Means (k, ...) of `signal` (n, ...) over each rest."""
     return np.stack([rest.weights @ signal[rest.span] for rest in rests])
 
 
-def _upright(acceleration: FloatArray, rests: list[Rest]) -> FloatArray:
+def _upright(acceleration: FloatArray, rests: list[FootRest]) -> FloatArray:
     """Take off the tilt of the earth's axes (n, 3) that a standing foot shows: there is nothing but gravity at rest."""
     gravity = np.array([0.0, 0.0, GRAVITY_M_S2])
     felt = _at_rest(acceleration, rests) + gravity
@@ -238,7 +240,7 @@ def _upright(acceleration: FloatArray, rests: list[Rest]) -> FloatArray:
     return acceleration + np.cross(turned, acceleration + gravity)
 
 
-def _velocity(acceleration: FloatArray, rests: list[Rest], step_s: float) -> FloatArray:
+def _velocity(acceleration: FloatArray, rests: list[FootRest], step_s: float) -> FloatArray:
     """Velocity (n, 3) whose mean over every rest is zero.
 
     What is left in a rest is taken off where it most likely arose: evenly from a bias, and at once from an impact
@@ -296,7 +298,7 @@ def _spans(swings: Swings) -> list[tuple[int, int]]:
     return list(zip(swings.anchor_before.tolist(), swings.anchor_after.tolist(), strict=True))
 
 
-def _pitch(forward_up: FloatArray, rests: list[Rest]) -> FloatArray:
+def _pitch(forward_up: FloatArray, rests: list[FootRest]) -> FloatArray:
     pitch = np.arcsin(np.clip(forward_up, -1.0, 1.0))
     if not rests:
         return pitch

@@ -107,7 +107,7 @@ class LiveEvents:
     def __init__(self, pitch_axis: FloatArray | None = None) -> None:
         self._motion = LiveMotion(pitch_axis)
         self._time_s, self._step_s = math.nan, math.nan
-        self._told: list[LiveEvent] = []
+        self._events: list[LiveEvent] = []
         self._changes: list[PhaseChange] = []
         self._phase = Phase.UNKNOWN
         self._path: list[Sample] = []  # since the phase began, or since the rate last said that it cannot end yet
@@ -117,7 +117,7 @@ class LiveEvents:
         self._still = MIN_STILL_RAD_S
         self._flat_since_s = -math.inf
         self._peak = 0.0
-        self._is_rise_told = self._is_walking = self._has_swung = False
+        self._is_rise_reported = self._is_walking = self._has_swung = False
         self._off_s: float | None = None
         self._push = self._fastest_m_s = 0.0
         self._left_s = self._slow_s = self._contact_s = math.nan
@@ -157,25 +157,25 @@ class LiveEvents:
         gyr_rad_s, acc_m_s2 : (n, 3)
             In sensor axes, NaN where a sample is missing; the rates free of the gyroscope's bias.
         """
-        self._told, self._changes = [], []
+        self._events, self._changes = [], []
         for now_s, gyr, acc in zip(time_s.tolist(), gyr_rad_s.tolist(), acc_m_s2.tolist(), strict=True):
             step_s = now_s - self._time_s
             if not math.isfinite(sum(gyr) + sum(acc)) or step_s <= 0.0:
                 continue
-            last_s, last_phase, told = self._time_s, self._phase, len(self._told)
+            last_s, last_phase, events_before = self._time_s, self._phase, len(self._events)
             self._time_s, self._step_s = now_s, step_s
             if step_s <= MAX_REPORTED_GAP_S:
                 self._take(gyr, acc)
             else:  # so does the first sample of all, whose step is NaN
                 self._forget_the_step()
-            if self._phase is not last_phase or len(self._told) > told:
+            if self._phase is not last_phase or len(self._events) > events_before:
                 since_s = last_s if self._phase is Phase.UNKNOWN else self._since_s(now_s)
                 self._changes.append(PhaseChange(self._phase, since_s, now_s))
-        return self._told
+        return self._events
 
     def _since_s(self, now_s: float) -> float:
         """Since when the foot is in the phase that the sample at `now_s` put it into."""
-        last = self._told[-1] if self._told else None
+        last = self._events[-1] if self._events else None
         is_by_event = last is not None and last.told_s == now_s and PHASE_AFTER[last.event] is self._phase
         return last.time_s if last is not None and is_by_event else now_s
 
@@ -214,8 +214,8 @@ class LiveEvents:
         if self._phase is Phase.SWING:
             self._slow_s = on_s
             return
-        is_told = self._contact_s >= travelled[0][0]
-        if is_told or speeds[fastest][1] < MIN_SWING_M_S or way_of_m(travelled) < MIN_SWING_M:
+        is_reported = self._contact_s >= travelled[0][0]
+        if is_reported or speeds[fastest][1] < MIN_SWING_M_S or way_of_m(travelled) < MIN_SWING_M:
             return
         rises = [pair for pair in pairwise(speeds[: fastest + 1]) if pair[0][1] <= level < pair[1][1]]
         self._tell(FootEvent.TOE_OFF, _crossing(*rises[-1], level) if rises else speeds[0][0])
@@ -244,7 +244,7 @@ class LiveEvents:
         self._phase, self._path, self._flat_since_s = Phase.FOOT_FLAT, [], since_s
 
     def _tell(self, event: FootEvent, time_s: float) -> None:
-        self._told.append(LiveEvent(event, time_s, self._time_s))
+        self._events.append(LiveEvent(event, time_s, self._time_s))
         if event is FootEvent.INITIAL_CONTACT:
             if time_s - self._contact_s > MAX_STRIDE_S:
                 self._contacts_s.clear()
@@ -276,7 +276,7 @@ class LiveEvents:
         is_early = is_walking and now[1] < -EARLY_RATIO * self._still and self._is_due(self._rise(self._still))
         if is_early or now[1] < -2.0 * self._still:
             self._phase, self._peak, self._off_s = Phase.PRE_SWING, now[1], None
-            self._is_walking, self._is_rise_told = is_walking, False
+            self._is_walking, self._is_rise_reported = is_walking, False
             self._watch_rise(now)
 
     def _follow(self, now: Sample, above: float) -> None:
@@ -311,7 +311,7 @@ class LiveEvents:
         self._pushes.append(self._push)
         self._sway *= SWAY_MEMORY
         self._still = max(MIN_STILL_RAD_S, STILL_SHARE * median(self._pushes))
-        if not self._is_rise_told:
+        if not self._is_rise_reported:
             self._tell_rise(self._rise(self._still))
         self._tell(FootEvent.TOE_OFF, self._off_s)
         self._phase, self._path, self._has_swung = Phase.SWING, [], True
@@ -319,7 +319,7 @@ class LiveEvents:
         self._peak, self._dip = 0.0, []
 
     def _watch_rise(self, now: Sample) -> None:
-        if not self._is_walking or self._is_rise_told or -now[1] < SWAY_RATIO * self._sway:
+        if not self._is_walking or self._is_rise_reported or -now[1] < SWAY_RATIO * self._sway:
             return
         rise_s = self._rise(self._still)
         if -now[1] > SURE_RATIO * self._still or self._is_due(rise_s):
@@ -347,7 +347,7 @@ class LiveEvents:
 
     def _tell_rise(self, rise_s: float) -> None:
         self._tell(FootEvent.HEEL_RISE, rise_s)
-        self._is_rise_told = True
+        self._is_rise_reported = True
 
     def _land(self, now: Sample, speed_m_s: float) -> None:
         """Swing until the toes, having come up, are turned down by the floor."""
@@ -371,11 +371,11 @@ class LiveEvents:
         contact_s = self._contact(self._path, -lowest)
         if now[1] > PASSED_SHARE * lowest:
             is_slow = speed_m_s < FLAT_SHARE * self._fastest_m_s
-            is_told = is_slow or -lowest > PASSED_SHARE * usual or self._is_due(contact_s)
+            is_reported = is_slow or -lowest > PASSED_SHARE * usual or self._is_due(contact_s)
         else:  # the peak is to come: at least the usual one, or it passes in time
             contact_s = self._contact(self._path, usual)
-            is_told = self._is_due(contact_s)
-        if is_told:
+            is_reported = self._is_due(contact_s)
+        if is_reported:
             self._touch_down(contact_s, self._path)
 
     def _contact(self, path: list[Sample], load: float) -> float:

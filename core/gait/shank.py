@@ -37,7 +37,7 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
     heading = np.unwrap(np.arctan2(pointing[:, 1], pointing[:, 0]))
     unknown = np.full(len(peaks), np.nan)
     missing = np.concatenate([[0], np.cumsum(~track.is_measured)])
-    is_told = np.isfinite(SD_S[EventSource.SHANK])
+    is_known = np.isfinite(SD_S[EventSource.SHANK])
     return FootEvents(
         heel_rise_s=unknown,
         toe_off_s=track.start_s + step_s * off,
@@ -48,7 +48,7 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
         turn_rad=np.diff(heading, prepend=heading[:1]),
         is_certain=np.ones(len(peaks), dtype=bool),
         is_measured=missing[np.ceil(on).astype(int) + 1] == missing[np.floor(off).astype(int)],
-        source=np.tile(np.where(is_told, SOURCES.index(EventSource.SHANK), 0), (len(peaks), 1)),
+        source=np.tile(np.where(is_known, SOURCES.index(EventSource.SHANK), 0), (len(peaks), 1)),
         sd_s=np.tile(SD_S[EventSource.SHANK], (len(peaks), 1)),
         is_from_shank=True,
     )
@@ -68,9 +68,9 @@ def _swings(rate: FloatArray, step_s: float) -> tuple[FloatArray, IntArray, Floa
     width = max(1, round(SMOOTH_S / step_s))
     smooth = np.convolve(rate, np.full(width, 1.0 / width), mode="same")
     distance = max(1, round(MIN_STRIDE_S / step_s))
-    peaks, told = find_peaks(smooth, height=MIN_SWING_RATE_RAD_S, distance=distance)
+    peaks, properties = find_peaks(smooth, height=MIN_SWING_RATE_RAD_S, distance=distance)
     if len(peaks):
-        peaks = peaks[told["peak_heights"] > SWING_SHARE * np.median(told["peak_heights"])]
+        peaks = peaks[properties["peak_heights"] > SWING_SHARE * np.median(properties["peak_heights"])]
     reach = round(REACH_S / step_s)
     rows = []
     for peak in peaks.tolist():

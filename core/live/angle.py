@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.calibration.certainty import angle_sd_rad
-from core.live.drift import Looks, SlowDrift, Wandering
+from core.live.drift import ObservationModel, SlowDrift, Wandering
 from core.live.integral import BIAS_RAD_S, BIAS_WALK_RAD_S, Integral
 from core.live.joint_frames import JointFrames, JointGeometry
 from core.live.orientation import OrientedSamples
@@ -32,7 +32,7 @@ BLEND_S = 1.0  # from one calibration to the next
 
 # Relative heading, from j1 = R12 j2; two orientation filters walk as offline.
 HEADING = Wandering(np.deg2rad(0.3), BIAS_RAD_S, BIAS_WALK_RAD_S)
-HEADING_LOOKS = Looks(first_scale=np.deg2rad(5.0), min_scale=np.deg2rad(0.3), correlation_s=0.5)
+HEADING_LOOKS = ObservationModel(first_scale=np.deg2rad(5.0), min_scale=np.deg2rad(0.3), correlation_s=0.5)
 
 # How far the twist is off while filters that begin amid a movement look for the vertical: measured on walks cut open.
 START_MOVING_RAD, SETTLES_S = np.deg2rad(15.0), 1.5

@@ -28,7 +28,7 @@ class Wandering:
 
 
 @dataclass(frozen=True, slots=True)
-class Looks:
+class ObservationModel:
     """What is seen of an angle: complex numbers along it, of which longer ones tell their direction better.
 
     `first_scale` and `min_scale` are standard deviations of what lies across the direction that was expected, over the
@@ -46,7 +46,7 @@ class Looks:
 class SlowDrift:
     """Kalman filter of an angle and its slope, with the robust weights of the offline fits."""
 
-    def __init__(self, wandering: Wandering, looks: Looks) -> None:
+    def __init__(self, wandering: Wandering, looks: ObservationModel) -> None:
         self._wandering, self._looks = wandering, looks
         self._first: list[complex]  # looks that are still waiting for others
         self.restart(0.0, 0.0, UNKNOWN_RAD)

@@ -36,7 +36,7 @@ class FreeMotionState:
         return bool(self.joints) and self.weakest is None
 
 
-class FreeMotion:
+class LiveFreeMotion:
     """Both legs while they are moved freely, block by block; of any size, and in any order of sites.
 
     Parameters

@@ -6,7 +6,7 @@ relative bias behind it: the causal form of `core.angles.hinge_angle`.
 
 import numpy as np
 
-from core.live.drift import UNKNOWN_RAD, Looks, SlowDrift, Wandering
+from core.live.drift import UNKNOWN_RAD, ObservationModel, SlowDrift, Wandering
 from core.live.joint_frames import JointGeometry
 from core.live.pairing import PairedSamples
 from core.samples import FloatArray
@@ -16,10 +16,10 @@ GAP_RAD = np.deg2rad(5.0)  # how far interpolated rates may be off after a gap
 ENDS = 2  # samples whose angular acceleration the next ones tell
 
 HINGE = Wandering(np.deg2rad(0.1), BIAS_RAD_S, BIAS_WALK_RAD_S)
-HINGE_LOOKS = Looks(first_scale=0.15, min_scale=0.02, correlation_s=0.1)  # m/s2
+HINGE_LOOKS = ObservationModel(first_scale=0.15, min_scale=0.02, correlation_s=0.1)  # m/s2
 # On a human joint off-axis motion comes in, the accelerations do not quite meet, and contacts shake the tissue.
 HUMAN = Wandering(np.deg2rad(1.0), BIAS_RAD_S, BIAS_WALK_RAD_S)
-HUMAN_LOOKS = Looks(first_scale=0.5, min_scale=0.3, correlation_s=0.3, begins_with=5)
+HUMAN_LOOKS = ObservationModel(first_scale=0.5, min_scale=0.3, correlation_s=0.3, begins_with=5)
 
 
 class Integral:

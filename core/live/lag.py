@@ -18,7 +18,7 @@ MIN_MOVING_S = 4.0
 WORTH_TELLING_S = 0.005
 
 
-class Verdict(StrEnum):
+class LagVerdict(StrEnum):
     """NONE: no lag. LAG: one that the analysis takes out. NOT_ONE_JOINT: too far apart, or not neighbours."""
 
     NONE = "none"
@@ -30,13 +30,13 @@ class Verdict(StrEnum):
 class LagState:
     """`lag_s` is to be added to the distal sensor's stamps, `sd_s` its standard deviation (None: not known)."""
 
-    verdict: Verdict
+    verdict: LagVerdict
     lag_s: float
     sd_s: float | None
 
     @property
     def is_worth_telling(self) -> bool:
-        return abs(self.lag_s) > WORTH_TELLING_S or self.verdict is Verdict.NOT_ONE_JOINT
+        return abs(self.lag_s) > WORTH_TELLING_S or self.verdict is LagVerdict.NOT_ONE_JOINT
 
 
 class LiveLag:
@@ -76,7 +76,7 @@ class LiveLag:
             return None
         data = gather((pair,), [index]).thinned(SAMPLES)
         found = find_lag(data, np.full(data.knots, heading_rad))
-        verdict = Verdict.NOT_ONE_JOINT if found.is_at_border else Verdict.LAG if found.lag_s else Verdict.NONE
+        verdict = LagVerdict.NOT_ONE_JOINT if found.is_at_border else LagVerdict.LAG if found.lag_s else LagVerdict.NONE
         return LagState(verdict, found.lag_s, found.sd_s)
 
     def _of_one_stretch(self) -> PairedSamples | None:

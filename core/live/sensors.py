@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from core.body import Site
 from core.live.orientation import LiveOrientation, OrientedSamples
-from core.live.streams import Stream
+from core.live.streams import EvenStream
 from core.samples import FloatArray, ImuBlock, RateKind
 
 
@@ -27,7 +27,7 @@ class LiveSensors:
 
     def __init__(self, sensors: Mapping[Site, LiveSensor]) -> None:
         self.sensors = dict(sensors)
-        self._streams = {site: Stream(sensor.rate_hz) for site, sensor in sensors.items()}
+        self._streams = {site: EvenStream(sensor.rate_hz) for site, sensor in sensors.items()}
         self._orientations = {
             site: LiveOrientation(sensor.gyro_bias_rad_s, sensor.rate_kind, sensor.step_s)
             for site, sensor in sensors.items()

@@ -60,11 +60,11 @@ class StandingState(Generic[Sensor]):
         return bool(self.rest)
 
 
-class Standing(Generic[Sensor]):
+class LiveStanding(Generic[Sensor]):
     """Watches any number of sensors; fed block by block, of any size and in any order of sensors."""
 
     def __init__(self, sensors: Iterable[Sensor], wanted_s: float = WANTED_S) -> None:
-        self._watches = {sensor: _Watch() for sensor in sensors}
+        self._watches = {sensor: _StillnessWatch() for sensor in sensors}
         self._bouts = _Bouts()
         self._rest_of = np.inf, np.inf
         self._found: Mapping[Sensor, Rest] = {}
@@ -85,10 +85,10 @@ class Standing(Generic[Sensor]):
         for sensor, block in blocks.items():
             for start_s, end_s in self._watches[sensor].feed(block):
                 self._bouts.add(start_s, end_s)
-        self._state = self._told()
+        self._state = self._state_now()
         return self._state
 
-    def _told(self) -> StandingState[Sensor]:
+    def _state_now(self) -> StandingState[Sensor]:
         watches = self._watches
         latest_s = max((watch.heard_s for watch in watches.values()), default=-np.inf)
         silent = tuple(s for s, w in watches.items() if w.is_stuck or not latest_s - w.heard_s <= SILENT_S)
@@ -120,7 +120,7 @@ class Standing(Generic[Sensor]):
         return self._found
 
 
-class _Watch:
+class _StillnessWatch:
     """One sensor, judged in windows that follow each other from its first sample."""
 
     def __init__(self) -> None:

@@ -56,7 +56,7 @@ Placed = tuple[IntArray, FloatArray, BoolArray]
 NOTHING_PLACED: Placed = np.empty(0, dtype=np.int64), np.empty((0, 6)), np.empty(0, dtype=np.bool_)
 
 
-class Stream:
+class EvenStream:
     """One sensor's samples, brought to an even grid of its nominal rate that starts at its first stamp.
 
     A tick is told as soon as the samples around it are there, two or three after it; at once where a sample lies on

@@ -73,7 +73,7 @@ class Walking:
         }
         self._straps = {joint: _StrapWatch(calibration[joint], sensors[joint.proximal].step_s) for joint in known}
         self._feet = {
-            site.side: _Foot(_pitch_axis(site.side, calibration), _clock_offset_s(site.side, lags_s))
+            site.side: _LiveFoot(_pitch_axis(site.side, calibration), _clock_offset_s(site.side, lags_s))
             for site in sensors
             if site.segment is Segment.FOOT
         }
@@ -123,7 +123,7 @@ def _clock_offset_s(side: Side, lags_s: Mapping[Joint, float]) -> float:
     return sum(lags_s.get(joint, 0.0) for joint in (knee_of(side), ankle_of(side)))
 
 
-class _Foot:
+class _LiveFoot:
     def __init__(self, pitch_axis: FloatArray | None, clock_offset_s: float) -> None:
         self._events = LiveEvents(pitch_axis)
         self._clock_offset_s = clock_offset_s

@@ -7,8 +7,8 @@ from itertools import combinations, permutations
 import numpy as np
 
 from core.body import Joint, Side, Site
-from core.placement.felt import Together
 from core.placement.links import link
+from core.placement.smoothed_tracks import SmoothedTracks
 from core.samples import FloatArray, IntArray
 
 COST_FLOOR = 0.1  # two links that leave less than this are equally good
@@ -39,7 +39,7 @@ class Neighbours:
 
 
 def neighbours_in_steps(
-    together: Together, standing: Mapping[str, FloatArray]
+    smoothed: SmoothedTracks, standing: Mapping[str, FloatArray]
 ) -> Generator[None, None, Neighbours | None]:
     """Try a joint between every two sensors, a step each; None where two of them were never heard together.
 
@@ -48,12 +48,12 @@ def neighbours_in_steps(
     standing
         Mean specific force (3,) of sensors in standing.
     """
-    names = tuple(together.sensors)
-    ups = [standing.get(name, felt.up) for name, felt in together.sensors.items()]
+    names = tuple(smoothed.sensors)
+    ups = [standing.get(name, one.up) for name, one in smoothed.sensors.items()]
     ups = [up / np.linalg.norm(up) for up in ups]
     cost, height_m, length_m = np.zeros((3, len(names), len(names)))
     for a, b in combinations(range(len(names)), 2):
-        found = link(together.sensors[names[a]], together.sensors[names[b]], together.index, together.window)
+        found = link(smoothed.sensors[names[a]], smoothed.sensors[names[b]], smoothed.index, smoothed.window)
         if found is None:
             return None
         cost[a, b] = cost[b, a] = found.cost
@@ -67,13 +67,13 @@ def neighbours_in_steps(
 class Arrangements:
     """All ways to put the sensors on `sites`, each with what its joints cost together."""
 
-    def __init__(self, sites: tuple[Site, ...], told: Neighbours) -> None:
+    def __init__(self, sites: tuple[Site, ...], neighbours: Neighbours) -> None:
         self._sites = sites
-        self._number = number = len(told.names)
+        self._number = number = len(neighbours.names)
         ends = [(sites.index(j.proximal), sites.index(j.distal)) for j in joints_between(sites)]
         self._orders = orders = np.array(list(permutations(range(number))), dtype=np.int64)
         pairs = [(orders[:, a], orders[:, b]) for a, b in ends]
-        self._cost = np.sum([np.log(told.cost[pair] + COST_FLOOR) for pair in pairs], axis=0)
+        self._cost = np.sum([np.log(neighbours.cost[pair] + COST_FLOOR) for pair in pairs], axis=0)
         # a bit for each two sensors that share a joint
         self._links: IntArray = np.sum([self._bit(*pair) for pair in pairs], axis=0)
 
@@ -132,12 +132,12 @@ class Stature:
         return self.height_m / self.length_m
 
 
-def statures(arrangement: Arrangement, told: Neighbours) -> dict[Side, Stature]:
+def statures(arrangement: Arrangement, neighbours: Neighbours) -> dict[Side, Stature]:
     """The stature of every leg that has a joint."""
     found: dict[Side, Stature] = {}
     for joint in joints_between(tuple(arrangement)):
         ends = arrangement[joint.proximal], arrangement[joint.distal]
         above = found.get(joint.side, Stature(0.0, 0.0))
-        height_m, length_m = float(told.height_m[ends]), float(told.length_m[ends])
+        height_m, length_m = float(neighbours.height_m[ends]), float(neighbours.length_m[ends])
         found[joint.side] = Stature(above.height_m + height_m, above.length_m + length_m)
     return found

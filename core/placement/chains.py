@@ -8,7 +8,7 @@ import numpy as np
 from core.body import Segment, Side, Site, ankle_of, knee_of
 from core.pair import MOVING_WINDOW_S, OrientedTrack, moving_mean
 from core.placement.arrangements import Arrangement, Arrangements, Neighbours, Stature, neighbours_in_steps, statures
-from core.placement.felt import Tracks, felt_in_steps
+from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray
 
@@ -121,15 +121,17 @@ def chains_in_steps(
     """As `find_chains`, in steps."""
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")
-    together = yield from felt_in_steps(tracks)
-    told = (yield from neighbours_in_steps(together, standing or {})) if together else None
-    if told is None:
+    smoothed = yield from smoothed_in_steps(tracks)
+    neighbours = (yield from neighbours_in_steps(smoothed, standing or {})) if smoothed else None
+    if neighbours is None:
         return None
-    arrangements = Arrangements(USUAL_SITES[len(tracks)], told)
+    arrangements = Arrangements(USUAL_SITES[len(tracks)], neighbours)
     best = arrangements.best()
-    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, told))
+    arrangement = max(arrangements.alike(best), key=lambda one: _total_height_m(one, neighbours))
     legs = [
-        _chain(side, arrangement, arrangements, told, tracks) for side in Side if Site(f"{side}_thigh") in arrangement
+        _chain(side, arrangement, arrangements, neighbours, tracks)
+        for side in Side
+        if Site(f"{side}_thigh") in arrangement
     ]
     legs.sort(key=lambda leg: np.inf if leg.moved_at_s is None else leg.moved_at_s)
     at_s = [leg.moved_at_s for leg in legs]
@@ -137,12 +139,14 @@ def chains_in_steps(
     return Chains(tuple(legs), arrangements.margin(best), lead_s)
 
 
-def _total_height_m(arrangement: Arrangement, told: Neighbours) -> float:
-    return sum(stature.height_m for stature in statures(arrangement, told).values())
+def _total_height_m(arrangement: Arrangement, neighbours: Neighbours) -> float:
+    return sum(stature.height_m for stature in statures(arrangement, neighbours).values())
 
 
-def _chain(side: Side, arrangement: Arrangement, arrangements: Arrangements, told: Neighbours, tracks: Tracks) -> Chain:
-    sensors = {site.segment: told.names[sensor] for site, sensor in arrangement.items() if site.side is side}
+def _chain(
+    side: Side, arrangement: Arrangement, arrangements: Arrangements, neighbours: Neighbours, tracks: Tracks
+) -> Chain:
+    sensors = {site.segment: neighbours.names[sensor] for site, sensor in arrangement.items() if site.side is side}
     has_foot = Segment.FOOT in sensors
     moved = [at_s for name in sensors.values() if (at_s := _lifted_at_s(tracks[name])) is not None]
     return Chain(
@@ -151,7 +155,7 @@ def _chain(side: Side, arrangement: Arrangement, arrangements: Arrangements, tol
         foot=sensors.get(Segment.FOOT),
         knee_margin=arrangements.margin(arrangement, knee_of(side)),
         ankle_margin=arrangements.margin(arrangement, ankle_of(side)) if has_foot else None,
-        stature=statures(arrangement, told)[side],
+        stature=statures(arrangement, neighbours)[side],
         moved_at_s=min(moved, default=None),
     )
 

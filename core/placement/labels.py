@@ -13,7 +13,7 @@ from core.placement.arrangements import (
     statures,
 )
 from core.placement.chains import MIN_MARGIN, MIN_UPRIGHTNESS
-from core.placement.felt import Tracks, felt_in_steps
+from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
 from core.placement.steps import at_once
 from core.samples import FloatArray, Recording, RecordingKind
 from core.sensors import SensorTracks
@@ -77,27 +77,27 @@ def exchanged_in_steps(
     tracks: Tracks, standing: Mapping[str, FloatArray]
 ) -> Generator[None, None, list[tuple[Site, ...]]]:
     """As `exchanged_sites`, in steps."""
-    together = (yield from felt_in_steps(tracks)) if tracks else None
-    told = (yield from neighbours_in_steps(together, standing)) if together else None
-    if told is None:
+    smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
+    neighbours = (yield from neighbours_in_steps(smoothed, standing)) if smoothed else None
+    if neighbours is None:
         return []
-    labelled = {Site(name): sensor for sensor, name in enumerate(told.names)}
-    arrangements = Arrangements(tuple(labelled), told)
+    labelled = {Site(name): sensor for sensor, name in enumerate(neighbours.names)}
+    arrangements = Arrangements(tuple(labelled), neighbours)
     best = arrangements.best()
-    if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, told):
+    if arrangements.ratio(labelled, best) < MIN_MARGIN or _has_every_joint(labelled, neighbours):
         best = labelled
-    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, told)]
+    upright = [one for one in arrangements.alike(best) if not _is_upside_down(one, neighbours)]
     nearest = min(upright, key=lambda one: _changes(one, labelled), default=labelled)
     return _groups(nearest, labelled)
 
 
-def _has_every_joint(labelled: Arrangement, told: Neighbours) -> bool:
+def _has_every_joint(labelled: Arrangement, neighbours: Neighbours) -> bool:
     ends = [(labelled[joint.proximal], labelled[joint.distal]) for joint in joints_between(tuple(labelled))]
-    return all(told.cost[pair] < SHARED_COST for pair in ends)
+    return all(neighbours.cost[pair] < SHARED_COST for pair in ends)
 
 
-def _is_upside_down(arrangement: Arrangement, told: Neighbours) -> bool:
-    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, told).values())
+def _is_upside_down(arrangement: Arrangement, neighbours: Neighbours) -> bool:
+    return any(leg.uprightness < -MIN_UPRIGHTNESS for leg in statures(arrangement, neighbours).values())
 
 
 def _changes(one: Arrangement, other: Arrangement) -> int:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.placement.felt import Felt
+from core.placement.smoothed_tracks import SmoothedTrack
 from core.rotations import turn_about_vertical
 from core.samples import FloatArray, IntArray
 
@@ -30,7 +30,7 @@ class Link:
     centre_2_m: FloatArray
 
 
-def link(one: Felt, two: Felt, index: IntArray, window: IntArray) -> Link | None:
+def link(one: SmoothedTrack, two: SmoothedTrack, index: IntArray, window: IntArray) -> Link | None:
     """Fit a common joint to two sensors; None where they were not heard together for a second.
 
     Unknown are the joint's place and the bias seen from either sensor, one heading per window, and the lag of the

@@ -51,11 +51,11 @@ def fused_angle(from_rates: FloatArray, from_accelerations: FloatArray, step_s: 
     """
     from scipy.signal import lfilter  # imported late, it is slow
 
-    told = np.flatnonzero(np.isfinite(from_accelerations))
-    if len(told) == 0:
+    known = np.flatnonzero(np.isfinite(from_accelerations))
+    if len(known) == 0:
         return np.full_like(from_rates, np.nan)
-    difference = unwrapped_about_trend(from_accelerations[told] - from_rates[told], step_s)
-    held = np.searchsorted(told, np.arange(len(from_rates)), side="right") - 1
+    difference = unwrapped_about_trend(from_accelerations[known] - from_rates[known], step_s)
+    held = np.searchsorted(known, np.arange(len(from_rates)), side="right") - 1
     difference_held = difference[np.maximum(held, 0)]
     weight = 1 - np.exp(-step_s / tau_s)
     start = float(np.median(difference_held[: max(1, round(START_S / step_s))]))

@@ -30,7 +30,7 @@ from core.verdicts.model import (
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
+class GateLimits:
     """Where each gate closes. `care` and `withheld` of a pair are where reading with care begins, and where it ends."""
 
     pairing_margin: float = 1.5  # of the best hypothesis over its best rival, in motion below 4 Hz
@@ -51,7 +51,7 @@ class Limits:
     speed_m_s: tuple[float, float] = (0.1, 2.5)
 
 
-LIMITS = Limits()
+LIMITS = GateLimits()
 MIN_STRIDES_TO_SPLIT = 6  # halves of three strides, thirds of two: fewer say nothing of a walk's course
 
 

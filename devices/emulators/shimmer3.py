@@ -127,8 +127,8 @@ class Shimmer3Voice:
                     stored = [b"\xff" * 21] * 4
                 answer = bytes([Command.CALIBRATION_ANSWER]) + b"".join(stored)
             case Command.INQUIRY:
-                told = struct.pack("<HIBB", self.period, 0, len(CHANNELS), 1)
-                answer = bytes([Command.INQUIRY_ANSWER]) + told + CHANNELS
+                settings = struct.pack("<HIBB", self.period, 0, len(CHANNELS), 1)
+                answer = bytes([Command.INQUIRY_ANSWER]) + settings + CHANNELS
             case _ if command not in ARGUMENTS:
                 return bytes([Command.REFUSED])
         return self._checked(bytes([Command.DONE]) + answer)

@@ -35,7 +35,7 @@ class Transport(Protocol):
     def close(self) -> None: ...
 
 
-class Terminal:
+class PseudoTerminal:
     """A pseudo-terminal under a name that stays when it vanishes and comes back."""
 
     def __init__(self, link: Path) -> None:

@@ -96,8 +96,8 @@ class WitVoice:
         if command == UNLOCK:
             self._is_unlocked = True
         elif register == READ_AT:
-            told = (self.registers.get(value + k, 0) for k in range(4))
-            return frame(REGISTERS, b"".join(one.to_bytes(2, "little") for one in told))
+            words = (self.registers.get(value + k, 0) for k in range(4))
+            return frame(REGISTERS, b"".join(one.to_bytes(2, "little") for one in words))
         elif self._is_unlocked:
             self.registers[register] = value
         return b""

@@ -97,12 +97,12 @@ class Ximu3Voice:
 
     def _answer(self, command: bytes) -> bytes:
         try:
-            told = json.loads(command)
+            asked = json.loads(command)
         except ValueError:
             return b""
-        if not isinstance(told, dict) or not told:
+        if not isinstance(asked, dict) or not asked:
             return b""
-        key, value = next(iter(told.items()))
+        key, value = next(iter(asked.items()))
         if key == "strobe":
             self.strobed += 1
         elif key not in self.settings:

@@ -4,7 +4,7 @@ import struct
 from collections.abc import Callable, Sequence
 
 from devices.host_clock import host_time_ns
-from devices.xbus import REQUESTS, Framer, Item, Message, Mid, item, message
+from devices.xbus import REQUESTS, Item, Message, Mid, XbusFramer, item, message
 from devices.xsens_mti import ALWAYS, EMULATED, FINE_HZ, SETTING
 
 Motion = Callable[[int], Sequence[float]]
@@ -44,7 +44,7 @@ class MtiVoice:
     ) -> None:
         self._motion, self._now_ns, self._has_orientation = motion, now_ns, has_orientation
         self._serial, self._product = serial, product
-        self._framer = Framer(REQUESTS)
+        self._framer = XbusFramer(REQUESTS)
         self._begin_ns, self._sent = now_ns(), 0
         self.is_measuring = True
         self.settings: dict[int, int] = {

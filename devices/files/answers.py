@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import ImuBlock, RateKind, SensorInfo
-from devices.files.imports import Imported
+from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
 
 Array = NDArray[np.generic]
-Told = dict[str, Any]
+Details = dict[str, Any]
 
 LENGTH = struct.Struct("<Q")  # of the JSON; the arrays' lengths stand in it
 PLAIN_NUMBERS = re.compile(r"[<>|][fiu][1248]")
@@ -39,9 +39,9 @@ class BrokenAnswerError(Exception):
     """An answer that no reader of ours gives."""
 
 
-def send(stream: IO[bytes], told: Told, arrays: Sequence[Array] = ()) -> None:
+def send(stream: IO[bytes], details: Details, arrays: Sequence[Array] = ()) -> None:
     shapes = [[array.dtype.str, list(array.shape)] for array in arrays]
-    message = json.dumps({"told": told, "arrays": shapes}).encode()
+    message = json.dumps({"details": details, "arrays": shapes}).encode()
     stream.write(LENGTH.pack(len(message)))
     stream.write(message)
     for array in arrays:
@@ -49,7 +49,7 @@ def send(stream: IO[bytes], told: Told, arrays: Sequence[Array] = ()) -> None:
     stream.flush()
 
 
-def receive(stream: IO[bytes]) -> tuple[Told, list[Array]]:
+def receive(stream: IO[bytes]) -> tuple[Details, list[Array]]:
     """What `send` sent.
 
     Raises
@@ -64,17 +64,17 @@ def receive(stream: IO[bytes]) -> tuple[Told, list[Array]]:
         raise BrokenAnswerError(f"an answer of {length} bytes")
     with _whatever_is_wrong():
         message = json.loads(_exactly(stream, length))
-        told, shapes = message["told"], message["arrays"]
+        details, shapes = message["details"], message["arrays"]
         sizes = [_bytes_of(kind, shape) for kind, shape in shapes]
-        if not isinstance(told, dict) or sum(sizes) > MOST_ANSWER_BYTES:
+        if not isinstance(details, dict) or sum(sizes) > MOST_ANSWER_BYTES:
             raise BrokenAnswerError("an answer of another shape, or too large")
         arrays = [np.empty(shape, kind) for kind, shape in shapes]
     for array in arrays:
         _fill(stream, array.reshape(-1).view(np.uint8).data)
-    return told, arrays
+    return details, arrays
 
 
-def told_of_block(block: ImuBlock, arrays: list[Array]) -> Told:
+def details_of_block(block: ImuBlock, arrays: list[Array]) -> Details:
     """The block, its samples put into `arrays`."""
 
     def put(array: Array) -> int:
@@ -94,67 +94,70 @@ def told_of_block(block: ImuBlock, arrays: list[Array]) -> Told:
     }
 
 
-def block_from(told: Told, arrays: Sequence[Array]) -> ImuBlock:
+def block_from(details: Details, arrays: Sequence[Array]) -> ImuBlock:
     """The block that `told_of_block` told of; raises `BrokenAnswerError`."""
     with _whatever_is_wrong():
-        samples = {name: _samples(arrays[told[name]]) for name in OF_BLOCK if told[name] is not None}
+        samples = {name: _samples(arrays[details[name]]) for name in OF_BLOCK if details[name] is not None}
         columns = {
             str(name): arrays[value] if isinstance(value, int) else np.array(value, dtype=np.dtypes.StringDType())
-            for name, value in told["unknown"].items()
+            for name, value in details["unknown"].items()
         }
-        n = len(arrays[told["time_s"]])
+        n = len(arrays[details["time_s"]])
         if any(column.shape != (n,) for column in columns.values()):
             raise BrokenAnswerError("columns of different lengths")
         return ImuBlock(
-            sensor=_text(told["sensor"]), is_rate_derived=told["is_rate_derived"] is True, unknown=columns, **samples
+            sensor=_text(details["sensor"]),
+            is_rate_derived=details["is_rate_derived"] is True,
+            unknown=columns,
+            **samples,
         )
 
 
-def told_of_findings(findings: Sequence[Finding]) -> list[Told]:
+def details_of_findings(findings: Sequence[Finding]) -> list[Details]:
     return [{"key": f.key, "severity": f.severity, "where": f.where, "numbers": dict(f.numbers)} for f in findings]
 
 
-def findings_from(told: list[Told]) -> tuple[Finding, ...]:
+def findings_from(details: list[Details]) -> tuple[Finding, ...]:
     with _whatever_is_wrong():
-        return tuple(_finding(one) for one in told)
+        return tuple(_finding(one) for one in details)
 
 
-def told_of_import(imported: Imported, arrays: list[Array]) -> Told:
+def details_of_import(imported: ImportedFiles, arrays: list[Array]) -> Details:
     """What an importer brought; what it says of sensors is in the keys of `SensorInfo`."""
     return {
-        "imu": {site: told_of_block(block, arrays) for site, block in imported.imu.items()},
+        "imu": {site: details_of_block(block, arrays) for site, block in imported.imu.items()},
         "sensors": {
             site: {name: getattr(info, name) for name in (*TEXTS_OF_SENSOR, "rate_hz", "rate_kind")}
             for site, info in imported.sensors.items()
         },
-        "findings": told_of_findings(imported.findings),
+        "findings": details_of_findings(imported.findings),
     }
 
 
-def import_from(told: Told, arrays: Sequence[Array]) -> Imported:
+def import_from(details: Details, arrays: Sequence[Array]) -> ImportedFiles:
     with _whatever_is_wrong():
-        return Imported(
-            {Site(site): block_from(block, arrays) for site, block in told["imu"].items()},
-            {Site(site): _sensor(info) for site, info in told["sensors"].items()},
-            findings_from(told["findings"]),
+        return ImportedFiles(
+            {Site(site): block_from(block, arrays) for site, block in details["imu"].items()},
+            {Site(site): _sensor(info) for site, info in details["sensors"].items()},
+            findings_from(details["findings"]),
         )
 
 
-def told_of_document(value: object) -> object:
+def details_of_document(value: object) -> object:
     """A TOML document in JSON's own kinds, its times named as such."""
     if isinstance(value, dict):
-        return ["table", {key: told_of_document(inner) for key, inner in value.items()}]
+        return ["table", {key: details_of_document(inner) for key, inner in value.items()}]
     if isinstance(value, list):
-        return ["list", [told_of_document(inner) for inner in value]]
+        return ["list", [details_of_document(inner) for inner in value]]
     for kind, type_ in TIMES.items():
         if isinstance(value, type_):
             return [kind, value.isoformat()]
     return value
 
 
-def document_from(told: object) -> object:
+def document_from(details: object) -> object:
     with _whatever_is_wrong():
-        match told:
+        match details:
             case ["table", dict(inner)]:
                 return {key: document_from(value) for key, value in inner.items()}
             case ["list", list(inner)]:
@@ -162,19 +165,19 @@ def document_from(told: object) -> object:
             case [str(kind), str(text)]:
                 return TIMES[kind].fromisoformat(text)
             case str() | int() | float():
-                return told
+                return details
     raise BrokenAnswerError("no TOML")
 
 
-def told_of_refusal(refusal: FileRefusedError) -> Told:
+def details_of_refusal(refusal: FileRefusedError) -> Details:
     return {"where": refusal.where, "what": refusal.what, "remedy": refusal.remedy, "values": refusal.values}
 
 
-def refusal_from(told: Told) -> FileRefusedError:
+def refusal_from(details: Details) -> FileRefusedError:
     """The refusal as it was raised; only plain names stand in its braces, so that filling them can do nothing else."""
     with _whatever_is_wrong():
-        where, what, remedy = (_text(told[name]) for name in ("where", "what", "remedy"))
-        values = {str(name): _text(value) for name, value in told["values"].items()}
+        where, what, remedy = (_text(details[name]) for name in ("where", "what", "remedy"))
+        values = {str(name): _text(value) for name, value in details["values"].items()}
         if any(len(text) > MOST_REFUSAL for text in (where, what, remedy, *values.values())):
             raise BrokenAnswerError("a refusal without end")
         if values:
@@ -225,15 +228,15 @@ def _text(value: object) -> str:
     return value
 
 
-def _finding(told: Told) -> Finding:
-    numbers: Mapping[str, object] = told["numbers"]
+def _finding(details: Details) -> Finding:
+    numbers: Mapping[str, object] = details["numbers"]
     kept = {str(name): value for name, value in numbers.items() if isinstance(value, str | int | float)}
-    return Finding(_text(told["key"]), Severity(told["severity"]), _text(told["where"]), kept)
+    return Finding(_text(details["key"]), Severity(details["severity"]), _text(details["where"]), kept)
 
 
-def _sensor(told: Told) -> SensorInfo:
-    rate_hz, kind = told["rate_hz"], told["rate_kind"]
-    serial, model, firmware, clock = (_text(told[name]) for name in TEXTS_OF_SENSOR)
+def _sensor(details: Details) -> SensorInfo:
+    rate_hz, kind = details["rate_hz"], details["rate_kind"]
+    serial, model, firmware, clock = (_text(details[name]) for name in TEXTS_OF_SENSOR)
     return SensorInfo(
         serial=serial,
         model=model,

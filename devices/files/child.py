@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from devices.files.limits import limit_processor_time, limit_this_process
 
 if TYPE_CHECKING:
-    from devices.files.answers import Array, Told
+    from devices.files.answers import Array, Details
 
 TOML, SITE, IMPORT = "toml", "site", "import"
 IMPORTERS = ("xsens-mtmanager",)
@@ -49,45 +49,45 @@ def importers() -> "dict[str, Callable[..., Any]]":
     return {"xsens-mtmanager": import_mtmanager}
 
 
-def _answer(asked: "Told", arrays: "list[Array]") -> "Told":
-    from devices.files.answers import told_of_refusal
+def _answer(asked: "Details", arrays: "list[Array]") -> "Details":
+    from devices.files.answers import details_of_refusal
     from devices.files.refusal import FileRefusedError
 
     try:
-        return {"what": READ, "told": _read(asked, arrays)}
+        return {"what": READ, "details": _read(asked, arrays)}
     except FileRefusedError as refusal:
-        return {"what": REFUSED, "told": told_of_refusal(refusal)}
+        return {"what": REFUSED, "details": details_of_refusal(refusal)}
     except OSError as problem:
         why = problem.strerror or type(problem).__name__
         where = str(problem.filename or asked["where"])
         unread = FileRefusedError(where, "this cannot be read ({why})", "Check its permissions", why=why)
-        return {"what": REFUSED, "told": told_of_refusal(unread)}
+        return {"what": REFUSED, "details": details_of_refusal(unread)}
     except MemoryError:
         arrays.clear()
         return {"what": MEMORY}
     except Exception as error:  # the edge of the process; what the file says stays out of the words
         arrays.clear()
-        return {"what": UNFORESEEN, "told": f"{type(error).__name__}, {_last_line(error)}"}
+        return {"what": UNFORESEEN, "details": f"{type(error).__name__}, {_last_line(error)}"}
 
 
-def _read(asked: "Told", arrays: "list[Array]") -> object:
+def _read(asked: "Details", arrays: "list[Array]") -> object:
     from core.body import Site
-    from devices.files.answers import told_of_block, told_of_document, told_of_findings, told_of_import
+    from devices.files.answers import details_of_block, details_of_document, details_of_findings, details_of_import
     from devices.files.session_folder import IN_THIS_PROCESS
     from devices.files.site_files import read_site
 
     task = asked["task"]
     if task == TOML:
-        return told_of_document(IN_THIS_PROCESS.read_toml(Path(asked["path"])))
+        return details_of_document(IN_THIS_PROCESS.read_toml(Path(asked["path"])))
     if task == SITE:
         block, findings = read_site(
             Path(asked["path"]), asked["where"], asked["place"], asked["sensor"], asked["is_rate_derived"]
         )
-        return {"block": told_of_block(block, arrays), "findings": told_of_findings(findings)}
+        return {"block": details_of_block(block, arrays), "findings": details_of_findings(findings)}
     placement = {Site(site): value for site, value in asked["placement"].items()}
     files = [Path(path) for path in asked["files"]]
     imported = importers()[asked["format"]](files, placement, asked["recording"], asked["rate_hz"])
-    return told_of_import(imported, arrays)
+    return details_of_import(imported, arrays)
 
 
 def _last_line(error: Exception) -> str:

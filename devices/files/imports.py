@@ -16,7 +16,7 @@ AS_IN = "Write it as left_thigh=FILE_OR_SENSOR_ID,left_shank=FILE_OR_SENSOR_ID"
 
 
 @dataclass(frozen=True, slots=True)
-class Imported:
+class ImportedFiles:
     """What one import brings: the samples of one recording, what the files say of the sensors, what was noticed."""
 
     imu: Mapping[Site, ImuBlock]

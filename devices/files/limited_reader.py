@@ -22,7 +22,7 @@ from devices.files import child
 from devices.files.answers import (
     Array,
     BrokenAnswerError,
-    Told,
+    Details,
     block_from,
     document_from,
     findings_from,
@@ -31,7 +31,7 @@ from devices.files.answers import (
     refusal_from,
     send,
 )
-from devices.files.imports import Imported
+from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
 from devices.files.session_toml import FILE_NAME
 from devices.files.site_files import ReadSite, SiteFile
@@ -94,7 +94,7 @@ class LimitedReader:
 
     def ask(
         self,
-        task: Told,
+        task: Details,
         files: Sequence[Path],
         where: str,
         made_of: Callable[[Any, list[Array]], T],
@@ -126,7 +126,7 @@ class LimitedReader:
             process = self._process = self._ready()
             self._files_left -= len(files)
             answer, arrays = _exchange(process, asked, monotonic() + deadline_s, waiting)
-            return made_of(_told(answer, where), arrays)
+            return made_of(_details(answer, where), arrays)
         except BrokenAnswerError as problem:
             _log.warning("the reading process gave a broken answer")
             self._files_left = 0
@@ -186,9 +186,9 @@ def end(process: Process) -> None:
                 stream.close()
 
 
-def _exchange(process: Process, asked: Told, deadline_s: float, waiting: Waiting) -> tuple[Told, list[Array]]:
+def _exchange(process: Process, asked: Details, deadline_s: float, waiting: Waiting) -> tuple[Details, list[Array]]:
     """Ask, and wait for the answer until the deadline; half an answer without its end is waited for no longer."""
-    answers: list[tuple[Told, list[Array]]] = []
+    answers: list[tuple[Details, list[Array]]] = []
     problems: list[Exception] = []
 
     def exchange() -> None:
@@ -228,16 +228,16 @@ def _is_running(thread: threading.Thread) -> bool:
     return thread.is_alive()
 
 
-def _told(answer: Told, where: str) -> Any:
+def _details(answer: Details, where: str) -> Any:
     match answer:
-        case {"what": child.READ, "told": told}:
-            return told
-        case {"what": child.REFUSED, "told": dict(told)}:
-            raise refusal_from(told)
+        case {"what": child.READ, "details": details}:
+            return details
+        case {"what": child.REFUSED, "details": dict(details)}:
+            raise refusal_from(details)
         case {"what": child.MEMORY}:
             raise ReadingEndedError(where, child.MEMORY)
-        case {"what": child.UNFORESEEN, "told": str(told)}:
-            _log.error("a file's reader raised %s", told[:200])
+        case {"what": child.UNFORESEEN, "details": str(details)}:
+            _log.error("a file's reader raised %s", details[:200])
             raise ReadingEndedError(where, child.UNFORESEEN)
     raise BrokenAnswerError("neither read nor refused")
 
@@ -270,7 +270,7 @@ class LimitedReading:
         placement: Mapping[Site, str],
         recording: str,
         rate_hz: float | None,
-    ) -> Imported:
+    ) -> ImportedFiles:
         """As the importer of this format does."""
         task = {
             "task": child.IMPORT,
@@ -284,14 +284,14 @@ class LimitedReading:
         return self._reader.ask(task, files, where, import_from, self.waiting)
 
 
-def _document(told: Any, _arrays: Sequence[Array]) -> dict[str, object]:
-    document = document_from(told)
+def _document(details: Any, _arrays: Sequence[Array]) -> dict[str, object]:
+    document = document_from(details)
     if not isinstance(document, dict):
         raise BrokenAnswerError("no table")
     return document
 
 
-def _site(told: Any, arrays: Sequence[Array]) -> ReadSite:
-    if not isinstance(told, dict) or not {"block", "findings"} <= told.keys():
+def _site(details: Any, arrays: Sequence[Array]) -> ReadSite:
+    if not isinstance(details, dict) or not {"block", "findings"} <= details.keys():
         raise BrokenAnswerError("no site")
-    return block_from(told["block"], arrays), findings_from(told["findings"])
+    return block_from(details["block"], arrays), findings_from(details["findings"])

@@ -17,7 +17,7 @@ from scipy.spatial.transform import Rotation
 from core.body import Site
 from core.findings import Finding, Severity
 from core.samples import BoolArray, FloatArray, ImuBlock, RateKind, SensorInfo
-from devices.files.imports import Imported, place_files
+from devices.files.imports import ImportedFiles, place_files
 from devices.files.refusal import FileRefusedError
 from devices.files.tables import CORRECT_IT, Table, header_of, read_csv
 
@@ -107,7 +107,7 @@ def read_mtmanager(path: Path) -> MtFile:
 
 def import_mtmanager(
     files: Sequence[Path], placement: Mapping[Site, str], recording: str, rate_hz: float | None = None
-) -> Imported:
+) -> ImportedFiles:
     """The files of one trial as the samples of one recording, aligned by their packet counters.
 
     Time is the counter divided by the update rate, from the first packet that any of the files holds; packets that are
@@ -139,7 +139,7 @@ def import_mtmanager(
         imu[site] = block
         sensors[site] = replace(file.info, rate_hz=rate_hz, rate_kind=_rate_kind(file, block, rate_hz))
         findings += _findings(file, block, f"{recording}, {site}")
-    return Imported(imu, sensors, tuple(findings))
+    return ImportedFiles(imu, sensors, tuple(findings))
 
 
 def sensor_ids(path: Path) -> list[str]:
@@ -148,9 +148,9 @@ def sensor_ids(path: Path) -> list[str]:
         comments, _ = header_of(path, path.name, comment="//", delimiters=DELIMITERS)
     except FileRefusedError:
         comments = []  # it may be among the files without being an export
-    told = [line.split(":", 1)[1].strip() for line in comments if line.startswith("DeviceId:")]
+    ids = [line.split(":", 1)[1].strip() for line in comments if line.startswith("DeviceId:")]
     named = re.search(r"_([0-9A-Fa-f]{8})$", path.stem)
-    return list(dict.fromkeys([*told, *([named[1]] if named else [])]))
+    return list(dict.fromkeys([*ids, *([named[1]] if named else [])]))
 
 
 def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: float) -> FloatArray:
@@ -244,9 +244,9 @@ def _quaternions(make: Callable[[FloatArray], Rotation], values: FloatArray, is_
 
 
 def _header_rate(settings: Mapping[str, str]) -> float | None:
-    told = re.fullmatch(r"\s*([\d.]+)\s*Hz\s*", settings.get("Update Rate", ""))
+    rate = re.fullmatch(r"\s*([\d.]+)\s*Hz\s*", settings.get("Update Rate", ""))
     try:
-        rate_hz = float(told[1]) if told else 0.0
+        rate_hz = float(rate[1]) if rate else 0.0
     except ValueError:
         return None
     return rate_hz if rate_hz > 0 else None
@@ -262,16 +262,16 @@ def _fine_rate(table: Table, counter: Numbers) -> float | None:
 
 
 def _common_rate(files: Iterable[MtFile], asked_hz: float | None) -> float:
-    told = {file.path.name: file.rate_hz for file in files if file.rate_hz is not None}
+    rates_hz = {file.path.name: file.rate_hz for file in files if file.rate_hz is not None}
     if asked_hz is not None:
-        told["--rate"] = asked_hz
-    if not told:
+        rates_hz["--rate"] = asked_hz
+    if not rates_hz:
         raise FileRefusedError(
             "update rate",
             "none of these files tells it",
             "Give it in Hz with --rate, as set in MT Manager when recording",
         )
-    (first, rate_hz), *others = told.items()
+    (first, rate_hz), *others = rates_hz.items()
     for name, other_hz in others:
         if abs(other_hz - rate_hz) > 0.002 * rate_hz:  # clocks of two sensors differ less, settings more
             raise FileRefusedError(

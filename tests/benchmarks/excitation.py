@@ -24,7 +24,7 @@ from core.calibration.rest import rest_of
 from core.identified import identify
 from core.live.excitation import HUMAN, Excitation, ExcitationState
 from core.live.orientation import LiveOrientation, OrientedSamples
-from core.live.streams import Stream
+from core.live.streams import EvenStream
 from core.results import Method
 from core.samples import FloatArray, RateKind, Session
 from core.sensors import SensorTracks
@@ -164,7 +164,7 @@ def _as_they_come(session: Session, site: Site) -> OrientedSamples:
     standing, free = session.recordings
     rest = rest_of(standing.imu[site])
     assert rest is not None
-    stream = Stream(100.0)
+    stream = EvenStream(100.0)
     stream.feed(free.imu[site])
     return LiveOrientation(rest.gyr_rad_s, RateKind.INSTANTANEOUS, stream.step_s).update(stream.take())
 

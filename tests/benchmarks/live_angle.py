@@ -21,7 +21,7 @@ from core.analysis import analyse
 from core.body import Joint, Site
 from core.live.angle import AngleSamples, LiveAngle
 from core.live.orientation import LiveOrientation
-from core.live.streams import Stream
+from core.live.streams import EvenStream
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock, RateKind, Recording, RecordingKind, Session
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
@@ -86,7 +86,7 @@ def live_angle(
     biases = [calibration.gyro_bias_proximal_rad_s, calibration.gyro_bias_distal_rad_s]
     for site, known, left_rad_s in zip((joint.proximal, joint.distal), biases, (0.0, bias_rad_s), strict=True):
         bias = np.zeros(3) if known is None else known
-        stream = Stream(rate_hz)
+        stream = EvenStream(rate_hz)
         stream.feed(recording.imu[site])
         orientation = LiveOrientation(bias - left_rad_s * calibration.axis_distal, kind, stream.step_s)
         turned.append(orientation.update(stream.take()))

@@ -22,7 +22,7 @@ from vqf import VQF
 from core.analysis import analyse
 from core.body import Site
 from core.calibration.rest import rest_of
-from core.live.free_motion import FreeMotion
+from core.live.free_motion import LiveFreeMotion
 from core.live.sensors import LiveSensor
 from core.live.walking import Walking
 from core.samples import ImuBlock, Session
@@ -83,7 +83,7 @@ def compare(minutes: int) -> None:
     sensors, calibration = sensors_of(session), analyse(session).calibrations[-1].joints
     stages = {
         "walking": (Walking(sensors, calibration).update, in_blocks(session.recordings[2].imu)),
-        "free motion": (FreeMotion(sensors).update, in_blocks(session.recordings[1].imu)),
+        "free motion": (LiveFreeMotion(sensors).update, in_blocks(session.recordings[1].imu)),
     }
     print("| stage | of one core, % | p50, p99, worst block, ms | of six VQF |")
     print("|---|---|---|---|")

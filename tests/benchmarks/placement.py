@@ -18,8 +18,8 @@ import numpy as np
 
 from core.body import Segment, Side, Site
 from core.placement.chains import Chains, find_chains
-from core.placement.felt import Tracks
 from core.placement.labels import about_labels
+from core.placement.smoothed_tracks import Tracks
 from core.samples import FloatArray, RateKind, RecordingKind, Session
 from core.sensors import SensorTracks
 from devices.walker import FreeMotion, Motion, SensorErrors, Standing, Tissue, Walk, WalkerSettings, simulate

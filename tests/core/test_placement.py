@@ -16,9 +16,10 @@ from core.analysis import analyse
 from core.body import Joint, Segment, Side, Site
 from core.findings import Severity
 from core.placement.chains import Chains, find_chains
-from core.placement.felt import Tracks, felt_together
 from core.placement.labels import about_labels, exchanged_sites
 from core.placement.links import link
+from core.placement.smoothed_tracks import Tracks, smoothed_in_steps
+from core.placement.steps import at_once
 from core.samples import FloatArray, ImuBlock, Recording, RecordingKind, Session
 from devices.files.xsens_mtmanager import import_mtmanager
 from devices.walker import FreeMotion, Motion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
@@ -329,7 +330,7 @@ def test_a_recording_without_two_neighbours_says_nothing_of_labels(circling: Ses
 def test_a_joint_lies_where_its_two_sensors_say() -> None:
     made = walked(Standing(), FreeMotion(), tissue=Tissue.RIGID)
     tracks, _ = unlabelled(tracks_of(made.session))
-    together = felt_together(tracks)
+    together = at_once(smoothed_in_steps(tracks))
     assert together is not None
     for joint in Joint:
         one, two = (together.sensors[site] for site in (joint.proximal, joint.distal))
@@ -350,7 +351,7 @@ def test_a_late_sensor_still_shares_its_joint(late_s: float) -> None:
         seed=4, recordings=(FreeMotion(duration_s=6.0),), sites=(T, S, F), clock_late_s={S: late_s}
     )
     tracks, _ = unlabelled(tracks_of(simulate(settings).session))
-    together = felt_together(tracks)
+    together = at_once(smoothed_in_steps(tracks))
     assert together is not None
 
     def cost(one: Site, two: Site) -> float:

@@ -506,7 +506,7 @@ def test_gaps_are_gaps_in_the_angle(person: "Person", knee_visit: Session, metho
 
 
 def test_what_raises_in_progress_ends_the_analysis(knee_visit: Session) -> None:
-    class StoppedError(Exception):
+    class HaltedError(Exception):
         pass
 
     shares: list[float] = []
@@ -514,9 +514,9 @@ def test_what_raises_in_progress_ends_the_analysis(knee_visit: Session) -> None:
     def stop(share: float, _: str) -> None:
         shares.append(share)
         if len(shares) == 3:
-            raise StoppedError
+            raise HaltedError
 
-    with pytest.raises(StoppedError):
+    with pytest.raises(HaltedError):
         analyse(knee_visit, progress=stop)
     assert shares == sorted(shares)
     assert all(0.0 <= share <= 1.0 for share in shares)

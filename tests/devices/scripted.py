@@ -35,3 +35,13 @@ class ScriptedChannel:
 
     def close(self) -> None:
         self.is_open = False
+
+
+class SilentVoice:
+    """An emulated sensor that says nothing, whatever it hears."""
+
+    def say(self) -> bytes:
+        return b""
+
+    def hear(self, data: bytes) -> bytes:
+        return b""

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from devices.csv_serial import DRIVER, MOST_LINE, VERSION, Columns, CsvFramer, CsvSerial
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceRefusedError
 from devices.ports import PortInfo, SerialPort
 from devices.source import SourceInfo
@@ -96,7 +96,7 @@ def test_another_line_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         ByteSource(CsvSerial(COLUMNS), ScriptedChannel([b"hello\nhello\n"])).open()
 
 
-class LineVoice:
+class ScriptedLines:
     """Sends a line with every breath."""
 
     def __init__(self) -> None:
@@ -111,7 +111,7 @@ class LineVoice:
 
 
 def test_it_is_heard_through_a_port(tmp_path: Path) -> None:
-    emulation = Emulation(LineVoice(), lambda: Terminal(tmp_path / "port"))
+    emulation = Emulation(ScriptedLines(), lambda: PseudoTerminal(tmp_path / "port"))
     source = ByteSource(CsvSerial(COLUMNS, name="home-made"), SerialPort(PortInfo(emulation.place)))
     try:
         source.open()

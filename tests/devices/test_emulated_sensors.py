@@ -22,7 +22,7 @@ def motion(number: int) -> tuple[float, ...]:
     return (125.0 + number, -250.0, 375.0, 2.0, -4.0, 6.0)
 
 
-class Clock:
+class StandingClock:
     """Stands until it is put forward."""
 
     def __init__(self) -> None:
@@ -52,7 +52,7 @@ def test_a_shimmer_answers_with_literal_bytes() -> None:
 
 
 def test_a_shimmer_streams_from_its_first_sample_at_its_rate() -> None:
-    clock = Clock()
+    clock = StandingClock()
     voice = Shimmer3Voice(lambda number: (1, 2, 3, 4, 5, 6), period=320, now_ns=clock)
     assert voice.say() == b""
     voice.hear(b"\x07")
@@ -68,7 +68,7 @@ def test_a_shimmer_streams_from_its_first_sample_at_its_rate() -> None:
 
 
 def test_a_witmotion_says_a_burst_and_answers_of_registers() -> None:
-    clock = Clock()
+    clock = StandingClock()
     voice = WitVoice("7", motion, rate_hz=100.0, content=0b1111, now_ns=clock)
     clock.now_s = 0.015
     # 2026-01-01 0:00; an eighth, a quarter, three eighths of full scale; 25 degrees Celsius; lying level
@@ -91,7 +91,7 @@ def test_a_witmotion_says_a_burst_and_answers_of_registers() -> None:
 
 
 def test_an_ximu3_says_samples_in_text_and_binary() -> None:
-    clock = Clock()
+    clock = StandingClock()
     text = Ximu3Voice("1", motion, rate_hz=100, is_binary=False, now_ns=clock)
     binary = Ximu3Voice("1", motion, rate_hz=100, now_ns=clock)
     clock.now_s = 0.025
@@ -118,7 +118,7 @@ def test_an_ximu3_answers_what_it_is_set_to() -> None:
 
 
 def test_an_mti_answers_and_measures_from_its_first_sample() -> None:
-    clock = Clock()
+    clock = StandingClock()
     voice = MtiVoice("0280A1B2", now_ns=clock)
     assert voice.hear(xbus(0xC0)) == xbus(0x42, "03")  # not while it measures
     assert voice.hear(xbus(0x30)) == xbus(0x31)
@@ -140,7 +140,7 @@ def test_an_mti_answers_and_measures_from_its_first_sample() -> None:
 
 
 def test_lines_of_numbers_are_milliseconds_rates_and_forces() -> None:
-    clock = Clock()
+    clock = StandingClock()
     voice = LineVoice(motion, rate_hz=50.0, now_ns=clock)
     clock.now_s = 0.041
     assert voice.say() == (
@@ -151,7 +151,7 @@ def test_lines_of_numbers_are_milliseconds_rates_and_forces() -> None:
 
 
 def test_a_sensor_that_is_played_again_is_told_and_shaken() -> None:
-    clock = Clock()
+    clock = StandingClock()
 
     def sleep(seconds: float) -> None:
         clock.now_s += seconds
@@ -159,7 +159,7 @@ def test_a_sensor_that_is_played_again_is_told_and_shaken() -> None:
     session = simulate(WalkerSettings(recordings=(Standing(),))).session
     source = ReplaySource(session, now_ns=clock, sleep=sleep)
     source.open()
-    told = source.told()
+    told = source.details()
     first = source.info.sensors[0]
     assert len(told) == len(source.info.sensors) == 6
     assert all(one.rate_hz == 100.0 for one in told.values())

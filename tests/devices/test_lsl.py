@@ -221,7 +221,7 @@ def assert_stamped(outlets: list[Outlet], seconds: float) -> None:
             assert len(number) > 0.5 * seconds * RATE_HZ
             wrong_s = (time_s - outlet.taken_s(number))[int(RATE_HZ / 2) :]
             assert np.sqrt(np.mean(wrong_s**2)) < 0.002
-            told = source.told()[outlet.name]
+            told = source.details()[outlet.name]
             assert (told.model, told.rate_hz) == ("IMU", RATE_HZ)
             assert source.info.sensors == (outlet.name,)
     finally:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.samples import RateKind
-from devices.live import SensorTold, SourceRefusedError
+from devices.live import SensorDetails, SourceRefusedError
 from devices.shimmer3 import Shimmer3, Shimmer3Framer
 from devices.source import SourceInfo
 from devices.stream import Framer
@@ -84,14 +84,14 @@ class ScriptedShimmer:
 
 
 @pytest.fixture
-def shimmer(monkeypatch: pytest.MonkeyPatch) -> tuple[ScriptedShimmer, SourceInfo, SensorTold]:
+def shimmer(monkeypatch: pytest.MonkeyPatch) -> tuple[ScriptedShimmer, SourceInfo, SensorDetails]:
     monkeypatch.setattr("devices.shimmer3.QUIET_S", 0.001)
     said = ScriptedShimmer()
     return said, *Shimmer3().greet(ScriptedChannel(answers=said))
 
 
 def test_a_shimmer_is_set_to_the_ranges_that_a_walk_needs(
-    shimmer: tuple[ScriptedShimmer, SourceInfo, SensorTold],
+    shimmer: tuple[ScriptedShimmer, SourceInfo, SensorDetails],
 ) -> None:
     said, info, told = shimmer
     wanted = [
@@ -114,7 +114,7 @@ def test_a_shimmer_is_set_to_the_ranges_that_a_walk_needs(
 
 
 def test_a_shimmers_alignment_is_undone_and_not_applied_again(
-    shimmer: tuple[ScriptedShimmer, SourceInfo, SensorTold],
+    shimmer: tuple[ScriptedShimmer, SourceInfo, SensorDetails],
 ) -> None:
     """Raw = K R C + B of true rates C = (30, 10, 20) deg/s and forces (3, -2, 10) m/s2.
 

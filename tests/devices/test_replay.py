@@ -14,7 +14,7 @@ from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, s
 RATE_HZ = 100.0
 
 
-class Clock:
+class SteppedClock:
     def __init__(self) -> None:
         self.time_ns = 1_000_000_000_000
 
@@ -32,22 +32,22 @@ def session() -> Session:
 
 
 @pytest.fixture
-def clock() -> Clock:
-    return Clock()
+def clock() -> SteppedClock:
+    return SteppedClock()
 
 
 Make = Callable[..., ReplaySource]
 
 
 @pytest.fixture
-def make(session: Session, clock: Clock) -> Make:
+def make(session: Session, clock: SteppedClock) -> Make:
     def make(faults: ReplayFaults = ReplayFaults(), **settings: float) -> ReplaySource:  # noqa: B008  # the default is frozen
         return ReplaySource(session, faults=faults, now_ns=clock, sleep=clock.sleep, **settings)  # type: ignore[arg-type]  # speed alone is given here
 
     return make
 
 
-def listen(source: ReplaySource, clock: Clock, seconds: float) -> dict[str, ImuBlock]:
+def listen(source: ReplaySource, clock: SteppedClock, seconds: float) -> dict[str, ImuBlock]:
     """All that comes within `seconds`, by sensor; without their orientation."""
     until_ns = clock.time_ns + round(seconds * 1e9)
     heard: dict[str, list[ImuBlock]] = {name: [] for name in source.info.sensors}
@@ -72,7 +72,9 @@ def is_even(block: ImuBlock) -> bool:
     return bool(np.allclose(np.diff(block.time_s), 1 / RATE_HZ, atol=1e-6))
 
 
-def test_standing_is_played_over_and_over_without_a_seam_in_time(make: Make, clock: Clock, session: Session) -> None:
+def test_standing_is_played_over_and_over_without_a_seam_in_time(
+    make: Make, clock: SteppedClock, session: Session
+) -> None:
     source = make()
     source.open()
     heard = listen(source, clock, 10.0)
@@ -87,7 +89,9 @@ def test_standing_is_played_over_and_over_without_a_seam_in_time(make: Make, clo
         assert np.array_equal(block.acc_m_s2[loop : 2 * loop], standing[site].acc_m_s2)
 
 
-def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(make: Make, clock: Clock, session: Session) -> None:
+def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(
+    make: Make, clock: SteppedClock, session: Session
+) -> None:
     source = make()
     source.open()
     name = source.info.sensors[0]
@@ -112,7 +116,7 @@ def test_what_is_asked_is_done_at_once_and_then_the_patient_stands(make: Make, c
         assert np.array_equal(after, standing.gyr_rad_s[: len(after)])
 
 
-def test_it_says_how_long_it_will_do_what_it_is_asked(make: Make, session: Session, clock: Clock) -> None:
+def test_it_says_how_long_it_will_do_what_it_is_asked(make: Make, session: Session, clock: SteppedClock) -> None:
     source = make()
     assert source.ask(RecordingKind.WALKING) is None, "it is not open"
     source.open()
@@ -128,7 +132,7 @@ def test_it_says_how_long_it_will_do_what_it_is_asked(make: Make, session: Sessi
     assert source.ask(RecordingKind.FREE_MOTION) is None, "over and over"
 
 
-def test_asking_for_nothing_ends_a_walk(make: Make, clock: Clock) -> None:
+def test_asking_for_nothing_ends_a_walk(make: Make, clock: SteppedClock) -> None:
     source = make()
     source.open()
     source.ask(RecordingKind.WALKING)
@@ -139,7 +143,9 @@ def test_asking_for_nothing_ends_a_walk(make: Make, clock: Clock) -> None:
         assert is_even(block)
 
 
-def test_who_finishes_walks_on_and_moves_freely_until_something_else_is_asked(session: Session, clock: Clock) -> None:
+def test_who_finishes_walks_on_and_moves_freely_until_something_else_is_asked(
+    session: Session, clock: SteppedClock
+) -> None:
     source = ReplaySource(session, finishes=True, now_ns=clock, sleep=clock.sleep)
     source.open()
     name = source.info.sensors[0]
@@ -161,7 +167,7 @@ def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -
     few = replace(DEMONSTRATION_SESSION, recordings=(Standing(), FreeMotion(duration_s=6.0), Walk(strides=3)))
     source, truth = demonstration(few), simulate(few).truth
     assert sorted(source.info.sensors) == list(source.info.sensors)
-    assert {told.serial for told in source.told().values()} == set(source.info.sensors)
+    assert {told.serial for told in source.details().values()} == set(source.info.sensors)
     for name, recording in truth.recordings.items():
         limit_deg = 6.0 if name.startswith("free motion") else 1.5  # a leg that hangs has its ankle at 0
         for joint in recording.joints.values():
@@ -169,7 +175,7 @@ def test_demonstration_patient_takes_the_same_pose_between_all_that_is_asked() -
             np.testing.assert_allclose(ends, joint.standing_rad, atol=np.deg2rad(limit_deg))
 
 
-def test_losses_a_lag_and_a_silence_are_as_told(make: Make, clock: Clock) -> None:
+def test_losses_a_lag_and_a_silence_are_as_told(make: Make, clock: SteppedClock) -> None:
     names = make().info.sensors
     late, silent = names[1], names[2]
     source = make(ReplayFaults(loss_share=0.1, lag_s={late: 0.03}, silent_s={silent: (2.0, 5.0)}, seed=3))
@@ -190,7 +196,7 @@ def test_losses_a_lag_and_a_silence_are_as_told(make: Make, clock: Clock) -> Non
     assert all(np.array_equal(block.time_s, heard[name].time_s) for name, block in listen(again, clock, 20.0).items())
 
 
-def test_a_sensor_is_silenced_woken_and_shaken(make: Make, clock: Clock) -> None:
+def test_a_sensor_is_silenced_woken_and_shaken(make: Make, clock: SteppedClock) -> None:
     source = make()
     source.open()
     name, other = source.info.sensors[:2]
@@ -206,7 +212,7 @@ def test_a_sensor_is_silenced_woken_and_shaken(make: Make, clock: Clock) -> None
     assert np.abs(heard[other].gyr_rad_s).max() < 0.1
 
 
-def test_a_source_that_vanishes_is_lost_and_does_not_open_until_it_is_back(make: Make, clock: Clock) -> None:
+def test_a_source_that_vanishes_is_lost_and_does_not_open_until_it_is_back(make: Make, clock: SteppedClock) -> None:
     source = make()
     source.open()
     before = listen(source, clock, 1.0)
@@ -226,7 +232,7 @@ def test_a_source_that_vanishes_is_lost_and_does_not_open_until_it_is_back(make:
         assert steps == pytest.approx(round(steps), abs=1e-3)  # the sensors' clock ran on
 
 
-def test_what_nobody_reads_for_long_is_lost_but_for_what_is_buffered(make: Make, clock: Clock) -> None:
+def test_what_nobody_reads_for_long_is_lost_but_for_what_is_buffered(make: Make, clock: SteppedClock) -> None:
     source = make()
     source.open()
     listen(source, clock, 1.0)
@@ -242,7 +248,7 @@ def test_what_nobody_reads_for_long_is_lost_but_for_what_is_buffered(make: Make,
         assert steps == pytest.approx(round(steps), abs=1e-3)
 
 
-def test_what_is_played_faster_is_buffered_for_as_long(make: Make, clock: Clock) -> None:
+def test_what_is_played_faster_is_buffered_for_as_long(make: Make, clock: SteppedClock) -> None:
     source = make(speed=20.0)
     source.open()
     clock.sleep(0.8 * BUFFER_S)
@@ -250,7 +256,7 @@ def test_what_is_played_faster_is_buffered_for_as_long(make: Make, clock: Clock)
     assert sum(map(len, heard)) > 20 * 0.8 * BUFFER_S * RATE_HZ
 
 
-def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: Clock) -> None:
+def test_time_runs_faster_where_it_is_asked_to(make: Make, clock: SteppedClock) -> None:
     source = make(speed=20.0)
     source.open()
     begin_ns = source.now_ns()

@@ -14,7 +14,7 @@ import pytest
 from devices import ports as ports_module
 from devices.catalogue import DRIVERS
 from devices.emulators.shimmer3 import Shimmer3Voice
-from devices.emulators.transports import Emulation, Terminal, Voice
+from devices.emulators.transports import Emulation, PseudoTerminal, Voice
 from devices.emulators.witmotion import WitVoice
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
@@ -23,6 +23,7 @@ from devices.lsl import LslSensor, LslStream, sensors_of
 from devices.ports import MORE_PORTS, PortInfo, SerialPort, list_ports
 from devices.search import announcement, search, search_streams
 from devices.shimmer3 import EMULATED as SHIMMER3
+from tests.devices.scripted import SilentVoice
 
 
 def motion(number: int) -> tuple[float, ...]:
@@ -49,12 +50,12 @@ def emulated(tmp_path: Path) -> Iterator[list[PortInfo]]:
         "a": Ximu3Voice("0000000A", motion),
         "b": Ximu3Voice("0000000B", motion, is_binary=False),
         "c": WitVoice("000C", motion),
-        "d": Silence(),
+        "d": SilentVoice(),
         "e": Shimmer3Voice(name=f"{SHIMMER3} E"),
         "f": left_in_configuration(),
     }
-    emulations = [Emulation(voice, partial(Terminal, tmp_path / name)) for name, voice in voices.items()]
-    yield [PortInfo(emulation.place, is_told=True) for emulation in emulations]
+    emulations = [Emulation(voice, partial(PseudoTerminal, tmp_path / name)) for name, voice in voices.items()]
+    yield [PortInfo(emulation.place, is_named=True) for emulation in emulations]
     for emulation in emulations:
         emulation.close()
 
@@ -65,17 +66,9 @@ def left_in_configuration() -> MtiVoice:
     return voice
 
 
-class Silence:
-    def say(self) -> bytes:
-        return b""
-
-    def hear(self, data: bytes) -> bytes:
-        return b""
-
-
 @pytest.mark.endurance
 def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: Path) -> None:
-    found = search([*emulated, PortInfo(str(tmp_path / "nothing"), is_told=True)], free_port())
+    found = search([*emulated, PortInfo(str(tmp_path / "nothing"), is_named=True)], free_port())
     assert {(one.driver, one.name) for one in found.sensors} == {
         ("ximu3", "0000000A"),
         ("ximu3", "0000000B"),
@@ -98,8 +91,8 @@ def test_each_sensor_is_found_by_its_driver(emulated: list[PortInfo], tmp_path: 
 def test_a_sensor_that_was_left_streaming_is_found_again(tmp_path: Path) -> None:
     """Its packets hold bytes that look like messages of an x-IMU3."""
     voice = Shimmer3Voice(lambda number: (10, 200 + number % 2, 10, 1000, 10, 1000), name=f"{SHIMMER3} E")
-    emulation = Emulation(voice, partial(Terminal, tmp_path / "port"))
-    port = PortInfo(emulation.place, is_told=True)
+    emulation = Emulation(voice, partial(PseudoTerminal, tmp_path / "port"))
+    port = PortInfo(emulation.place, is_named=True)
     for _ in range(2):
         found = search([port], free_port())
         assert [one.driver for one in found.sensors] == ["shimmer3"]
@@ -151,7 +144,7 @@ def test_streams_of_motion_are_found_and_others_say_why_not(
         units = ["deg/s"] * 3 + ["g"] * 3 if stream.name != "no units" else []
         return sensors_of(stream.name, told[stream.name], units)
 
-    monkeypatch.setattr("devices.search.told_sensors", sensors)
+    monkeypatch.setattr("devices.search.announced_sensors", sensors)
     assert search([], free_port()).sensors == ()  # nobody asked
     found = search_streams("127.0.0.1")
     assert [(one.driver, one.name, one.count) for one in found.sensors] == [("lsl", "Consensys", 1)]

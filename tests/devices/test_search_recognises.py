@@ -14,14 +14,15 @@ from devices.emulators.ximu3 import Ximu3Voice
 from devices.emulators.xsens_mti import MtiVoice
 from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo
-from devices.search import Found, search
+from devices.search import SearchResult, search
+from tests.devices.scripted import SilentVoice
 
 
 def motion(number: int) -> tuple[float, ...]:
     return (number % 100, 0.0, 0.0, 0.0, 0.0, 1.0)
 
 
-class Clock:
+class TickingClock:
     """Every look at it takes two milliseconds, of the emulated sensors and of the search alike."""
 
     def __init__(self) -> None:
@@ -68,33 +69,25 @@ class Noise:
         return b""
 
 
-class Silence:
-    def say(self) -> bytes:
-        return b""
-
-    def hear(self, data: bytes) -> bytes:
-        return b""
-
-
-class Lost(Silence):
+class Lost(SilentVoice):
     def say(self) -> bytes:
         raise SourceLostError("it went away")
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    one = Clock()
+def clock(monkeypatch: pytest.MonkeyPatch) -> TickingClock:
+    one = TickingClock()
     monkeypatch.setattr(time, "monotonic", one.monotonic)
     monkeypatch.setattr("devices.search._announced", lambda at_port: [])
     return one
 
 
-def found_at(make: Callable[[], Voice | None], monkeypatch: pytest.MonkeyPatch) -> Found:
+def found_at(make: Callable[[], Voice | None], monkeypatch: pytest.MonkeyPatch) -> SearchResult:
     monkeypatch.setattr("devices.search.SerialPort", partial(ScriptedPort, make))
-    return search([PortInfo("script", is_told=True)])
+    return search([PortInfo("script", is_named=True)])
 
 
-def silent_mti(clock: Clock) -> MtiVoice:
+def silent_mti(clock: TickingClock) -> MtiVoice:
     voice = MtiVoice(now_ns=clock)
     voice.is_measuring = False
     return voice
@@ -113,7 +106,7 @@ def silent_mti(clock: Clock) -> MtiVoice:
     ids=["x-IMU3, binary", "x-IMU3, text", "WitMotion", "MTi", "MTi, silent", "Shimmer3"],
 )
 def test_a_sensor_is_known_by_what_it_sends_or_answers(
-    make: Callable[[Clock], Voice], driver: str, name: str, clock: Clock, monkeypatch: pytest.MonkeyPatch
+    make: Callable[[TickingClock], Voice], driver: str, name: str, clock: TickingClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = found_at(lambda: make(clock), monkeypatch)
     assert [(one.driver, one.name, one.place, one.is_simulated) for one in found.sensors] == [
@@ -122,16 +115,18 @@ def test_a_sensor_is_known_by_what_it_sends_or_answers(
     assert (found.passed, found.lines) == ((), ())
 
 
-def test_lines_of_numbers_are_lines_until_their_columns_are_told(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_lines_of_numbers_are_lines_until_their_columns_are_told(
+    clock: TickingClock, monkeypatch: pytest.MonkeyPatch
+) -> None:
     found = found_at(lambda: LineVoice(motion, now_ns=clock), monkeypatch)
     assert found.sensors == ()
     (lines,) = found.lines
     assert (lines.port.device, lines.columns, lines.count) == ("script", None, 7)
 
 
-@pytest.mark.parametrize("make", [Noise, Silence, Lost])
+@pytest.mark.parametrize("make", [Noise, SilentVoice, Lost])
 def test_who_is_not_understood_is_no_sensor(
-    make: Callable[[], Voice], clock: Clock, monkeypatch: pytest.MonkeyPatch
+    make: Callable[[], Voice], clock: TickingClock, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     found = found_at(make, monkeypatch)
     assert found.sensors == ()
@@ -139,6 +134,6 @@ def test_who_is_not_understood_is_no_sensor(
     assert "No sensor was heard at script" in str(passed.refusal)
 
 
-def test_a_port_that_cannot_be_opened_says_why(clock: Clock, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_port_that_cannot_be_opened_says_why(clock: TickingClock, monkeypatch: pytest.MonkeyPatch) -> None:
     (passed,) = found_at(lambda: None, monkeypatch).passed
     assert "script is not there" in str(passed.refusal)

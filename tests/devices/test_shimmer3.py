@@ -11,7 +11,7 @@ import pytest
 
 from core.samples import ImuBlock
 from devices.emulators.shimmer3 import ACC_CALIBRATION, CHANNELS, FIRST_TICKS, GYR_CALIBRATION, Shimmer3Voice
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo, SerialPort
 from devices.shimmer3 import DRIVER, EMULATED, VERSION, Shimmer3, Shimmer3Framer, calibrating, checksum
@@ -172,7 +172,7 @@ def port(tmp_path: Path) -> Path:
 
 @pytest.fixture(params=[(0, 16, 6), OLD])
 def emulation(request: pytest.FixtureRequest, port: Path) -> Iterator[Emulation]:
-    one = Emulation(Shimmer3Voice(firmware=request.param), lambda: Terminal(port))
+    one = Emulation(Shimmer3Voice(firmware=request.param), lambda: PseudoTerminal(port))
     yield one
     one.close()
 
@@ -200,7 +200,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
         source.close()
     assert (voice.period, voice.toggled) == (160, 1)
     assert source.info.is_simulated
-    told = source.told()[EMULATED]
+    told = source.details()[EMULATED]
     assert (told.model, told.rate_hz) == ("Shimmer3", 204.8)
     assert told.battery == pytest.approx(0.48, abs=0.02)
     live = np.concatenate([block.gyr_rad_s for block in blocks + more])
@@ -216,7 +216,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(em
 
 @pytest.mark.endurance
 def test_a_sensor_that_vanishes_and_returns_is_heard_again(port: Path) -> None:
-    emulation = Emulation(Shimmer3Voice(), lambda: Terminal(port))
+    emulation = Emulation(Shimmer3Voice(), lambda: PseudoTerminal(port))
     source = ByteSource(Shimmer3(), SerialPort(PortInfo(emulation.place)))
     source.open()
     try:

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.witmotion import SWITCHED_ON, WitVoice
 from devices.live import SourceRefusedError
 from devices.ports import PortInfo, SerialPort
@@ -125,7 +125,7 @@ def test_who_sends_no_time_or_nothing_is_refused(monkeypatch: pytest.MonkeyPatch
 
 def test_it_is_heard_through_a_port(tmp_path: Path) -> None:
     voice = WitVoice("1", motion, rate_hz=200.0)
-    emulation = Emulation(voice, lambda: Terminal(tmp_path / "port"))
+    emulation = Emulation(voice, lambda: PseudoTerminal(tmp_path / "port"))
     source = ByteSource(WitMotion(), SerialPort(PortInfo(emulation.place)))
     try:
         source.open()

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from devices.channels import Channel, TcpChannel, UdpChannel
-from devices.emulators.transports import Emulation, TcpServer, Terminal, Transport, UdpSender
+from devices.emulators.transports import Emulation, PseudoTerminal, TcpServer, Transport, UdpSender
 from devices.emulators.ximu3 import Ximu3Voice, message, text_message
 from devices.live import SourceRefusedError
 from devices.ports import PortInfo, SerialPort
@@ -171,7 +171,7 @@ def test_it_is_greeted_set_up_and_known_by_its_number() -> None:
     assert source.info.sensors == ("655782F7",)
     assert source.info.settings == {"rate_hz": 100.0}
     assert source.info.is_simulated
-    told = source.told()["655782F7"]
+    told = source.details()["655782F7"]
     assert (told.model, told.serial, told.firmware, told.rate_hz) == ("x-IMU3", "655782F7", "v1.0.0", 100.0)
     assert voice.settings["inertial_message_rate_divisor"] == 4
     assert voice.settings["binary_mode_enabled"] is True
@@ -218,7 +218,7 @@ def emulated(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[tuple[X
     def make() -> Transport:
         match request.param:
             case "serial":
-                made.append(Terminal(tmp_path / "port"))
+                made.append(PseudoTerminal(tmp_path / "port"))
             case "tcp":
                 made.append(TcpServer())
             case "udp":

@@ -15,13 +15,13 @@ from scipy.spatial.transform import Rotation
 
 from core.samples import ImuBlock, RateKind
 from devices import xbus
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.xsens_mti import MtiVoice, sample
 from devices.live import SourceLostError, SourceRefusedError
 from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor, SourceInfo
 from devices.stream import ByteSource, Decoder
-from devices.xbus import REQUESTS, Framer, Item, Mid, item, message, values
+from devices.xbus import REQUESTS, Item, Mid, XbusFramer, item, message, values
 from devices.xsens_mti import DRIVER, EMULATED, VERSION, MtiFramer, XsensMti
 from tests.devices.scripted import ScriptedChannel
 
@@ -94,7 +94,7 @@ def golden_numbers(name: str, told: list[str]) -> list[float]:
 @pytest.mark.parametrize("number", CAPTURES)
 def test_a_recorded_stream_says_what_another_program_read_in_it(test_data: Find, number: int) -> None:
     golden = test_data(f"vendor_streams/xsens_mti/einride_{number}_output.golden").read_text(encoding="utf-8")
-    framer = Framer()
+    framer = XbusFramer()
     messages = framer.feed(capture(test_data, number))
     expected = list(golden_items(golden))
     assert len(messages) == len(expected) == 100
@@ -124,7 +124,7 @@ def test_samples_of_a_recorded_stream_are_ten_milliseconds_apart_whatever_the_sa
 
 
 def test_a_rate_is_the_mean_over_the_interval_before_its_stamp(test_data: Find) -> None:
-    for one in Framer().feed(capture(test_data, 1)):
+    for one in XbusFramer().feed(capture(test_data, 1)):
         found = {identifier & xbus.ITEM_MASK: values(identifier, data) for identifier, data in one.items.items()}
         if Item.RATE in found:
             w, x, y, z = found[Item.ROTATION_CHANGE]
@@ -135,12 +135,12 @@ def test_a_rate_is_the_mean_over_the_interval_before_its_stamp(test_data: Find) 
 @pytest.mark.parametrize("number", CAPTURES)
 def test_pieces_of_any_size_give_the_same_messages(test_data: Find, number: int) -> None:
     data, chance = capture(test_data, number), random.Random(number)
-    framer, found, at = Framer(), [], 0
+    framer, found, at = XbusFramer(), [], 0
     while at < len(data):
         size = chance.randrange(1, 200)
         found += framer.feed(data[at : at + size])
         at += size
-    assert found == Framer().feed(data)
+    assert found == XbusFramer().feed(data)
 
 
 def test_orientation_is_to_an_earth_with_z_up_whichever_axes_it_has() -> None:
@@ -188,7 +188,7 @@ def decoded(data: bytes) -> DecodedSensor:
     """Decode a recorded stream that came as evenly as it was sent."""
     decoding = Decoder(XsensMti())
     decoding.begin(INFO)
-    for number, one in enumerate(Framer().feed(data)):
+    for number, one in enumerate(XbusFramer().feed(data)):
         decoding.feed(message(one.mid, one.data), 100.0 + 0.01 * number)
     return decoding.finish()[INFO.sensors[0]]
 
@@ -277,7 +277,7 @@ def voice() -> MtiVoice:
 def emulation(voice: MtiVoice, tmp_path: Path) -> Iterator[Emulation]:
     if sys.platform == "win32":
         pytest.skip("there are no pseudo-terminals here")
-    one = Emulation(voice, lambda: Terminal(tmp_path / "mti"))
+    one = Emulation(voice, lambda: PseudoTerminal(tmp_path / "mti"))
     yield one
     one.close()
 
@@ -302,7 +302,7 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(
         source.close()
     assert voice.rate_hz == 200
     assert source.info.is_simulated
-    told = source.told()["MTi 0280A1B2"]
+    told = source.details()["MTi 0280A1B2"]
     assert (told.model, told.firmware, told.rate_hz) == (EMULATED, "1.8.2", 200.0)
     assert told.rate_kind is RateKind.AVERAGED
     live = np.concatenate([block.gyr_rad_s for block in blocks])
@@ -319,12 +319,12 @@ def test_a_sensor_is_set_up_through_a_port_and_its_bytes_are_read_again_alike(
 
 def test_a_sensor_without_orientation_is_taken_without(tmp_path: Path) -> None:
     voice = MtiVoice(has_orientation=False)
-    emulation = Emulation(voice, lambda: Terminal(tmp_path / "mti"))
+    emulation = Emulation(voice, lambda: PseudoTerminal(tmp_path / "mti"))
     source = ByteSource(XsensMti(), SerialPort(PortInfo(emulation.place)))
     try:
         source.open()
         assert Item.QUATERNION not in voice.settings
-        assert source.told()["MTi 0280A1B2"].rate_hz == 100.0
+        assert source.details()["MTi 0280A1B2"].rate_hz == 100.0
     finally:
         source.close()
         emulation.close()
@@ -346,7 +346,7 @@ def test_a_sensor_that_refuses_its_owners_rate_is_set_to_the_usual_one() -> None
     voice = MtiVoice(rate_hz=200)
 
     def answer(data: bytes) -> bytes:
-        is_refused = any(one.mid == Mid.OUTPUT and b"\x00\xc8" in one.data for one in Framer(REQUESTS).feed(data))
+        is_refused = any(one.mid == Mid.OUTPUT and b"\x00\xc8" in one.data for one in XbusFramer(REQUESTS).feed(data))
         return message(Mid.ERROR, b"\x03") if is_refused else voice.hear(data)
 
     _, told = XsensMti().greet(ScriptedChannel(answers=answer))

@@ -21,7 +21,7 @@ import numpy as np
 from app.acquisition.acquisition import Acquisition
 from app.library_commands import DECODERS
 from app.storage.journal.decoding import decode
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.ports import PortInfo, SerialPort
 from devices.source import DecodedSensor
@@ -57,7 +57,8 @@ def vanish_often(folder: Path, count: int, seed: int) -> Vanished:
     rng, vanished = random.Random(seed), Vanished()
     names = [f"EMU{k:05d}" for k in range(SENSORS)]
     emulations = {
-        name: Emulation(Ximu3Voice(name, motion, rate_hz=RATE_HZ), partial(Terminal, folder / name)) for name in names
+        name: Emulation(Ximu3Voice(name, motion, rate_hz=RATE_HZ), partial(PseudoTerminal, folder / name))
+        for name in names
     }
     sources = [ByteSource(Ximu3(), SerialPort(PortInfo(emulation.place))) for emulation in emulations.values()]
     acquisition = Acquisition(sources)

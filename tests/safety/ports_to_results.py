@@ -44,7 +44,7 @@ from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind
 from devices.emulators.csv_lines import COLUMNS as EMULATED_COLUMNS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient, EmulatedSensor
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.host_clock import host_time_ns
 from devices.ports import MORE_PORTS
 
@@ -100,7 +100,7 @@ def play(kind: str, rate_hz: int, folder: Path) -> None:
     """Be the sensors' process."""
     patient = EmulatedPatient()
     sensors = [EmulatedSensor(patient, kind, number, rate_hz, says_so=False) for number in range(SITES)]
-    emulations = [Emulation(one.voice, partial(Terminal, folder / f"{kind}-{one.site}")) for one in sensors]
+    emulations = [Emulation(one.voice, partial(PseudoTerminal, folder / f"{kind}-{one.site}")) for one in sensors]
     print(json.dumps([emulation.place for emulation in emulations]), flush=True)
     for line in sys.stdin:
         if line.strip() == "end":
@@ -150,7 +150,7 @@ class Outcome:
         return max(max(values) for joint, values in self.rms_deg.items() if joint.is_knee is is_knee)
 
 
-class Session:
+class WindowSession:
     """The wizard and whoever works it."""
 
     def __init__(self, application: QApplication, folder: Path, shots: Path | None) -> None:
@@ -241,7 +241,7 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
         played = Played(kind, rate_hz, folder)
         stack.callback(played.close)
         os.environ[MORE_PORTS] = os.pathsep.join(played.places)
-        session = Session(application, folder, shots)
+        session = WindowSession(application, folder, shots)
         stack.callback(session.close)
         visit, wizard = session.visit, session.wizard
         session.to_sensors("P-8", kind)
@@ -376,7 +376,7 @@ def errors_deg(
     return errors
 
 
-def look(session: Session, shots: Path | None, name: str) -> None:
+def look(session: WindowSession, shots: Path | None, name: str) -> None:
     """Take a picture of the window."""
     if shots is not None:
         session.linger(0.3)

@@ -36,7 +36,7 @@ from core.samples import ImuBlock, Recording, RecordingKind
 from devices.channels import Channel
 from devices.clock import LiveClock
 from devices.csv_serial import DRIVER as CSV
-from devices.live import SensorTold
+from devices.live import SensorDetails
 from devices.lsl import DRIVER as LSL
 from devices.source import SourceInfo
 from devices.stream import ByteSource, Framer, Row
@@ -184,8 +184,8 @@ class _Greeted:
     def framer(self, info: SourceInfo) -> Framer:
         return self._protocol.make()
 
-    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorTold]:
-        return self._info, SensorTold()
+    def greet(self, channel: Channel) -> tuple[SourceInfo, SensorDetails]:
+        return self._info, SensorDetails()
 
     def identifying(self) -> bytes:
         return b""
@@ -218,7 +218,7 @@ class _BytesVisit:
         self._greeted.piece = b"".join(one.data for one in arrival.sent)
         for block in self._source.read(self._tape.keep_bytes):
             self._shown.hear(block, block.time_s - BEGIN_S, arrival.at_s)
-        self._shown.status(0, SensorTold(), arrival.at_s)
+        self._shown.status(0, SensorDetails(), arrival.at_s)
 
 
 class _SamplesVisit:

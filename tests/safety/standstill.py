@@ -22,7 +22,7 @@ from app.library_commands import DECODERS
 from app.storage.journal.decoding import decode
 from app.storage.journal.disk import Trouble
 from app.wizard.journal_words import standstill_message
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.ports import PortInfo, SerialPort
 from devices.stream import ByteSource
@@ -83,7 +83,7 @@ def stop_once(seconds: float) -> dict[str, object]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         emulations = [
-            Emulation(Ximu3Voice(f"EMU{k:05d}", motion, rate_hz=RATE_HZ), partial(Terminal, folder / f"port{k}"))
+            Emulation(Ximu3Voice(f"EMU{k:05d}", motion, rate_hz=RATE_HZ), partial(PseudoTerminal, folder / f"port{k}"))
             for k in range(SENSORS)
         ]
         command = [sys.executable, "-m", "tests.safety.standstill", "--record", name]

@@ -13,7 +13,7 @@ from app.acquisition.acquisition import Acquisition
 from app.acquisition.reader import REOPEN_S
 from app.storage.journal.decoding import decode
 from core.samples import ImuBlock, RecordingKind
-from devices.live import Keep, SensorTold, SourceLostError, SourceRefusedError
+from devices.live import Keep, SensorDetails, SourceLostError, SourceRefusedError
 from devices.replay import ReplayFaults, ReplaySource
 from devices.source import SourceInfo
 from tests.safety.journal_material import ID, KEY, LINES, LineDecoder, line
@@ -202,8 +202,8 @@ class Scripted:
     def close(self) -> None:
         self.closings += 1
 
-    def told(self) -> Mapping[str, SensorTold]:
-        return {name: SensorTold(rate_hz=self.rate_hz) for name in self.info.sensors}
+    def details(self) -> Mapping[str, SensorDetails]:
+        return {name: SensorDetails(rate_hz=self.rate_hz) for name in self.info.sensors}
 
     def identify(self, sensor: str) -> bool:
         return True

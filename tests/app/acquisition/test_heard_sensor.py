@@ -5,7 +5,7 @@ import pytest
 
 from app.acquisition.heard_sensor import HeardSensor, SensorStatus
 from core.samples import FloatArray, ImuBlock
-from devices.live import SensorTold
+from devices.live import SensorDetails
 from devices.source import SensorCounts
 
 
@@ -17,7 +17,7 @@ def hear(sensor: HeardSensor, *numbers: float, rate: FloatArray | None = None) -
 
 
 def status(sensor: HeardSensor, now_s: float) -> SensorStatus:
-    return sensor.status(0, SensorTold(), now_s)
+    return sensor.status(0, SensorDetails(), now_s)
 
 
 @pytest.mark.parametrize(

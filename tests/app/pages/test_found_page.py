@@ -27,8 +27,8 @@ from app.workers.background import Background
 from app.workers.how_found_desk import HowFoundDesk
 from core.analysis import analyse
 from core.body import Joint, Site
+from core.diagnostics import JointDiagnostics, diagnostics_of
 from core.findings import Finding, Severity
-from core.how_found import HowFound, how_found
 from core.results import Analysis
 from core.samples import Session
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
@@ -58,8 +58,8 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture(scope="module")
-def found(session: Session, analysis: Analysis) -> HowFound:
-    found = how_found(session, analysis.calibrations[0].joints[KNEE], analysis.recordings[-1].name)
+def found(session: Session, analysis: Analysis) -> JointDiagnostics:
+    found = diagnostics_of(session, analysis.calibrations[0].joints[KNEE], analysis.recordings[-1].name)
     assert found is not None
     return found
 
@@ -94,7 +94,7 @@ def numbers(cells: list[str]) -> np.ndarray:
     return np.array([float(cell) if cell else np.nan for cell in cells])
 
 
-def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: HowFound, tmp_path: Path) -> None:
+def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: JointDiagnostics, tmp_path: Path) -> None:
     page.show_found(found, [], is_simulated=True)
     write_how_found(found, True, tmp_path / "new")
     files = {what: columns_of(tmp_path / "new" / name) for what, name in names_of_files(KNEE, True).items()}
@@ -124,21 +124,25 @@ def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: HowF
         assert figure.name in shown
 
 
-def test_simulated_data_say_so_on_every_picture_and_recorded_ones_do_not(page: FoundPage, found: HowFound) -> None:
+def test_simulated_data_say_so_on_every_picture_and_recorded_ones_do_not(
+    page: FoundPage, found: JointDiagnostics
+) -> None:
     for is_simulated in (True, False):
         page.show_found(found, [], is_simulated)
         marks = [one for one in page.findChildren(Text) if one.text() == "SIMULATED"]
         assert [one.isVisible() for one in marks] == [is_simulated] * 3
 
 
-def test_what_was_noticed_about_the_joint_stands_below(page: FoundPage, found: HowFound) -> None:
+def test_what_was_noticed_about_the_joint_stands_below(page: FoundPage, found: JointDiagnostics) -> None:
     page.show_found(found, [Finding("lag_corrected", Severity.INFO, str(KNEE), {"lag_ms": 12.0})], False)
     assert any("12 ms" in text.text() for text in page.noticed.findChildren(Text))
     page.show_found(found, [], False)
     assert page.noticed.isHidden()
 
 
-def test_a_motion_that_drew_no_curve_and_told_no_drift_is_shown_all_the_same(page: FoundPage, found: HowFound) -> None:
+def test_a_motion_that_drew_no_curve_and_told_no_drift_is_shown_all_the_same(
+    page: FoundPage, found: JointDiagnostics
+) -> None:
     ways = replace(found.ways, drift_rad_s=float("nan"))
     calibration = replace(found.calibration, axis_sd_rad=None, sign_margin=float("inf"), centre_proximal_m=None)
     page.show_found(replace(found, projected=None, ways=ways, calibration=calibration), [], False)
@@ -148,7 +152,7 @@ def test_a_motion_that_drew_no_curve_and_told_no_drift_is_shown_all_the_same(pag
     assert "over 100 times worse" in said
 
 
-def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage, found: HowFound) -> None:
+def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage, found: JointDiagnostics) -> None:
     long_s = np.arange(0, 60, 0.02)
     angle = np.deg2rad(20 * np.sin(long_s) + long_s)
     ways = replace(found.ways, time_s=long_s, from_rates_rad=angle, from_accelerations_rad=angle, fused_rad=0.1 * angle)
@@ -161,21 +165,23 @@ def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage,
     page.grab()
 
 
-def test_every_word_has_its_room(page: FoundPage, look: Look, found: HowFound) -> None:
+def test_every_word_has_its_room(page: FoundPage, look: Look, found: JointDiagnostics) -> None:
     assert cut_in(page, look, found, "1280 x 720 at 100 %") == []
 
 
 @pytest.mark.endurance  # a second each
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("room", ROOMS)
-def test_every_word_of_a_longer_language_has_its_room(qtbot: QtBot, look: Look, found: HowFound, room: str) -> None:
+def test_every_word_of_a_longer_language_has_its_room(
+    qtbot: QtBot, look: Look, found: JointDiagnostics, room: str
+) -> None:
     page = FoundPage(look)  # which is made in the language that it speaks
     qtbot.addWidget(page)
     page.show()
     assert cut_in(page, look, found, room) == []
 
 
-def cut_in(page: FoundPage, look: Look, found: HowFound, room: str) -> list[str]:
+def cut_in(page: FoundPage, look: Look, found: JointDiagnostics, room: str) -> list[str]:
     """What is cut on the page, and on what is scrolled in it."""
     width, height, scale = ROOMS[room]
     look.set_scale(scale)

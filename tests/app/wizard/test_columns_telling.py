@@ -16,7 +16,7 @@ from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from devices.emulators.csv_lines import COLUMNS as EMULATED
 from devices.emulators.csv_lines import LineVoice
-from devices.emulators.transports import Emulation, Terminal
+from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.lines import LinesAt
 from devices.live import SourceRefusedError
 from devices.ports import PortInfo
@@ -28,7 +28,7 @@ def still(number: int) -> tuple[float, ...]:
 
 @pytest.fixture
 def place(tmp_path: Path) -> Iterator[str]:
-    emulation = Emulation(LineVoice(still, rate_hz=200.0), partial(Terminal, tmp_path / "port"))
+    emulation = Emulation(LineVoice(still, rate_hz=200.0), partial(PseudoTerminal, tmp_path / "port"))
     yield emulation.place
     emulation.close()
 

@@ -11,7 +11,7 @@ from app.wizard.sources import DEMONSTRATION, SEARCH, Sources, choices
 from devices.live import LiveSource, SourceRefusedError
 from devices.ports import PortInfo
 from devices.replay import ReplaySource
-from devices.search import Found, FoundSensor, Passed
+from devices.search import FoundSensor, Passed, SearchResult
 from tests.safety.live_material import numbered_session
 
 REFUSED = Passed(
@@ -27,7 +27,7 @@ def sensor(name: str, driver: str = "ximu3", is_simulated: bool = False) -> Foun
     return FoundSensor(driver, name, "here", make, is_simulated)
 
 
-def found_by(found: Found) -> Sources:
+def found_by(found: SearchResult) -> Sources:
     sources = Sources(lambda: found)
     sources.look()
     sources.wait()
@@ -37,10 +37,10 @@ def found_by(found: Found) -> Sources:
 def test_the_list_is_there_at_once_and_grows(qtbot: QtBot) -> None:
     may_end = threading.Event()
 
-    def search() -> Found:
+    def search() -> SearchResult:
         may_end.wait(10)
         assert threading.current_thread() is not threading.main_thread()
-        return Found((sensor("A"), sensor("B"), sensor("C", "witmotion", is_simulated=True)))
+        return SearchResult((sensor("A"), sensor("B"), sensor("C", "witmotion", is_simulated=True)))
 
     sources = Sources(search)
     begin_s = time.monotonic()
@@ -58,7 +58,7 @@ def test_the_list_is_there_at_once_and_grows(qtbot: QtBot) -> None:
 
 
 def test_a_choice_opens_all_sensors_of_its_driver() -> None:
-    sources = found_by(Found((sensor("A"), sensor("B"), sensor("C", "witmotion"))))
+    sources = found_by(SearchResult((sensor("A"), sensor("B"), sensor("C", "witmotion"))))
     acquisition = sources[1].make()
     try:
         acquisition.start()
@@ -68,7 +68,7 @@ def test_a_choice_opens_all_sensors_of_its_driver() -> None:
 
 
 def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
-    every = [Found(), Found((sensor("A"), sensor("C", "witmotion")))]
+    every = [SearchResult(), SearchResult((sensor("A"), sensor("C", "witmotion")))]
     sources = Sources(lambda: every.pop(0))
     sources.look()
     sources.wait()
@@ -85,18 +85,18 @@ def test_a_search_looks_anew_and_opens_whatever_is_there() -> None:
 @pytest.mark.parametrize(
     ("found", "what"),
     [
-        (Found(), "No sensor was found"),
-        (Found((), (REFUSED,)), "COM7 is used"),
-        (Found((), (REFUSED,) * 2), "No sensor"),
+        (SearchResult(), "No sensor was found"),
+        (SearchResult((), (REFUSED,)), "COM7 is used"),
+        (SearchResult((), (REFUSED,) * 2), "No sensor"),
     ],
 )
-def test_where_nothing_is_found_it_says_why(found: Found, what: str) -> None:
+def test_where_nothing_is_found_it_says_why(found: SearchResult, what: str) -> None:
     with pytest.raises(SourceRefusedError, match=what):
         found_by(found)[-1].make()
 
 
 def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -> None:
-    def search() -> Found:
+    def search() -> SearchResult:
         raise OSError("the port library does not load")
 
     sources = Sources(search)
@@ -107,7 +107,7 @@ def test_a_search_that_fails_leaves_the_rest(caplog: pytest.LogCaptureFixture) -
 
 
 def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.MonkeyPatch, qtbot: QtBot) -> None:
-    monkeypatch.setattr(sources_module, "_search", lambda: Found((sensor("A"),)))
+    monkeypatch.setattr(sources_module, "_search", lambda: SearchResult((sensor("A"),)))
     monkeypatch.setattr(sources_module, "_networks", tuple)
     listed = choices()
     qtbot.waitUntil(lambda: len(listed) == 3, timeout=5000)
@@ -116,12 +116,12 @@ def test_the_machines_own_search_begins_with_the_list(monkeypatch: pytest.Monkey
 def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[str] = []
 
-    def search_streams(address: str) -> Found:
+    def search_streams(address: str) -> SearchResult:
         asked.append(address)
-        return Found((sensor("A", "lsl"),)) if address == "192.0.2.9" else Found()
+        return SearchResult((sensor("A", "lsl"),)) if address == "192.0.2.9" else SearchResult()
 
     monkeypatch.setattr("devices.search.search_streams", search_streams)
-    sources = Sources(Found, ("127.0.0.1", "192.0.2.9"))
+    sources = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
     sources.look()
     sources.wait()
     *_, search, here, network = sources

@@ -9,7 +9,7 @@ from app.theme import Look
 from app.wizard.sources import SEARCH, STREAMS, Sources
 from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.visit import Visit
-from devices.search import Found
+from devices.search import SearchResult
 
 NETWORK = STREAMS + "192.0.2.9"
 WARNING = "This asks every computer in the network of 192.0.2.9"
@@ -19,9 +19,9 @@ WARNING = "This asks every computer in the network of 192.0.2.9"
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     addresses: list[str] = []
 
-    def search_streams(address: str) -> Found:
+    def search_streams(address: str) -> SearchResult:
         addresses.append(address)
-        return Found()
+        return SearchResult()
 
     monkeypatch.setattr("devices.search.search_streams", search_streams)
     return addresses
@@ -29,7 +29,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
-    visit._choices = Sources(Found, ("127.0.0.1", "192.0.2.9"))
+    visit._choices = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
     step = SensorsStep(Look(), visit)
     qtbot.addWidget(step.page)
     step.enter()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.gait.cycles import Window, cycles_of, find_peak, mean_cycle, range_of_cycles
+from core.gait.cycles import PeakWindow, cycles_of, find_peak, mean_cycle, range_of_cycles
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 
 TIME_S = np.arange(0.0, 5.0, 0.01)
@@ -58,13 +58,13 @@ def test_mean_and_sd_of_strides() -> None:
 
 
 def test_a_peak_is_found_in_its_window() -> None:
-    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), Window("swing", 30, 90, True))
+    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), PeakWindow("swing", 30, 90, True))
     np.testing.assert_allclose(peak.value, 60.0, atol=0.05)
     np.testing.assert_allclose(peak.percent, 50.0, atol=1.0)
 
 
 def test_an_extremum_at_the_edge_of_the_window_is_no_peak() -> None:
-    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), Window("rising", 10, 40, True))
+    peak = find_peak(cycles_of(TIME_S, angle(), START_S, END_S), PeakWindow("rising", 10, 40, True))
     assert np.isnan(peak.value).all()
     assert np.isnan(peak.percent).all()
 

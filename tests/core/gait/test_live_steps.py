@@ -11,20 +11,20 @@ from core.gait.live import FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import Phase
 from core.samples import FloatArray, ImuBlock
 from devices.walker import FreeMotion, Standing, Walk, WalkerSettings, simulate
-from devices.walker_motion import FootEvents as TrueEvents
+from devices.walker_motion import TrueFootEvents
 
 SITE = Site.LEFT_FOOT
 EVENTS = ("heel_rise", "toe_off", "initial_contact", "full_contact")
 
 
-def walked(speed_m_s: float, rate_hz: float = 100.0, standing_after_s: float = 0.5) -> tuple[ImuBlock, TrueEvents]:
+def walked(speed_m_s: float, rate_hz: float = 100.0, standing_after_s: float = 0.5) -> tuple[ImuBlock, TrueFootEvents]:
     walk = Walk(speed_m_s=speed_m_s, strides=8, standing_before_s=1.5, standing_after_s=standing_after_s)
     made = simulate(WalkerSettings(seed=2, recordings=(walk,), sites=(SITE,), rate_hz=rate_hz))
     return made.session.recordings[0].imu[SITE], made.truth.recordings[walk.name].feet[Side.LEFT].events
 
 
 @pytest.fixture(scope="module")
-def usual() -> tuple[ImuBlock, TrueEvents]:
+def usual() -> tuple[ImuBlock, TrueFootEvents]:
     return walked(1.19)
 
 
@@ -49,7 +49,7 @@ def test_every_step_is_told_once_near_its_true_time(speed_m_s: float, rate_hz: f
 
 
 def test_events_are_told_within_a_tenth_of_a_second_but_for_the_first_step(
-    usual: tuple[ImuBlock, TrueEvents],
+    usual: tuple[ImuBlock, TrueFootEvents],
 ) -> None:
     block, truth = usual
     told = told_of(block)
@@ -61,7 +61,7 @@ def test_events_are_told_within_a_tenth_of_a_second_but_for_the_first_step(
     assert [one.told_s for one in told] == sorted(one.told_s for one in told)
 
 
-def test_events_follow_each_other_and_each_begins_its_phase(usual: tuple[ImuBlock, TrueEvents]) -> None:
+def test_events_follow_each_other_and_each_begins_its_phase(usual: tuple[ImuBlock, TrueFootEvents]) -> None:
     block, truth = usual
     live, told, shown = LiveEvents(), [], []
     for k in range(len(block)):
@@ -97,7 +97,7 @@ def test_cadence_is_two_steps_a_stride_and_ends_with_the_walk() -> None:
 
 @pytest.mark.parametrize("rotvec", [(2.0, 0.4, -1.0), (0.0, 0.0, np.pi)])
 def test_however_the_sensor_is_mounted_the_events_are_the_same(
-    usual: tuple[ImuBlock, TrueEvents], rotvec: tuple[float, float, float]
+    usual: tuple[ImuBlock, TrueFootEvents], rotvec: tuple[float, float, float]
 ) -> None:
     block, _ = usual
     turn = Rotation.from_rotvec(rotvec)
@@ -108,7 +108,9 @@ def test_however_the_sensor_is_mounted_the_events_are_the_same(
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_an_axis_that_is_given_helps_whichever_way_it_points(usual: tuple[ImuBlock, TrueEvents], sign: float) -> None:
+def test_an_axis_that_is_given_helps_whichever_way_it_points(
+    usual: tuple[ImuBlock, TrueFootEvents], sign: float
+) -> None:
     block, truth = usual
     axis = np.linalg.eigh(block.gyr_rad_s.T @ block.gyr_rad_s)[1][:, -1]
     found_s = times_s(told_of(block, sign * axis), "toe_off")
@@ -118,7 +120,7 @@ def test_an_axis_that_is_given_helps_whichever_way_it_points(usual: tuple[ImuBlo
 @pytest.mark.parametrize("how", ["left out", "NaN"])
 @pytest.mark.parametrize(("lost_s", "is_missed"), [(0.03, False), (0.4, True)])
 def test_a_gap_costs_the_step_it_lies_in_and_no_other(
-    usual: tuple[ImuBlock, TrueEvents], how: str, lost_s: float, is_missed: bool
+    usual: tuple[ImuBlock, TrueFootEvents], how: str, lost_s: float, is_missed: bool
 ) -> None:
     block, truth = usual
     from_s = truth.toe_off_s[3] + 0.1  # in swing
@@ -132,7 +134,7 @@ def test_a_gap_costs_the_step_it_lies_in_and_no_other(
     assert len(contacts_s) <= len(truth.initial_contact_s)
 
 
-def test_a_stamp_that_does_not_advance_is_passed_over(usual: tuple[ImuBlock, TrueEvents]) -> None:
+def test_a_stamp_that_does_not_advance_is_passed_over(usual: tuple[ImuBlock, TrueFootEvents]) -> None:
     block, _ = usual
     twice = np.repeat(np.arange(len(block)), 2)
     told = LiveEvents().update(block.time_s[twice], block.gyr_rad_s[twice], block.acc_m_s2[twice])

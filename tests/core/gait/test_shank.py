@@ -15,12 +15,12 @@ from core.orientation import oriented
 from core.samples import RateKind
 from core.tracks import even_tracks
 from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
-from devices.walker_motion import FootEvents as TrueEvents
+from devices.walker_motion import TrueFootEvents
 
 SHANK = Site.RIGHT_SHANK
 
 
-def events_of(settings: WalkerSettings) -> tuple[FootEvents, TrueEvents]:
+def events_of(settings: WalkerSettings) -> tuple[FootEvents, TrueFootEvents]:
     made = simulate(replace(settings, sites=(SHANK,)))
     standing, moving = made.session.recordings
     rest = rest_of(standing.imu[SHANK])

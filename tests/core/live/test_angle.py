@@ -19,7 +19,7 @@ from core.live.angle import BLEND_S, AngleSamples, LiveAngle
 from core.live.joint_frames import JointGeometry
 from core.live.orientation import NOTHING, LiveOrientation, OrientedSamples, joined
 from core.live.pairing import MAX_WAIT_S, Pairing
-from core.live.streams import Stream
+from core.live.streams import EvenStream
 from core.pair import OrientedTrack, pair_up
 from core.results import AxisSource, JointCalibration
 from core.rotations import joint_frame, wrap
@@ -36,7 +36,7 @@ SCORED_FROM_S = 3.0
 
 
 @dataclass(frozen=True)
-class Visit:
+class LiveVisit:
     """A walk, what the offline analysis made of it, and the truth."""
 
     walk: Recording
@@ -47,13 +47,13 @@ class Visit:
     truths: Mapping[Joint, JointTruth]
 
 
-def visit(settings: WalkerSettings) -> Visit:
+def visit(settings: WalkerSettings) -> LiveVisit:
     made = simulate(
         replace(settings, sites=SITES, recordings=(Standing(), FreeMotion(), Walk(strides=10, standing_before_s=2.0)))
     )
     found = analyse(made.session)
     offline = found.recordings[-1]
-    return Visit(
+    return LiveVisit(
         walk=made.session.recordings[-1],
         rates_hz={site: settings.site_rates_hz.get(site, settings.rate_hz) for site in SITES},
         calibrations=found.calibrations[-1].joints,
@@ -64,12 +64,12 @@ def visit(settings: WalkerSettings) -> Visit:
 
 
 @pytest.fixture(scope="module")
-def rigid() -> Visit:
+def rigid() -> LiveVisit:
     return visit(WalkerSettings(seed=1))
 
 
 @pytest.fixture(scope="module")
-def soft() -> Visit:
+def soft() -> LiveVisit:
     return visit(WalkerSettings(seed=3, tissue=Tissue.SOFT))
 
 
@@ -97,7 +97,7 @@ def oriented(
 ) -> list[OrientedSamples]:
     turned = []
     for site in (calibration.joint.proximal, calibration.joint.distal):
-        stream = Stream(rates_hz[site])
+        stream = EvenStream(rates_hz[site])
         stream.feed(recording.imu[site])
         turned.append(sensor(calibration, site, rates_hz[site], left_rad_s).update(stream.take()))
     return turned
@@ -108,20 +108,20 @@ def started(calibration: JointCalibration, rates_hz: Mapping[Site, float]) -> Li
     return LiveAngle(calibration, 1 / rates_hz[joint.proximal], 1 / rates_hz[joint.distal])
 
 
-def followed(one: Visit, joint: Joint, recording: Recording | None = None, left_rad_s: float = 0.0) -> AngleSamples:
+def followed(one: LiveVisit, joint: Joint, recording: Recording | None = None, left_rad_s: float = 0.0) -> AngleSamples:
     calibration = one.calibrations[joint]
     both = oriented(recording or one.walk, calibration, one.rates_hz, left_rad_s)
     return started(calibration, one.rates_hz).update(*both)
 
 
-def error_deg(one: Visit, joint: Joint, live: AngleSamples) -> FloatArray:
+def error_deg(one: LiveVisit, joint: Joint, live: AngleSamples) -> FloatArray:
     """Against the offline angle (n,), on the thigh's clock."""
     late_s = 0.0 if joint.is_knee else one.calibrations[KNEE].lag_s
     offline = np.interp(live.time_s + late_s, one.time_s, one.offline_rad[joint])
     return np.rad2deg(live.angle_rad - offline)
 
 
-def rmse_deg(one: Visit, joint: Joint, live: AngleSamples) -> float:
+def rmse_deg(one: LiveVisit, joint: Joint, live: AngleSamples) -> float:
     scored = live.time_s > SCORED_FROM_S
     error = error_deg(one, joint, live)[scored]
     assert np.isfinite(live.angle_rad[scored]).all()
@@ -142,7 +142,7 @@ def assert_same(one: AngleSamples, other: AngleSamples) -> None:
 @pytest.mark.parametrize("left_deg_s", [0.0, 1.5])
 @pytest.mark.parametrize(("joint", "limit_deg"), [(KNEE, 0.35), (ANKLE, 1.0)])
 def test_a_rigid_leg_is_followed_as_closely_as_promised(
-    rigid: Visit, joint: Joint, limit_deg: float, left_deg_s: float
+    rigid: LiveVisit, joint: Joint, limit_deg: float, left_deg_s: float
 ) -> None:
     live = followed(rigid, joint, left_rad_s=np.deg2rad(left_deg_s))
     assert rigid.calibrations[joint].is_hinge == joint.is_knee
@@ -152,14 +152,14 @@ def test_a_rigid_leg_is_followed_as_closely_as_promised(
 
 @pytest.mark.parametrize("left_deg_s", [0.0, 1.5])
 @pytest.mark.parametrize("joint", [KNEE, ANKLE])
-def test_a_leg_with_soft_tissue_too(soft: Visit, joint: Joint, left_deg_s: float) -> None:
+def test_a_leg_with_soft_tissue_too(soft: LiveVisit, joint: Joint, left_deg_s: float) -> None:
     live = followed(soft, joint, left_rad_s=np.deg2rad(left_deg_s))
     assert not soft.calibrations[joint].is_hinge
     assert rmse_deg(soft, joint, live) < 1.0
 
 
 @pytest.mark.parametrize("joint", [KNEE, ANKLE])
-def test_two_standard_deviations_hold_nine_samples_of_ten_of_the_truth(soft: Visit, joint: Joint) -> None:
+def test_two_standard_deviations_hold_nine_samples_of_ten_of_the_truth(soft: LiveVisit, joint: Joint) -> None:
     live, truth = followed(soft, joint), soft.truths[joint]
     true = np.interp(live.time_s, truth.time_s, truth.angle_rad) - truth.standing_rad
     assert np.mean(np.abs(live.angle_rad - true) < 2 * live.sd_rad) > 0.9
@@ -177,7 +177,7 @@ def test_a_mechanical_hinge_is_followed_to_half_a_degree(test_data: TestData, na
     recording = Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu)
     found = analyse(Session((recording,)))
     offline = {KNEE: found.recordings[0].joints[KNEE].angle_rad}
-    one = Visit(recording, dict.fromkeys(sites, rate_hz), found.calibrations[0].joints, time_s, offline, {})
+    one = LiveVisit(recording, dict.fromkeys(sites, rate_hz), found.calibrations[0].joints, time_s, offline, {})
     assert rmse_deg(one, KNEE, followed(one, KNEE)) < 0.5
 
 
@@ -188,13 +188,13 @@ def test_a_mechanical_hinge_is_followed_to_half_a_degree(test_data: TestData, na
     joint=st.sampled_from([KNEE, ANKLE]),
 )
 def test_neither_blocks_nor_a_late_sensor_change_anything(
-    rigid: Visit, edges: list[int], later: int, joint: Joint
+    rigid: LiveVisit, edges: list[int], later: int, joint: Joint
 ) -> None:
     # with a long gap in each sensor, the second one amid the walk
     recording = without(without(rigid.walk, joint.distal, 5.0, 5.3), joint.proximal, 8.0, 8.2)
     whole = followed(rigid, joint, recording)
     calibration = rigid.calibrations[joint]
-    streams = {site: Stream(100.0) for site in (joint.proximal, joint.distal)}
+    streams = {site: EvenStream(100.0) for site in (joint.proximal, joint.distal)}
     turned = {site: sensor(calibration, site, 100.0) for site in streams}
     angle, pieces = started(calibration, rigid.rates_hz), []
     longest = max(len(recording.imu[site]) for site in streams) + later
@@ -211,7 +211,7 @@ def test_neither_blocks_nor_a_late_sensor_change_anything(
 @pytest.mark.parametrize(("joint", "limit_deg"), [(KNEE, 2.0), (ANKLE, 3.0)])
 @pytest.mark.parametrize("is_distal", [True, False])
 def test_after_a_gap_the_angle_goes_on_within_a_second(
-    rigid: Visit, joint: Joint, limit_deg: float, is_distal: bool
+    rigid: LiveVisit, joint: Joint, limit_deg: float, is_distal: bool
 ) -> None:
     site = joint.distal if is_distal else joint.proximal
     live = followed(rigid, joint, without(rigid.walk, site, 5.0, 5.6))
@@ -224,7 +224,7 @@ def test_after_a_gap_the_angle_goes_on_within_a_second(
     assert np.isfinite(live.sd_rad).tolist() == told.tolist()
 
 
-def test_after_a_gap_without_a_known_centre_it_waits_for_the_vertical(rigid: Visit) -> None:
+def test_after_a_gap_without_a_known_centre_it_waits_for_the_vertical(rigid: LiveVisit) -> None:
     unknown = replace(rigid.calibrations[ANKLE], centre_proximal_m=None, centre_distal_m=None)
     one = replace(rigid, calibrations={**rigid.calibrations, ANKLE: unknown})
     live = followed(one, ANKLE, without(rigid.walk, ANKLE.distal, 5.0, 5.6))
@@ -234,7 +234,7 @@ def test_after_a_gap_without_a_known_centre_it_waits_for_the_vertical(rigid: Vis
     assert np.mean(np.abs(error[told]) < 2 * np.rad2deg(live.sd_rad[told])) > 0.95
 
 
-def test_short_gaps_are_left_open_and_change_little(soft: Visit) -> None:
+def test_short_gaps_are_left_open_and_change_little(soft: LiveVisit) -> None:
     live = followed(soft, KNEE, without(soft.walk, KNEE.distal, 6.0, 6.08))
     hidden = ~np.isfinite(live.angle_rad)
     assert 5.99 < live.time_s[hidden].min() < live.time_s[hidden].max() < 6.09
@@ -251,7 +251,7 @@ def test_a_late_clock_is_put_right_between_the_two_streams() -> None:
         assert rmse_deg(late, joint, followed(late, joint)) < limit_deg
 
 
-def test_an_ankles_clock_may_be_brought_to_the_thighs(rigid: Visit) -> None:
+def test_an_ankles_clock_may_be_brought_to_the_thighs(rigid: LiveVisit) -> None:
     both = oriented(rigid.walk, rigid.calibrations[ANKLE], rigid.rates_hz)
     moved = LiveAngle(rigid.calibrations[ANKLE], 0.01, 0.01, clock_offset_s=-0.03).update(*both)
     np.testing.assert_allclose(moved.time_s, followed(rigid, ANKLE).time_s - 0.03)
@@ -263,7 +263,7 @@ def test_sensors_of_different_rates_go_together() -> None:
         assert rmse_deg(mixed, joint, followed(mixed, joint)) < limit_deg
 
 
-def recalibrated(one: Visit, joint: Joint, to: JointCalibration, at_s: float) -> AngleSamples:
+def recalibrated(one: LiveVisit, joint: Joint, to: JointCalibration, at_s: float) -> AngleSamples:
     both = oriented(one.walk, one.calibrations[joint], one.rates_hz)
     angle = started(one.calibrations[joint], one.rates_hz)
     first, rest = (
@@ -280,7 +280,7 @@ def turned_by(calibration: JointCalibration, degrees: float) -> JointCalibration
 
 
 @pytest.mark.parametrize("joint", [KNEE, ANKLE])
-def test_another_calibration_comes_without_a_jump(rigid: Visit, joint: Joint) -> None:
+def test_another_calibration_comes_without_a_jump(rigid: LiveVisit, joint: Joint) -> None:
     new = turned_by(rigid.calibrations[joint], 5.0)
     live = recalibrated(rigid, joint, new, 6.0)
     both = oriented(rigid.walk, new, rigid.rates_hz)
@@ -292,7 +292,7 @@ def test_another_calibration_comes_without_a_jump(rigid: Visit, joint: Joint) ->
     assert np.rad2deg(np.max(np.abs(live.angle_rad - as_new.angle_rad)[later])) < 1.0
 
 
-def test_the_same_calibration_written_the_other_way_round_changes_nothing(soft: Visit) -> None:
+def test_the_same_calibration_written_the_other_way_round_changes_nothing(soft: LiveVisit) -> None:
     old = soft.calibrations[KNEE]
     new = replace(
         old,
@@ -310,7 +310,7 @@ def _zero_about_the_opposite_axes(old: JointCalibration) -> float:
     return -old.zero_rad
 
 
-def test_opposite_pairing_turns_the_heading_with_it(soft: Visit) -> None:
+def test_opposite_pairing_turns_the_heading_with_it(soft: LiveVisit) -> None:
     """An ankle that was paired the wrong way round is put right within the blend, not within minutes."""
     right = soft.calibrations[ANKLE]
     wrong = replace(right, axis_distal=-right.axis_distal)
@@ -323,7 +323,7 @@ def test_opposite_pairing_turns_the_heading_with_it(soft: Visit) -> None:
     assert np.max(np.abs(error_deg(soft, ANKLE, live)[later])) < 3.0
 
 
-def test_an_ankle_is_provisional_until_steps_have_shown_its_axis(soft: Visit) -> None:
+def test_an_ankle_is_provisional_until_steps_have_shown_its_axis(soft: LiveVisit) -> None:
     for joint, source, is_provisional in (
         (ANKLE, AxisSource.FREE_MOTION, True),
         (ANKLE, AxisSource.POOLED, False),
@@ -333,7 +333,7 @@ def test_an_ankle_is_provisional_until_steps_have_shown_its_axis(soft: Visit) ->
         assert started(calibration, soft.rates_hz).is_provisional == is_provisional
 
 
-def test_a_silent_sensor_is_not_waited_for_for_ever(soft: Visit) -> None:
+def test_a_silent_sensor_is_not_waited_for_for_ever(soft: LiveVisit) -> None:
     one, two = oriented(soft.walk, soft.calibrations[KNEE], soft.rates_hz)
     angle = started(soft.calibrations[KNEE], soft.rates_hz)
     live = angle.update(one, NOTHING)
@@ -358,7 +358,7 @@ def test_averaged_rates_come_out_as_instants_one_sample_late() -> None:
     mean = rate.copy()
     mean[1:] = 0.5 * (rate[1:] + rate[:-1])
     block = ImuBlock("sensor", time_s, mean, np.tile([0.0, 0.0, 9.81], (300, 1)))
-    stream, live = Stream(100.0), LiveOrientation(np.zeros(3), RateKind.AVERAGED, 0.01)
+    stream, live = EvenStream(100.0), LiveOrientation(np.zeros(3), RateKind.AVERAGED, 0.01)
     found = []
     for a, b in pairwise([0, 7, 8, 100, 300]):
         stream.feed(part(block, slice(a, b)))
@@ -370,7 +370,7 @@ def test_averaged_rates_come_out_as_instants_one_sample_late() -> None:
     assert quaternion_steps.min() > 0.99  # no jump between q and -q
 
 
-def test_the_quick_algebra_is_that_of_the_twist(soft: Visit) -> None:
+def test_the_quick_algebra_is_that_of_the_twist(soft: LiveVisit) -> None:
     calibration = soft.calibrations[KNEE]
     both = oriented(soft.walk, calibration, soft.rates_hz)
     tracks = [Track(0.0, 0.01, s.gyr_rad_s, s.acc_m_s2, None, None, s.is_measured) for s in both]

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from core.live.drift import UNKNOWN_RAD, Looks, SlowDrift, Wandering
+from core.live.drift import UNKNOWN_RAD, ObservationModel, SlowDrift, Wandering
 
 WANDERING = Wandering(np.deg2rad(0.3), np.deg2rad(1.5), np.deg2rad(0.02))
-LOOKS = Looks(first_scale=np.deg2rad(5.0), min_scale=np.deg2rad(0.3), correlation_s=0.5)
+LOOKS = ObservationModel(first_scale=np.deg2rad(5.0), min_scale=np.deg2rad(0.3), correlation_s=0.5)
 
 
 def followed(drift: SlowDrift, angle_rad: np.ndarray, step_s: float = 0.1) -> np.ndarray:
@@ -36,7 +36,7 @@ def test_an_angle_that_was_lost_is_found_again_and_its_looks_stay_worth_what_the
 
 
 def test_a_shock_at_the_start_is_outvoted() -> None:
-    drift = SlowDrift(WANDERING, Looks(0.5, 0.3, 0.3, begins_with=5))
+    drift = SlowDrift(WANDERING, ObservationModel(0.5, 0.3, 0.3, begins_with=5))
     drift.restart(0.0, 0.0, UNKNOWN_RAD)
     looks = [60.0 * np.exp(2.0j), *(100.0 * np.exp(-0.7j + 0.02j * k) for k in range(4))]
     for k, seen in enumerate(looks):

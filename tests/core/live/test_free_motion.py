@@ -9,8 +9,8 @@ import pytest
 
 from core.body import Joint, Side, Site
 from core.calibration.rest import rest_of
-from core.live.free_motion import FreeMotion, FreeMotionState
-from core.live.lag import Verdict
+from core.live.free_motion import FreeMotionState, LiveFreeMotion
+from core.live.lag import LagVerdict
 from core.live.sensors import LiveSensor
 from core.samples import ImuBlock
 from devices.walker import FreeMotion as FreeMotionRecording
@@ -35,7 +35,7 @@ def sensors_of(session: SimulatedSession) -> dict[Site, LiveSensor]:
 
 
 def watched(session: SimulatedSession, block_s: float = 0.033) -> list[FreeMotionState]:
-    motion = FreeMotion(sensors_of(session))
+    motion = LiveFreeMotion(sensors_of(session))
     return [motion.update(blocks) for blocks in in_blocks(session.session.recordings[1].imu, block_s)]
 
 
@@ -70,17 +70,17 @@ def test_gauges_close_while_the_leg_circles(states: list[FreeMotionState]) -> No
 
 def test_no_lag_is_told_where_there_is_none(states: list[FreeMotionState]) -> None:
     assert states[-1].lags
-    assert all(lag.verdict is Verdict.NONE for state in states for lag in state.lags.values())
+    assert all(lag.verdict is LagVerdict.NONE for state in states for lag in state.lags.values())
     assert not any(lag.is_worth_telling for lag in states[-1].lags.values())
 
 
 @pytest.mark.endurance
-@pytest.mark.parametrize(("late_s", "verdict"), [(0.03, Verdict.LAG), (0.12, Verdict.NOT_ONE_JOINT)])
-def test_a_late_clock_is_told_while_the_leg_moves(late_s: float, verdict: Verdict) -> None:
+@pytest.mark.parametrize(("late_s", "verdict"), [(0.03, LagVerdict.LAG), (0.12, LagVerdict.NOT_ONE_JOINT)])
+def test_a_late_clock_is_told_while_the_leg_moves(late_s: float, verdict: LagVerdict) -> None:
     lags = watched(made(late_s=late_s))[-1].lags
     assert {lag.verdict for lag in lags.values()} == {verdict}
     assert all(lag.is_worth_telling for lag in lags.values())
-    if verdict is Verdict.LAG:
+    if verdict is LagVerdict.LAG:
         for joint, true_s in ((Joint.LEFT_KNEE, -late_s), (Joint.LEFT_ANKLE, late_s)):
             sd_s = lags[joint].sd_s
             assert sd_s is not None
@@ -103,7 +103,7 @@ def test_the_size_of_the_blocks_changes_nothing(
 def test_a_leg_held_still_stays_open_and_is_asked_for() -> None:
     session = made(sites=(*LEFT, Site.RIGHT_THIGH, Site.RIGHT_SHANK))
     still = session.session.recordings[0].imu
-    motion = FreeMotion(sensors_of(session))
+    motion = LiveFreeMotion(sensors_of(session))
     imu = {**session.session.recordings[1].imu, **{site: still[site] for site in (Site.RIGHT_THIGH, Site.RIGHT_SHANK)}}
     state = motion.update(imu)
     assert state.weakest is Joint.RIGHT_KNEE
@@ -111,12 +111,12 @@ def test_a_leg_held_still_stays_open_and_is_asked_for() -> None:
 
 
 def test_a_foot_without_ankle_joint_is_not_asked_for(circling: SimulatedSession) -> None:
-    motion = FreeMotion(sensors_of(circling), frozenset({Side.LEFT}), without_ankle=frozenset({Side.LEFT}))
+    motion = LiveFreeMotion(sensors_of(circling), frozenset({Side.LEFT}), without_ankle=frozenset({Side.LEFT}))
     assert set(motion.update({}).joints) == {Joint.LEFT_KNEE}
 
 
 def test_a_silent_sensor_keeps_nothing_waiting_for_long(circling: SimulatedSession) -> None:
-    motion = FreeMotion(sensors_of(circling))
+    motion = LiveFreeMotion(sensors_of(circling))
     block = circling.session.recordings[1].imu[Site.LEFT_THIGH]
     for k in range(10):
         motion.update({Site.LEFT_THIGH: replace(block, time_s=block.time_s + 18.01 * k)})
@@ -126,7 +126,7 @@ def test_a_silent_sensor_keeps_nothing_waiting_for_long(circling: SimulatedSessi
 def test_samples_that_come_twice_are_counted_and_change_nothing(
     circling: SimulatedSession, states: list[FreeMotionState]
 ) -> None:
-    motion = FreeMotion(sensors_of(circling))
+    motion = LiveFreeMotion(sensors_of(circling))
     site = Site.LEFT_FOOT
     for blocks in in_blocks(circling.session.recordings[1].imu, 0.5):
         motion.update(blocks)

@@ -9,7 +9,7 @@ import pytest
 
 from core.body import Site
 from core.calibration.rest import rest_of
-from core.live.standing import WANTED_S, Standing, StandingState
+from core.live.standing import WANTED_S, LiveStanding, StandingState
 from core.samples import ImuBlock, Recording, RecordingKind
 from devices.walker import Standing as StandingRecording
 from devices.walker import WalkerSettings, simulate
@@ -38,7 +38,7 @@ def only(block: ImuBlock, keep: np.ndarray) -> ImuBlock:
 
 
 def watched(imu: Mapping[Site, ImuBlock], block_s: float = BLOCK_S) -> list[StandingState[Site]]:
-    standing = Standing(imu)
+    standing = LiveStanding(imu)
     return [standing.update(blocks) for blocks in in_blocks(imu, block_s)]
 
 
@@ -93,7 +93,7 @@ def test_a_sensor_that_repeats_itself_is_not_still_but_silent(stood: Recording) 
 
 
 def test_a_sensor_never_heard_is_silent(stood: Recording) -> None:
-    standing = Standing([Site.LEFT_FOOT, Site.LEFT_SHANK])
+    standing = LiveStanding([Site.LEFT_FOOT, Site.LEFT_SHANK])
     state = standing.update({Site.LEFT_SHANK: stood.imu[Site.LEFT_SHANK]})
     assert state.silent == (Site.LEFT_FOOT,)
     assert not state.is_done
@@ -133,7 +133,7 @@ def test_movements_close_together_restart_the_count_once_and_the_first_stillness
 
 def test_long_standing_keeps_memory_and_the_latest_seconds(stood: Recording) -> None:
     block = stood.imu[Site.LEFT_SHANK]
-    standing = Standing([Site.LEFT_SHANK])
+    standing = LiveStanding([Site.LEFT_SHANK])
     for k in range(20):
         state = standing.update({Site.LEFT_SHANK: replace(block, time_s=block.time_s + 5.01 * k)})
     assert state.still_s == pytest.approx(100.0, abs=0.5)

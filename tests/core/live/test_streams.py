@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from core.live.streams import EvenSamples, Stream
+from core.live.streams import EvenSamples, EvenStream
 from core.samples import BoolArray, FloatArray, ImuBlock, IntArray
 from core.tracks import even_tracks
 
@@ -33,7 +33,7 @@ def part(block: ImuBlock, which: slice | BoolArray | IntArray) -> ImuBlock:
 
 def taken(block: ImuBlock, edges: list[int] | None = None) -> EvenSamples:
     """What a stream makes of a block, cut at `edges`; every piece is taken at once."""
-    stream, pieces = Stream(RATE_HZ), []
+    stream, pieces = EvenStream(RATE_HZ), []
     for a, b in pairwise([0, *sorted(edges or []), len(block)]):
         stream.feed(part(block, slice(a, b)))
         pieces.append(stream.take())
@@ -134,7 +134,7 @@ def test_a_sensor_slower_than_it_says_is_put_on_the_grid_it_says() -> None:
 
 def test_late_and_repeated_samples_are_dropped_and_counted() -> None:
     block = block_of(STEP_S * np.arange(300))
-    stream = Stream(RATE_HZ)
+    stream = EvenStream(RATE_HZ)
     stream.feed(part(block, slice(0, 200)))
     stream.feed(part(block, slice(190, 250)))
     stream.feed(part(block, slice(0, 5)))
@@ -153,13 +153,13 @@ def test_a_hanging_sensor_makes_a_gap() -> None:
 
 
 def test_empty_blocks_and_nothing_at_all_are_fine() -> None:
-    stream = Stream(RATE_HZ)
+    stream = EvenStream(RATE_HZ)
     stream.feed(part(block_of(STEP_S * np.arange(5)), slice(0, 0)))
     assert len(stream.take()) == 0
 
 
 def test_memory_does_not_grow_with_time() -> None:
-    stream, sizes = Stream(RATE_HZ), []
+    stream, sizes = EvenStream(RATE_HZ), []
     for k in range(60):
         time_s = STEP_S * np.arange(500 * k, 500 * (k + 1))
         lost = np.random.default_rng(k).uniform(size=500) < 0.02

@@ -26,12 +26,12 @@ from devices.files.answers import (
     Array,
     BrokenAnswerError,
     block_from,
+    details_of_block,
+    details_of_findings,
     findings_from,
     receive,
     refusal_from,
     send,
-    told_of_block,
-    told_of_findings,
 )
 from devices.files.limited_reader import LimitedReader, LimitedReading, ReadingEndedError
 from devices.files.refusal import FileRefusedError
@@ -404,7 +404,7 @@ def sent(told: dict[str, object], *arrays: Array) -> bytes:
     return stream.getvalue()
 
 
-ANSWER = sent({"what": "read", "told": [1, "a"]}, np.arange(3.0), np.eye(2, dtype=np.int16))
+ANSWER = sent({"what": "read", "details": [1, "a"]}, np.arange(3.0), np.eye(2, dtype=np.int16))
 
 
 @given(st.integers(0, len(ANSWER) - 1), st.integers(1, 255), st.integers(0, 60))
@@ -458,7 +458,7 @@ def test_a_refusal_has_only_plain_names_in_its_braces(what: str) -> None:
 )
 def test_a_block_of_another_shape_is_no_block(change: dict[str, object]) -> None:
     arrays: list[Array] = []
-    told = told_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
+    told = details_of_block(ImuBlock("a", np.arange(3.0), np.zeros((3, 3)), np.zeros((3, 3))), arrays)
     assert block_from(told, arrays).sensor == "a"
     with pytest.raises(BrokenAnswerError):
         block_from(told | change, arrays)
@@ -466,7 +466,7 @@ def test_a_block_of_another_shape_is_no_block(change: dict[str, object]) -> None
 
 def test_a_finding_of_another_shape_is_no_finding() -> None:
     findings = (Finding("key", Severity.INFO, "here", {"count": 1, "name": "x"}),)
-    assert findings_from(told_of_findings(findings)) == findings
+    assert findings_from(details_of_findings(findings)) == findings
     with pytest.raises(BrokenAnswerError):
         findings_from([{"key": "a", "severity": "loud", "where": "", "numbers": {}}])
     with pytest.raises(BrokenAnswerError):

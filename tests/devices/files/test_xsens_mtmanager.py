@@ -13,7 +13,7 @@ from scipy.spatial.transform import Rotation
 
 from core.body import Site
 from core.samples import RateKind
-from devices.files.imports import Imported
+from devices.files.imports import ImportedFiles
 from devices.files.refusal import FileRefusedError
 from devices.files.xsens_mtmanager import MtFile, derive_rates, import_mtmanager, read_mtmanager
 
@@ -44,7 +44,7 @@ def refusal(path: Path) -> str:
     return str(caught.value)
 
 
-def import_two(one: Path, other: Path, rate_hz: float | None = None) -> Imported:
+def import_two(one: Path, other: Path, rate_hz: float | None = None) -> ImportedFiles:
     return import_mtmanager([one, other], {Site.LEFT_THIGH: one.name, Site.LEFT_SHANK: other.name}, "walk 1", rate_hz)
 
 
@@ -119,7 +119,7 @@ def test_derived_rates_agree_with_a_gyroscope(test_data: FindData) -> None:
 # --- real files
 
 
-def test_every_dialect_holds_the_same_samples(test_data: FindData) -> None:
+def test_every_variant_holds_the_same_samples(test_data: FindData) -> None:
     files = [read_mtmanager(path) for path in sorted(test_data(FOLDER).glob("MT2022_ACC_GYRO_ROT_MAT_*"))]
     assert len(files) == 3
     for file in files:

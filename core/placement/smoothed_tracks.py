@@ -12,7 +12,6 @@ import numpy as np
 
 from core.joint_force import JointForce
 from core.pair import FAST_RAD_S, OrientedTrack
-from core.placement.steps import at_once
 from core.samples import FloatArray, IntArray
 from core.tracks import at_positions
 
@@ -26,7 +25,7 @@ MIN_SHARE = 0.5  # of what a mean is taken over was heard
 
 
 @dataclass(frozen=True, slots=True)
-class Felt:
+class SmoothedTrack:
     """One sensor at even instants (n,); NaN where it was not heard.
 
     With o the vector from a joint to the sensor and b the accelerometer's bias, both in sensor axes, the joint's
@@ -49,13 +48,13 @@ class Felt:
 
 
 @dataclass(frozen=True, slots=True)
-class Together:
+class SmoothedTracks:
     """All sensors at the same even instants; `index` (m,) are those to be used.
 
     `window` (m,) numbers the stretches of one heading each.
     """
 
-    sensors: Mapping[str, Felt]
+    sensors: Mapping[str, SmoothedTrack]
     index: IntArray
     window: IntArray
 
@@ -64,12 +63,7 @@ Tracks = Mapping[str, Sequence[OrientedTrack]]
 """The oriented stretches of each sensor in one recording, by the sensor's name."""
 
 
-def felt_together(tracks: Tracks) -> Together | None:
-    """As `felt_in_steps`, at once."""
-    return at_once(felt_in_steps(tracks))
-
-
-def felt_in_steps(tracks: Tracks) -> Generator[None, None, Together | None]:
+def smoothed_in_steps(tracks: Tracks) -> Generator[None, None, SmoothedTracks | None]:
     """What all sensors felt in the liveliest minute they have in common; None where one was not heard for a second.
 
     A step for each sensor.
@@ -84,13 +78,13 @@ def felt_in_steps(tracks: Tracks) -> Generator[None, None, Together | None]:
     time_s = np.arange(start_s, end_s, STEP_S)
     sensors = {}
     for name, stretches in tracks.items():
-        sensors[name] = _felt(stretches, time_s)
+        sensors[name] = _smoothed(stretches, time_s)
         yield
-    if any(np.isnan(felt.terms).all() for felt in sensors.values()):
+    if any(np.isnan(one.terms).all() for one in sensors.values()):
         return None
     index = np.arange(1, len(time_s) - 1, -(-len(time_s) // MAX_INSTANTS))
     windows = max(1, round((end_s - start_s) / WINDOW_S))
-    return Together(sensors, index, index * windows // len(time_s))
+    return SmoothedTracks(sensors, index, index * windows // len(time_s))
 
 
 def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, float]:
@@ -109,7 +103,7 @@ def _liveliest(tracks: Tracks, start_s: float, end_s: float) -> tuple[float, flo
     return start_s + first, min(start_s + first + LONGEST_S, end_s)
 
 
-def _felt(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Felt:
+def _smoothed(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> SmoothedTrack:
     rows = np.full((len(time_s), 21), np.nan)
     for one in stretches:
         force = one.joint_force
@@ -118,7 +112,7 @@ def _felt(stretches: Sequence[OrientedTrack], time_s: FloatArray) -> Felt:
         if is_inside.any():
             rows[is_inside] = _smooth_terms(force, time_s[is_inside])
     terms = rows.reshape(-1, 3, 7)
-    return Felt(terms, np.gradient(terms, STEP_S, axis=0))
+    return SmoothedTrack(terms, np.gradient(terms, STEP_S, axis=0))
 
 
 def _smooth_terms(force: JointForce, time_s: FloatArray) -> FloatArray:

@@ -33,7 +33,7 @@ MOST_SETS = 6000  # ten minutes of data sets (eq 2)
 
 
 @dataclass(frozen=True, slots=True)
-class Excitation:
+class IdentifyingMotion:
     """How much the motion showed that the joint was found from.
 
     `sets` is the number of data sets of eq 2 (one each tenth of a second while something moves), `moving_s` how long
@@ -48,7 +48,7 @@ class Excitation:
 
 
 @dataclass(frozen=True, slots=True)
-class HowFound:
+class JointDiagnostics:
     """One joint: its Figures 3, 4 and 6, and the figures that stand beside them.
 
     `from_recordings` identified the joint, `walk` is the recording of the angles. `published_apart_rad` is how far the
@@ -62,7 +62,7 @@ class HowFound:
     walk: str
     calibration: JointCalibration
     from_recordings: tuple[str, ...]
-    excitation: Excitation
+    excitation: IdentifyingMotion
     costs: tuple[CostOverSphere, CostOverSphere]
     published_apart_rad: float
     projected: ProjectedRates | None
@@ -80,9 +80,9 @@ class HowFound:
         return np.asarray(turned - 2 * np.pi * turns)
 
 
-def how_found(
+def diagnostics_of(
     session: Session, calibration: JointCalibration, recording_name: str, tau_s: float = DEFAULT_TAU_S
-) -> HowFound | None:
+) -> JointDiagnostics | None:
     """Show how the joint of `calibration` was found and measured in one recording; None where it holds no motion of it.
 
     Parameters
@@ -116,7 +116,7 @@ def how_found(
     walked = tuple(pair for pair in pairs_of(tracks, recording, joint, block, lag_s) if is_anchored(pair))
     j1, j2 = geometry.axis_1, geometry.axis_2
     ways = two_ways(walked, j1, j2, geometry.centre_1_m, geometry.centre_2_m, tau_s)
-    return HowFound(
+    return JointDiagnostics(
         joint=joint,
         walk=recording.name,
         calibration=calibration,
@@ -143,11 +143,11 @@ def _seen(tracks: SensorTracks, found: Identified) -> tuple[Pair, ...]:
     )
 
 
-def _excitation(sets: Datasets, data: Datasets, j1: FloatArray, j2: FloatArray) -> Excitation:
+def _excitation(sets: Datasets, data: Datasets, j1: FloatArray, j2: FloatArray) -> IdentifyingMotion:
     about = sets.g1 @ j1 - sets.g2 @ j2
     lengths = [np.linalg.norm(np.cross(g, j), axis=1) for g, j in ((sets.g1, j1), (sets.g2, j2))]
     step_s = [data.pairs[int(s)].step_s for s in data.stretch]
-    return Excitation(
+    return IdentifyingMotion(
         sets=len(sets),
         moving_s=float(np.sum(step_s)),
         about_rad_s=float(np.sqrt(np.mean(about**2))),

@@ -9,7 +9,7 @@ import pytest
 
 from core.analysis import analyse
 from core.body import Joint, Side, Site
-from core.how_found import how_found
+from core.diagnostics import diagnostics_of
 from core.results import Analysis, Method
 from core.samples import ImuBlock, Recording, RecordingKind, Session
 from devices.walker import FreeMotion, Standing, Tissue, Walk, WalkerSettings, simulate
@@ -24,7 +24,7 @@ def analysis(knee_visit: Session) -> Analysis:
 
 def test_figures_are_those_of_the_analysis(knee_visit: Session, analysis: Analysis) -> None:
     calibration = analysis.calibrations[0].joints[KNEE]
-    found = how_found(knee_visit, calibration, "walk")
+    found = diagnostics_of(knee_visit, calibration, "walk")
     assert found is not None
     assert found.from_recordings == ("free motion",)
     np.testing.assert_allclose(found.costs[0].axis, calibration.axis_proximal, atol=1e-12)
@@ -39,8 +39,8 @@ def test_figures_are_those_of_the_analysis(knee_visit: Session, analysis: Analys
 
 def test_a_recording_without_the_joint_shows_nothing(knee_visit: Session, analysis: Analysis) -> None:
     calibration = analysis.calibrations[0].joints[KNEE]
-    assert how_found(knee_visit, calibration, "no such walk") is None
-    assert how_found(knee_visit, replace(calibration, joint=Joint.RIGHT_KNEE), "walk") is None
+    assert diagnostics_of(knee_visit, calibration, "no such walk") is None
+    assert diagnostics_of(knee_visit, replace(calibration, joint=Joint.RIGHT_KNEE), "walk") is None
 
 
 @pytest.mark.endurance  # a second of a real hinge
@@ -51,7 +51,7 @@ def test_on_a_real_hinge_the_pictures_agree_with_optics(test_data: Callable[[str
     sites = enumerate((KNEE.proximal, KNEE.distal), start=1)
     imu = {site: ImuBlock(str(site), time_s, data[f"gyr{k}"], data[f"acc{k}"]) for k, site in sites}
     session = Session((Recording("hinge", RecordingKind.FREE_MOTION, "hinge", imu),))
-    found = how_found(session, analyse(session).calibrations[0].joints[KNEE], "hinge")
+    found = diagnostics_of(session, analyse(session).calibrations[0].joints[KNEE], "hinge")
     assert found is not None
     assert abs(found.costs[0].lowest @ data["j1_ref"]) > np.cos(np.deg2rad(1.0))
     assert found.off_axis_rate_rad_s < np.deg2rad(3.0)
@@ -69,7 +69,7 @@ def test_a_walking_patient_of_known_truth_is_shown_as_he_is(tissue: Tissue, meth
     analysis = analyse(walked.session, method)
     walk = analysis.recordings[-1]
     for joint, calibration in analysis.calibrations[0].joints.items():
-        found = how_found(walked.session, calibration, walk.name)
+        found = diagnostics_of(walked.session, calibration, walk.name)
         assert found is not None
         truth = walked.truth.recordings[walk.name].joints[joint]
         if tissue is Tissue.RIGID and joint.is_knee:

@@ -8,7 +8,8 @@ import pytest
 
 from core.body import Joint
 from core.pair import OrientedTrack
-from core.placement.felt import felt_together
+from core.placement.smoothed_tracks import smoothed_in_steps
+from core.placement.steps import at_once
 from core.samples import FloatArray
 
 if TYPE_CHECKING:
@@ -28,7 +29,7 @@ def forces_without(whole: OrientedTrack, lost: slice) -> tuple[FloatArray, Float
     acc, is_measured = whole.track.acc_m_s2.copy(), whole.track.is_measured.copy()
     acc[lost], is_measured[lost] = 1000.0, False
     track = replace(whole.track, acc_m_s2=acc, is_measured=is_measured)
-    together = felt_together({"whole": [whole], "lost": [OrientedTrack(track, whole.q_earth_from_sensor)]})
+    together = at_once(smoothed_in_steps({"whole": [whole], "lost": [OrientedTrack(track, whole.q_earth_from_sensor)]}))
     assert together is not None
     return together.sensors["whole"].terms[..., 6], together.sensors["lost"].terms[..., 6]
 
