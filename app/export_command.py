@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from app.library_commands import (
-    DECODERS,
     LibrarySession,
     add_key_arguments,
     default_folder,
     opened_library,
     session_place,
 )
+from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:

@@ -12,41 +12,25 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
 
 import platformdirs
 
+from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError, one_line
 
 if TYPE_CHECKING:
-    from app.storage.journal.decoding import Decoders
     from app.storage.opened import OpenedLibrary
     from app.storage.recovery import Interrupted
     from core.samples import Session
-    from devices.source import StreamDecoder
 
 PREFIX = "library:"
 WHO = "--operator"
 PASSPHRASE_FILE = "--passphrase-file"
-# as devices.catalogue has them, whose import would hold up the command line: they record bytes; the walker, files and
-# network inlets record samples, which need no decoder
-BYTE_DRIVERS = ("ximu3", "witmotion", "csv", "xsens-mti", "shimmer3")
 
 Report = Callable[[float, str], None]
-
-
-def _new_decoder(driver: str) -> "StreamDecoder":
-    from devices.catalogue import DRIVERS
-
-    decoder = next(one for one in DRIVERS if one.key == driver).decoder
-    assert decoder is not None  # BYTE_DRIVERS are those that have one
-    return decoder()
-
-
-DECODERS: "Decoders" = {driver: partial(_new_decoder, driver) for driver in BYTE_DRIVERS}
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,6 @@ from contextlib import suppress
 from uuid import UUID
 
 from app.acquisition.acquisition import Acquisition
-from app.library_commands import DECODERS
 from app.storage.bringing_home import bring_home
 from app.storage.exchange import recording_with_samples
 from app.storage.journal.disk import ROOM, Room, Trouble
@@ -25,6 +24,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.recovery import Interrupted, adopt, find_interrupted, recover
 from app.storage.stored import LibraryError, LibraryFaultError, RecordingState, StoredJournal, StoredRecording
 from core.samples import Recording, RecordingKind
+from devices.decoders import DECODERS
 
 ROW_WAIT_S = 1.0
 

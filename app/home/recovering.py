@@ -90,8 +90,8 @@ class Recovering(QObject):
         lost = tuple(self._lost)
 
         def work(opened: "OpenedLibrary", report: Report) -> str:
-            from app.library_commands import DECODERS
             from app.storage.exchange import export_orphan
+            from devices.decoders import DECODERS
 
             for number, one in enumerate(lost, 1):
                 began = f" {one.began_at.astimezone():%Y-%m-%d %H-%M}" if one.began_at else ""

@@ -95,8 +95,8 @@ class Replays(QObject):
         """Read a session of the library; `read` or `refused` follows."""
 
         def reading(opened: "OpenedLibrary", report: Report) -> SourceChoice:
-            from app.library_commands import DECODERS
             from app.storage.exchange import session_with_samples
+            from devices.decoders import DECODERS
 
             stored = opened.library.sessions.view(session_id)
             return replay_of(session_with_samples(opened, stored, DECODERS, report), name)

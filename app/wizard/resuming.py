@@ -70,8 +70,8 @@ def with_limits(told: Session, limits: Limits) -> Session:
 
 def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
     """All recordings of a session that can be read, with their samples."""
-    from app.library_commands import DECODERS
     from app.storage.exchange import recording_with_samples
+    from devices.decoders import DECODERS
 
     usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     return tuple(

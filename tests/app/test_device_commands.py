@@ -10,26 +10,14 @@ import pytest
 
 from app.cli import main
 from app.device_commands import EMULATED, MOVEMENTS, emulate, list_devices
-from app.library_commands import BYTE_DRIVERS, DECODERS
 from core.body import Site
 from core.samples import RecordingKind
 from devices.catalogue import DRIVERS
 from devices.emulators.patient import FINE_HZ, KINDS, EmulatedPatient
 from devices.ports import MORE_PORTS
-from devices.source import SourceInfo
 from tests.safety.port_vanishes import vanish_often
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
-
-
-def test_every_driver_that_records_bytes_has_its_decoder() -> None:
-    assert set(BYTE_DRIVERS) == {driver.key for driver in DRIVERS if driver.decoder is not None}
-    for driver, make in DECODERS.items():
-        decoder = make()
-        assert decoder is not make(), "each journal has one of its own"
-        if driver != "csv":
-            decoder.begin(SourceInfo(driver, "1", sensors=("one",)))
-            assert len(decoder.finish()["one"].block) == 0
 
 
 @pytest.mark.parametrize("kind", [kind for kind in EMULATED if kind != "csv"])  # whose columns have to be told

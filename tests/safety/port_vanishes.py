@@ -19,8 +19,8 @@ from pathlib import Path
 import numpy as np
 
 from app.acquisition.acquisition import Acquisition
-from app.library_commands import DECODERS
 from app.storage.journal.decoding import decode
+from devices.decoders import DECODERS
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.ports import PortInfo, SerialPort

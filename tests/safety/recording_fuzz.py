@@ -27,7 +27,6 @@ import numpy as np
 
 from app.acquisition.heard_sensor import HeardSensor
 from app.acquisition.source_tape import SourceTape
-from app.library_commands import DECODERS
 from app.storage.journal.decoding import DecodedJournal, decode
 from app.storage.journal.payloads import layout_of
 from app.storage.journal.writer import JournalWriter
@@ -36,6 +35,7 @@ from core.samples import ImuBlock, Recording, RecordingKind
 from devices.channels import Channel
 from devices.clock import LiveClock
 from devices.csv_serial import DRIVER as CSV
+from devices.decoders import DECODERS
 from devices.live import SensorDetails
 from devices.lsl import DRIVER as LSL
 from devices.source import SourceInfo

@@ -18,10 +18,10 @@ from functools import partial
 from pathlib import Path
 
 from app.acquisition.acquisition import Acquisition
-from app.library_commands import DECODERS
 from app.storage.journal.decoding import decode
 from app.storage.journal.disk import Trouble
 from app.wizard.journal_words import standstill_message
+from devices.decoders import DECODERS
 from devices.emulators.transports import Emulation, PseudoTerminal
 from devices.emulators.ximu3 import Ximu3Voice
 from devices.ports import PortInfo, SerialPort

@@ -300,13 +300,13 @@ class ReportStep(Step):
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:
             from app.exports.exports import Format, export_from_library
-            from app.library_commands import DECODERS
             from app.reports.patient_report.document import make_report
             from app.reports.patient_report.report_file import write_visits
             from app.reports.result_folder import REPORT, check_place, write_results, written_beside
             from app.storage.audit import about
             from app.storage.pseudonyms import Typed
             from app.storage.stored import Action, LibraryError
+            from devices.decoders import DECODERS
 
             typed = [Typed(one) for one in sorted(kept)]
             report(0.0, tr("writing"))
