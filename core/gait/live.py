@@ -1,4 +1,4 @@
-"""When does a foot land and leave, as it walks? The events of `core.gait.events`, causally and within MAX_DELAY_S.
+"""Gait events of one foot while it walks: those of `core.gait.events`, causally and within `SETTINGS.max_delay_s`.
 
 The definitions and their constants are those of the offline events. What offline reads off the whole walk is learnt
 on the way: the usual peaks from the last steps, the pitch axis from all turning so far. As long as the delay allows,
@@ -40,22 +40,69 @@ from core.gait.strides import MAX_STRIDE_S
 from core.samples import FloatArray
 from core.tracks import MAX_REPORTED_GAP_S
 
-MAX_DELAY_S = 0.095  # a display that draws every 33 ms then shows an event when it is 0.13 s old at most
-MEMORY = 5  # steps whose peaks and times say what is usual
-PASSED_SHARE = 0.6  # of its peak: a rate that has fallen so far has passed it
-SURE_RATIO = 5.0  # times the level of rest: a heel that turns so fast has risen
-EARLY_RATIO = 1.8  # times the level of rest, where the double would be too late
-GROWTH = 1.75  # of the rate, a power of time; see ONSET_RATIO
-MIN_FLAT_S = 0.06  # a foot stays flat longer; a loading shock does not
-STANDING_S = 1.5  # flat for longer, and the foot stands; at 0.3 m/s a foot is flat for 0.7 s of each stride
-MAX_PUSH_S = 0.3  # from the end of push-off until the foot has speed; longer, and the heel was lifted on the spot
-FIRST_LOAD = 0.7  # of the peak of push-off is the peak of loading, until one has been seen
-MIN_SWING_S = 0.12  # a third of the swing at 2 m/s: an earlier fall of the toes is not the landing
-SWAY_RATIO, SWAY_MEMORY = 2.0, 0.85  # a heel rise is faster than the sways of the last stances
-MAX_SWING_S = 1.5  # more than twice the swing at 0.3 m/s; after more, the landing was missed
-LANDING_SHARE = 0.7  # of its greatest speed: a foot that is faster is in mid-swing
-
 Sample = tuple[float, float]  # time, rate
+
+
+@dataclass(frozen=True, slots=True)
+class LiveEventSettings:
+    """The constants of the live events; shares and ratios have no unit, times are seconds.
+
+    Sources are named where one is on record. Where none is, the value is a choice of this project whose reason is all
+    that was written down; `tests/benchmarks/live_gait.py` measures how the events do with all of them.
+
+    Attributes
+    ----------
+    max_delay_s
+        Longest time from an event to the sample that reports it, unless it is late. Source: the display, which draws
+        every 33 ms and so shows an event when it is 0.13 s old at most.
+    memory
+        Steps whose peaks and times say what is usual.
+    passed_share
+        Of its peak: a rate that has fallen so far has passed it.
+    sure_ratio
+        Of the rate of rest: a heel that turns so fast has risen.
+    early_ratio
+        Of the rate of rest: enough for a heel rise where waiting for the double would be too late.
+    growth
+        The pitch rate grows as this power of time after heel rise. Source: `ONSET_RATIO` in `core.gait.crossings`.
+    min_flat_s
+        A foot stays flat longer than this; a loading shock does not.
+    standing_s
+        A foot that is flat for longer stands. Source: at 0.3 m/s, the slowest, a foot is flat for 0.7 s of each stride.
+    max_push_s
+        From the end of push-off until the foot has speed; after longer the heel was lifted on the spot.
+    first_load_share
+        Peak of loading as a share of the peak of push-off, until a loading has been seen.
+    min_swing_s
+        An earlier fall of the toes is not the landing. Source: a third of the swing at 2 m/s.
+    sway_ratio
+        A heel rise is so many times faster than the sways of the last stances.
+    sway_memory
+        Share of the fastest sway that is remembered after one step.
+    max_swing_s
+        After longer the landing was missed. Source: more than twice the swing at 0.3 m/s.
+    landing_share
+        Of its greatest speed in this swing: a foot that is faster is in mid-swing.
+    """
+
+    max_delay_s: float = 0.095
+    memory: int = 5
+    passed_share: float = 0.6
+    sure_ratio: float = 5.0
+    early_ratio: float = 1.8
+    growth: float = 1.75
+    min_flat_s: float = 0.06
+    standing_s: float = 1.5
+    max_push_s: float = 0.3
+    first_load_share: float = 0.7
+    min_swing_s: float = 0.12
+    sway_ratio: float = 2.0
+    sway_memory: float = 0.85
+    max_swing_s: float = 1.5
+    landing_share: float = 0.7
+
+
+SETTINGS = LiveEventSettings()
 
 
 class FootEvent(StrEnum):
@@ -83,7 +130,7 @@ class LiveEvent:
 
     @property
     def is_late(self) -> bool:
-        return self.told_s - self.time_s > MAX_DELAY_S
+        return self.told_s - self.time_s > SETTINGS.max_delay_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +158,9 @@ class LiveEvents:
         self._changes: list[PhaseChange] = []
         self._phase = Phase.UNKNOWN
         self._path: list[Sample] = []  # since the phase began, or since the rate last said that it cannot end yet
-        self._pushes: deque[float] = deque(maxlen=MEMORY)
-        self._loads: deque[float] = deque(maxlen=MEMORY)
-        self._contacts_s: deque[float] = deque(maxlen=MEMORY + 1)
+        self._pushes: deque[float] = deque(maxlen=SETTINGS.memory)
+        self._loads: deque[float] = deque(maxlen=SETTINGS.memory)
+        self._contacts_s: deque[float] = deque(maxlen=SETTINGS.memory + 1)
         self._still = MIN_STILL_RAD_S
         self._flat_since_s = -math.inf
         self._peak = 0.0
@@ -189,9 +236,9 @@ class LiveEvents:
         motion.add(self._time_s, self._step_s, gyr, acc, 2.0 * self._still)
         if motion.travelled:
             self._arrive(motion.travelled)
-        if self._phase is Phase.UNKNOWN and motion.calm_s > MIN_FLAT_S:
+        if self._phase is Phase.UNKNOWN and motion.calm_s > SETTINGS.min_flat_s:
             self._stand(-math.inf)
-        if motion.flat_s > MIN_FLAT_S:
+        if motion.flat_s > SETTINGS.min_flat_s:
             self._rest()
         if motion.pitch_axis is not None:
             self._advance((self._time_s, dot(gyr, motion.pitch_axis)), motion.speed_m_s)
@@ -230,7 +277,7 @@ class LiveEvents:
             self._pushes.clear()
             self._loads.clear()
         self._has_swung = False
-        if self._motion.flat_s > 2.0 * MIN_FLAT_S and self._phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
+        if self._motion.flat_s > 2.0 * SETTINGS.min_flat_s and self._phase not in (Phase.FOOT_FLAT, Phase.PRE_SWING):
             if self._phase is Phase.SWING and self._dip:
                 self._touch_down(self._contact(self._dip, -self._peak), self._dip)
             elif self._phase is Phase.SWING and not math.isnan(self._slow_s):
@@ -255,7 +302,7 @@ class LiveEvents:
 
     def _is_due(self, time_s: float) -> bool:
         """Would the next sample be too late to tell?"""
-        return self._time_s + self._step_s - time_s > MAX_DELAY_S
+        return self._time_s + self._step_s - time_s > SETTINGS.max_delay_s
 
     def _advance(self, now: Sample, speed_m_s: float) -> None:
         if self._phase is Phase.SWING:
@@ -272,8 +319,8 @@ class LiveEvents:
         self._follow(now, -self._still)
         if len(self._path) < 2:
             return
-        is_walking = now[0] - self._flat_since_s < STANDING_S
-        is_early = is_walking and now[1] < -EARLY_RATIO * self._still and self._is_due(self._rise(self._still))
+        is_walking = now[0] - self._flat_since_s < SETTINGS.standing_s
+        is_early = is_walking and now[1] < -SETTINGS.early_ratio * self._still and self._is_due(self._rise(self._still))
         if is_early or now[1] < -2.0 * self._still:
             self._phase, self._peak, self._off_s = Phase.PRE_SWING, now[1], None
             self._is_walking, self._is_rise_reported = is_walking, False
@@ -290,7 +337,7 @@ class LiveEvents:
         """Pre-swing until the rate has well passed the peak of push-off, and the foot has speed."""
         last = self._path[-1]
         self._path.append(now)
-        is_old = self._off_s is not None and now[0] - self._off_s > MAX_PUSH_S
+        is_old = self._off_s is not None and now[0] - self._off_s > SETTINGS.max_push_s
         if now[1] > -self._still and (is_old or -self._peak < MIN_ROLL_RAD_S):
             if self._is_walking:
                 self._sway = max(self._sway, -self._peak)
@@ -305,11 +352,11 @@ class LiveEvents:
         self._watch_rise(now)
         if self._off_s is None or -self._peak < MIN_ROLL_RAD_S or speed_m_s < MIN_SWING_M_S:
             return
-        if now[1] < PASSED_SHARE * self._peak and not self._is_due(self._off_s):
+        if now[1] < SETTINGS.passed_share * self._peak and not self._is_due(self._off_s):
             return
         self._push = -self._peak
         self._pushes.append(self._push)
-        self._sway *= SWAY_MEMORY
+        self._sway *= SETTINGS.sway_memory
         self._still = max(MIN_STILL_RAD_S, STILL_SHARE * median(self._pushes))
         if not self._is_rise_reported:
             self._tell_rise(self._rise(self._still))
@@ -319,10 +366,10 @@ class LiveEvents:
         self._peak, self._dip = 0.0, []
 
     def _watch_rise(self, now: Sample) -> None:
-        if not self._is_walking or self._is_rise_reported or -now[1] < SWAY_RATIO * self._sway:
+        if not self._is_walking or self._is_rise_reported or -now[1] < SETTINGS.sway_ratio * self._sway:
             return
         rise_s = self._rise(self._still)
-        if -now[1] > SURE_RATIO * self._still or self._is_due(rise_s):
+        if -now[1] > SETTINGS.sure_ratio * self._still or self._is_due(rise_s):
             self._tell_rise(rise_s)
 
     def _rise(self, still: float) -> float:
@@ -340,7 +387,7 @@ class LiveEvents:
                 break
         if high is None:
             end_s, end_rate = self._path[-1]
-            reach_s = (end_s - low) / ((max(-end_rate / still, 1.1)) ** (1.0 / GROWTH) - 1.0)
+            reach_s = (end_s - low) / ((max(-end_rate / still, 1.1)) ** (1.0 / SETTINGS.growth) - 1.0)
         else:
             reach_s = ONSET_RATIO * (high - low)
         return max(low - reach_s, self._flat_since_s)
@@ -353,11 +400,11 @@ class LiveEvents:
         """Swing until the toes, having come up, are turned down by the floor."""
         self._fastest_m_s = max(self._fastest_m_s, speed_m_s)
         since_s = now[0] - self._left_s
-        if since_s > MAX_SWING_S:
+        if since_s > SETTINGS.max_swing_s:
             self._phase, self._path = Phase.UNKNOWN, []
             return
         self._path.append(now)
-        is_near = since_s > MIN_SWING_S and speed_m_s < LANDING_SHARE * self._fastest_m_s
+        is_near = since_s > SETTINGS.min_swing_s and speed_m_s < SETTINGS.landing_share * self._fastest_m_s
         lowest = min(rate for _, rate in self._path)
         if self._path[0][1] <= 0.0 or -lowest < MIN_ROLL_RAD_S or not is_near:
             lowest = 0.0
@@ -367,11 +414,11 @@ class LiveEvents:
             self._path = [now]
         if now[1] > 0.0 or lowest == 0.0:
             return
-        usual = median(self._loads) if self._loads else FIRST_LOAD * self._push
+        usual = median(self._loads) if self._loads else SETTINGS.first_load_share * self._push
         contact_s = self._contact(self._path, -lowest)
-        if now[1] > PASSED_SHARE * lowest:
+        if now[1] > SETTINGS.passed_share * lowest:
             is_slow = speed_m_s < FLAT_SHARE * self._fastest_m_s
-            is_reported = is_slow or -lowest > PASSED_SHARE * usual or self._is_due(contact_s)
+            is_reported = is_slow or -lowest > SETTINGS.passed_share * usual or self._is_due(contact_s)
         else:  # the peak is to come: at least the usual one, or it passes in time
             contact_s = self._contact(self._path, usual)
             is_reported = self._is_due(contact_s)
@@ -413,7 +460,7 @@ class LiveEvents:
         if self._full_s is None:
             return
         usual = median(self._loads) if self._loads else math.inf
-        is_sure = -self._peak > PASSED_SHARE * usual and now[0] > self._full_s
+        is_sure = -self._peak > SETTINGS.passed_share * usual and now[0] > self._full_s
         if is_sure or self._is_due(self._full_s):
             self._tell(FootEvent.FULL_CONTACT, self._full_s)
             self._stand(self._full_s)

@@ -12,7 +12,7 @@ from core.body import Side, Site
 from core.calibration.rest import rest_of
 from core.gait.events import FootEvents, gait_of
 from core.gait.foot import GRAVITY_M_S2, follow
-from core.gait.live import MAX_DELAY_S, FootEvent, LiveEvent, LiveEvents
+from core.gait.live import SETTINGS, FootEvent, LiveEvent, LiveEvents
 from core.gait.phases import PHASES, Phase, phases_at
 from core.orientation import oriented
 from core.pair import OrientedTrack
@@ -161,9 +161,9 @@ def test_phases_and_cadence_are_those_of_the_whole_walk() -> None:
     assert cadence == pytest.approx(120.0 / np.median(np.diff(offline.initial_contact_s)[-6:-1]), rel=0.02)
     true = phases_at(track.time_s, [offline])
     inside = (true > 0) & (track.time_s > offline.toe_off_s[1])
-    # each phase is shown when its event is told, up to MAX_DELAY_S after it began
+    # each phase is shown when its event is told, up to SETTINGS.max_delay_s after it began
     assert np.mean(np.array(shown)[inside] == true[inside]) > 0.7
-    late = round(MAX_DELAY_S / track.step_s)
+    late = round(SETTINGS.max_delay_s / track.step_s)
     is_settled = np.array([len(set(true[max(0, k - late) : k + 2].tolist())) == 1 for k in range(len(track))])
     # push-off is seen to begin before its heel rise can be told
     assert np.mean(np.array(shown)[inside & is_settled] == true[inside & is_settled]) > 0.97
