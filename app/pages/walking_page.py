@@ -43,7 +43,7 @@ ANY_WIDTH = 16777215  # what Qt calls no limit
 
 
 @dataclass(frozen=True, slots=True)
-class LiveWalk:
+class WalkingReadout:
     """What the patient does right now: the last seconds on the screen's clock up to `now_s`; a side without sensors
     is left out. `cadence_steps_min` is NaN while nobody walks.
     """
@@ -83,7 +83,7 @@ class WalkingPage(QWidget):
         self._is_compact = False
         self._rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
-        self._live = LiveWalk(0.0)
+        self._live = WalkingReadout(0.0)
         self._described_s = -math.inf
         self.notice = Notice(look, size=16)
         self._has_message = False
@@ -119,7 +119,7 @@ class WalkingPage(QWidget):
         """Put the focus where reading starts, and on no button: Space is to start and stop the walk."""
         next((one for one in self._regions if one.isVisibleTo(self)), self.walks).setFocus()
 
-    def show_view(self, live: LiveWalk) -> None:
+    def show_view(self, live: WalkingReadout) -> None:
         """Draw the present, up to thirty times a second."""
         self._live = live
         self.charts.show_live(live.now_s, live.knees, live.ankles, live.lanes)

@@ -4,13 +4,13 @@ import math
 from collections.abc import Mapping
 
 from app.acquisition.walking_work import WalkingView
-from app.pages.walking_page import LiveWalk
+from app.pages.walking_page import WalkingReadout
 from app.plots.live_lanes import LiveLane, PhaseSpan
 from app.plots.live_strip import LiveTrace
 from core.body import Side
 
 
-def live_walk(view: WalkingView, strides: Mapping[Side, int]) -> LiveWalk:
+def live_walk(view: WalkingView, strides: Mapping[Side, int]) -> WalkingReadout:
     """Give what to draw of a view that has heard something."""
     knees: dict[Side, LiveTrace] = {}
     ankles: dict[Side, LiveTrace] = {}
@@ -22,4 +22,4 @@ def live_walk(view: WalkingView, strides: Mapping[Side, int]) -> LiveWalk:
         for side, lane in view.lanes.items()
     }
     cadence = math.nan if view.cadence_steps_min is None else view.cadence_steps_min
-    return LiveWalk(view.now_s or 0.0, knees, ankles, lanes, strides, cadence)
+    return WalkingReadout(view.now_s or 0.0, knees, ankles, lanes, strides, cadence)

@@ -24,7 +24,7 @@ from app.pages.settings_page import OperatorLine, SettingsPage
 from app.pages.source_pages import SourceOption
 from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
 from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import LiveWalk, WalkingPage
+from app.pages.walking_page import WalkingReadout, WalkingPage
 from app.plots.live_lanes import LiveLane, PhaseSpan
 from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
@@ -193,7 +193,7 @@ def walking(*rows: WalkRow) -> Callable[[Look], QWidget]:
         trace = LiveTrace(time_s, np.full(500, 0.4), is_provisional=True)
         lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
         both = dict.fromkeys(Side, trace)
-        page.show_view(LiveWalk(5.0, both, both, dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4))
+        page.show_view(WalkingReadout(5.0, both, both, dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4))
         return page
 
     return make

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import LiveWalk, WalkingPage
+from app.pages.walking_page import WalkingReadout, WalkingPage
 from app.plots.live_lanes import LiveLane, PhaseSpan
 from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
@@ -49,12 +49,12 @@ def page(qtbot: QtBot, look: Look, request: pytest.FixtureRequest) -> WalkingPag
     return page
 
 
-def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = False) -> LiveWalk:
+def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = False) -> WalkingReadout:
     time_s = np.arange(int(now_s * 100)) / 100
     knee = LiveTrace(time_s, np.full(len(time_s), math.radians(knee_deg)))
     ankle = LiveTrace(time_s, np.zeros(len(time_s)), is_provisional)
     lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
-    return LiveWalk(
+    return WalkingReadout(
         now_s,
         {Side.LEFT: knee, Side.RIGHT: LiveTrace(time_s, np.full(len(time_s), np.nan))},
         {Side.LEFT: ankle},
