@@ -152,7 +152,7 @@ class CsvFramer:
 
 
 class CsvSerial:
-    """The `Dialect` of lines of numbers. Without `columns` it reads journals only, which tell them."""
+    """The `SensorProtocol` of lines of numbers. Without `columns` it reads journals only, which tell them."""
 
     driver, version = DRIVER, VERSION
 

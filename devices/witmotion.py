@@ -166,7 +166,7 @@ def _scaled(payload: bytes, unit: float) -> tuple[float, float, float]:
 
 
 class WitMotion:
-    """The `Dialect` of a WitMotion sensor. What it is told is forgotten when it is switched off.
+    """The `SensorProtocol` of a WitMotion sensor. What it is told is forgotten when it is switched off.
 
     Parameters
     ----------

@@ -169,7 +169,7 @@ def read_file(path: Path) -> DecodedSensor:
 
 
 class Ximu3:
-    """The `Dialect` of an x-IMU3. It is left as its owner set it up, unless a rate is wanted.
+    """The `SensorProtocol` of an x-IMU3. It is left as its owner set it up, unless a rate is wanted.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
 from core.live.angle import AngleSamples
 from core.live.sensors import LiveSensor
-from core.live.walking import LiveFoot, Walking
+from core.live.walking import LiveFoot, LiveWalk
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
 from core.strap import Slip
@@ -97,7 +97,7 @@ class WalkingWork:
     ) -> None:
         self._site_of = {name: site for name, site in site_of.items() if name in live_sensors}
         sensors = {site: live_sensors[name] for name, site in self._site_of.items()}
-        self._walking = Walking(sensors, calibration)
+        self._walking = LiveWalk(sensors, calibration)
         known = [joint for joint in Joint if joint in calibration and {joint.proximal, joint.distal} <= set(sensors)]
         self._curves = {joint: _Curve(sensors[joint.proximal].step_s) for joint in known}
         self._feet = {site.side: _Foot() for site in sensors if site.segment is Segment.FOOT}

@@ -52,7 +52,7 @@ class WalkingState:
     slips: tuple[Slip, ...] = ()
 
 
-class Walking:
+class LiveWalk:
     """Both legs of a walking patient, block by block, with the calibration in force.
 
     Fed a whole recording at once it tells the same as fed in blocks of any size, and so in any order of sites.

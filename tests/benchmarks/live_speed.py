@@ -24,7 +24,7 @@ from core.body import Site
 from core.calibration.rest import rest_of
 from core.live.free_motion import LiveFreeMotion
 from core.live.sensors import LiveSensor
-from core.live.walking import Walking
+from core.live.walking import LiveWalk
 from core.samples import ImuBlock, Session
 from devices.walker import FreeMotion as FreeMotionRecording
 from devices.walker import Standing, Tissue, Walk, WalkerSettings, simulate
@@ -82,7 +82,7 @@ def compare(minutes: int) -> None:
     session = make_session()
     sensors, calibration = sensors_of(session), analyse(session).calibrations[-1].joints
     stages = {
-        "walking": (Walking(sensors, calibration).update, in_blocks(session.recordings[2].imu)),
+        "walking": (LiveWalk(sensors, calibration).update, in_blocks(session.recordings[2].imu)),
         "free motion": (LiveFreeMotion(sensors).update, in_blocks(session.recordings[1].imu)),
     }
     print("| stage | of one core, % | p50, p99, worst block, ms | of six VQF |")
@@ -119,7 +119,7 @@ def memory_kib() -> int:
 def long_stream(hours: float) -> Iterator[tuple[float, int]]:
     """Hours of walking as fast as it goes: stream time (h) and memory held (KiB), about twenty times on the way."""
     session = make_session()
-    walking = Walking(sensors_of(session), analyse(session).calibrations[-1].joints)
+    walking = LiveWalk(sensors_of(session), analyse(session).calibrations[-1].joints)
     blocks = in_blocks(session.recordings[2].imu)
     length_s = len(blocks) * BLOCK_S
     rounds = max(2, round(hours * 3600 / length_s))

@@ -24,7 +24,7 @@ from app.pages.settings_page import OperatorLine, SettingsPage
 from app.pages.source_pages import SourceOption
 from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
 from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import WalkingReadout, WalkingPage
+from app.pages.walking_page import WalkingPage, WalkingReadout
 from app.plots.live_lanes import LiveLane, PhaseSpan
 from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton
 from pytestqt.qtbot import QtBot
 
 from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import WalkingReadout, WalkingPage
+from app.pages.walking_page import WalkingPage, WalkingReadout
 from app.plots.live_lanes import LiveLane, PhaseSpan
 from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts

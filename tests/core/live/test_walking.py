@@ -13,7 +13,7 @@ from core.body import Joint, Side, Site
 from core.calibration.rest import rest_of
 from core.gait.live import FootEvent, LiveEvent
 from core.live.sensors import LiveSensor
-from core.live.walking import Walking, WalkingState
+from core.live.walking import LiveWalk, WalkingState
 from core.results import Analysis, JointCalibration
 from core.samples import ImuBlock, Recording
 from devices.walker import FreeMotion, SimulatedSession, Standing, Tissue, Walk, WalkerSettings, simulate
@@ -85,7 +85,7 @@ def events_of(states: Sequence[WalkingState], side: Side) -> list[LiveEvent]:
 def states(
     made: SimulatedSession, sensors: dict[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]
 ) -> list[WalkingState]:
-    walking = Walking(sensors, calibration)
+    walking = LiveWalk(sensors, calibration)
     return [walking.update(blocks) for blocks in in_blocks(walk_of(made).imu, 0.033)]
 
 
@@ -126,7 +126,7 @@ def test_the_size_of_the_blocks_changes_nothing(
     states: list[WalkingState],
     block_s: float,
 ) -> None:
-    walking = Walking({site: sensors[site] for site in LEFT}, calibration)
+    walking = LiveWalk({site: sensors[site] for site in LEFT}, calibration)
     imu = {site: walk_of(made).imu[site] for site in LEFT}
     other = [walking.update(blocks) for blocks in in_blocks(imu, block_s)]
     for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
@@ -142,7 +142,7 @@ def test_one_late_sensor_delays_its_joints_and_changes_nothing(
     calibration: Mapping[Joint, JointCalibration],
     states: list[WalkingState],
 ) -> None:
-    walking = Walking({site: sensors[site] for site in LEFT}, calibration)
+    walking = LiveWalk({site: sensors[site] for site in LEFT}, calibration)
     imu = {site: walk_of(made).imu[site] for site in LEFT}
     held: list[ImuBlock] = []
     other = []
@@ -169,7 +169,7 @@ def test_a_strap_that_slips_is_told_during_the_walk(
     gyr[late], acc[late] = gyr[late] @ turn.T, acc[late] @ turn.T
     imu = {one: walk_of(made).imu[one] for one in LEFT}
     imu[site] = replace(block, gyr_rad_s=gyr, acc_m_s2=acc)
-    walking = Walking({one: sensors[one] for one in LEFT}, calibration)
+    walking = LiveWalk({one: sensors[one] for one in LEFT}, calibration)
     told = [(k * 0.033, walking.update(blocks).slips) for k, blocks in enumerate(in_blocks(imu, 0.033))]
     first_s, (slip,) = next((now_s, slips) for now_s, slips in told if slips)
     assert slip.site is site
@@ -183,10 +183,10 @@ def test_without_feet_or_calibration_it_tells_what_it_can(
 ) -> None:
     imu = walk_of(made).imu
     knees = {site: sensor for site, sensor in sensors.items() if not site.endswith("foot")}
-    state = Walking(knees, calibration).update({site: imu[site] for site in knees})
+    state = LiveWalk(knees, calibration).update({site: imu[site] for site in knees})
     assert set(state.joints) == {Joint.LEFT_KNEE, Joint.RIGHT_KNEE}
     assert not state.feet
     foot = {Site.LEFT_FOOT: sensors[Site.LEFT_FOOT]}
-    state = Walking(foot, {}).update({Site.LEFT_FOOT: imu[Site.LEFT_FOOT]})
+    state = LiveWalk(foot, {}).update({Site.LEFT_FOOT: imu[Site.LEFT_FOOT]})
     assert not state.joints
     assert len(state.feet[Side.LEFT].events) > 80
