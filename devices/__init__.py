@@ -1,5 +1,28 @@
-"""How do bytes become samples?
+"""Where samples come from: sensors, simulated patients and files of other programs, all ending as `core.samples`.
 
-Sensors, simulated patients and files of other programs end here as `core.samples`. Nothing in this package knows what
-the numbers mean for a patient.
+Nothing in this package knows what the numbers mean for a patient.
+
+Public is what `__all__` names: session folders, a simulated patient whose angles are known, what another maker's sensor
+has to say of itself, and samples that come now. These keep their meaning, every other name may change.
 """
+
+from typing import TYPE_CHECKING
+
+from core.lazy_names import lazily
+
+if TYPE_CHECKING:
+    from devices.public import *  # the names below, for type checkers and editors
+
+# a page to read: one line or two for each task
+# fmt: off
+__all__ = (
+    "read_session", "write_session", "FileRefusedError",
+    "simulate", "WalkerSettings", "Standing", "FreeMotion", "Walk",
+    "SensorProtocol", "Framer", "Heard", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
+    "list_ports", "PortInfo", "SerialPort", "ByteSource", "CsvSerial", "Columns", "ReplaySource", "LiveSource",
+    "SourceLostError", "SourceRefusedError",
+)
+# fmt: on
+
+if not TYPE_CHECKING:  # a type checker would take any name for offered
+    __getattr__ = lazily(__name__, __all__)

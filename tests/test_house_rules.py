@@ -3,10 +3,13 @@
 import ast
 import io
 import re
+import subprocess
+import sys
 import tokenize
 import tomllib
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -63,12 +66,26 @@ def test_a_library_of_one_purpose_is_imported_by_one_file(library: str, only: st
 
 
 def test_the_opening_of_a_package_says_what_belongs_there_and_does_nothing() -> None:
-    tops = {ROOT / package / "__init__.py" for package in PACKAGES}  # app sets one switch of PySide6 and says why
+    # core and devices offer their public names, the test below; app sets one switch of PySide6 and says why
+    tops = {ROOT / package / "__init__.py" for package in PACKAGES}
     assert all(ast.get_docstring(parse(opening)) for opening in tops)
     for opening in {file for file in python_files(*PACKAGES) if file.name == "__init__.py"} - tops:
         (only,) = parse(opening).body
         assert isinstance(only, ast.Expr), opening
         assert isinstance(only.value, ast.Constant), opening
+
+
+@pytest.mark.parametrize("package", ["core", "devices"])
+def test_what_a_package_offers_is_there_and_its_opening_loads_nothing(package: str) -> None:
+    program = f"import sys, {package}; print(*{{'numpy', 'scipy', 'serial', '{package}.public'}} & set(sys.modules))"
+    ran = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert ran.stdout.strip() == ""
+    offered, public = import_module(package), import_module(f"{package}.public")
+    assert {name: getattr(offered, name) for name in offered.__all__} == {
+        name: value for name, value in vars(public).items() if not name.startswith("_")
+    }
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        _ = offered.nothing
 
 
 def test_every_module_opens_with_what_it_is_about() -> None:
