@@ -23,7 +23,8 @@ __all__ = (
     "Session", "Recording", "RecordingKind", "ImuBlock", "SensorInfo", "RateKind", "Patient", "Side", "Segment",
     "Site", "Joint",
     "identify", "SensorTracks", "spans_of_validity", "basis_of", "diagnostics_of",
-    "even_tracks", "rest_of", "oriented", "pair_up", "moving_data", "identify_as_published", "published_angle",
+    "even_tracks", "rest_of", "oriented", "OrientedTrack", "pair_up", "Pair", "moving_data",
+    "identify_as_published", "published_angle",
     "follow", "gait_of", "strides_of",
     "LiveWalk", "LiveSensor", "LiveEvents",
 )

@@ -66,12 +66,27 @@ def analyse(
 
     Parameters
     ----------
+    session
+        All recordings of one visit; what is odd about them becomes findings.
     method
         How the joints are identified and which angle is the result.
     tau_s
-        Time constant of the paper's fusion (eq 15).
+        Time constant of the fusion of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 15.
     progress
-        Told how far the analysis is; whatever it raises ends the analysis.
+        Called with how far the analysis is; whatever it raises ends the analysis.
+
+    Returns
+    -------
+    Analysis
+        Calibrations per span of validity; angles in radians and gait per recording, NaN in gaps; findings. A joint that
+        cannot be identified is missing, with a finding.
+
+    Examples
+    --------
+    >>> walk = analyse(session).recordings[-1]
+    >>> knee = walk.joints[Joint.LEFT_KNEE]
+    >>> knee.angle_rad.shape == walk.time_s.shape
+    True
     """
     quality = look_at(session)
     findings = [*session.findings, *about_session(session), *quality.findings]

@@ -49,7 +49,32 @@ class Identified:
 
 
 def identify(tracks: SensorTracks, basis: Basis, method: Method, tau_s: float) -> Identified | None:
-    """Identify one joint; None where its recordings hold too little movement."""
+    """Identify one joint; None where its recordings hold too little movement.
+
+    Parameters
+    ----------
+    tracks
+        The sensors of one span of validity.
+    basis
+        The joint, and the recordings that it is identified from.
+    method
+        Robust, or as published.
+    tau_s
+        Time constant of the fusion of Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 15; it is passed on.
+
+    Returns
+    -------
+    Identified or None
+        Unit axes (3,) and centres (3,), m, each in its own sensor's axes, and how sure they are.
+
+    Examples
+    --------
+    >>> span = spans_of_validity(session)[0]
+    >>> tracks = SensorTracks(session, span, unusable=frozenset(), rate_kind=RateKind.INSTANTANEOUS)
+    >>> basis = basis_of(span, span[-1], Joint.LEFT_KNEE)
+    >>> identify(tracks, basis, Method.ROBUST, tau_s=2.0).geometry.axis_1.shape
+    (3,)
+    """
     if method is Method.PUBLISHED:
         return _as_published(tracks, basis, tau_s)
     return _robustly(tracks, basis, tau_s)

@@ -18,6 +18,8 @@ from core.identified import identify as identify
 from core.live.sensors import LiveSensor as LiveSensor
 from core.live.walking import LiveWalk as LiveWalk
 from core.orientation import oriented as oriented
+from core.pair import OrientedTrack as OrientedTrack
+from core.pair import Pair as Pair
 from core.pair import pair_up as pair_up
 from core.published.angles import published_angle as published_angle
 from core.published.identify import identify_as_published as identify_as_published

@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 __all__ = (
     "read_session", "write_session", "FileRefusedError",
     "simulate", "WalkerSettings", "Standing", "FreeMotion", "Walk",
-    "SensorProtocol", "Framer", "Heard", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
+    "SensorProtocol", "Framer", "Heard", "Channel", "Decoder", "DecodedSensor", "SourceInfo", "SensorDetails",
     "list_ports", "PortInfo", "SerialPort", "ByteSource", "CsvSerial", "Columns", "ReplaySource", "LiveSource",
-    "SourceLostError", "SourceRefusedError",
+    "host_time_ns", "SourceLostError", "SourceRefusedError",
 )
 # fmt: on
 

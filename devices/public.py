@@ -1,10 +1,12 @@
 """The public names of `devices`, each from the module that defines it; `devices/__init__.py` says what they are."""
 
+from devices.channels import Channel as Channel
 from devices.csv_serial import Columns as Columns
 from devices.csv_serial import CsvSerial as CsvSerial
 from devices.files.refusal import FileRefusedError as FileRefusedError
 from devices.files.session_folder import read_session as read_session
 from devices.files.session_folder import write_session as write_session
+from devices.host_clock import host_time_ns as host_time_ns
 from devices.live import LiveSource as LiveSource
 from devices.live import SensorDetails as SensorDetails
 from devices.live import SourceLostError as SourceLostError

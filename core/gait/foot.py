@@ -107,7 +107,26 @@ class FootMotion:
 
 
 def follow(foot: OrientedTrack) -> FootMotion:
-    """Find every swing of a foot and how far it went. A foot that never steps has no swings."""
+    """Find every swing of a foot and how far it went. A foot that never steps has no swings.
+
+    Parameters
+    ----------
+    foot
+        One stretch without gaps of a sensor on the foot, in any mounting, its gyroscope's bias removed.
+
+    Returns
+    -------
+    FootMotion
+        Pitch (n,), rad, and velocity (n, 3), m/s, in earth axes; swings (k,) as indices of samples.
+
+    Examples
+    --------
+    >>> bias_rad_s = rest_of(standing.imu[Site.LEFT_FOOT]).gyr_rad_s
+    >>> track = even_tracks(walk.imu[Site.LEFT_FOOT])[0]
+    >>> motion = follow(oriented(track, RateKind.INSTANTANEOUS, bias_rad_s))
+    >>> len(motion.swings) >= 5
+    True
+    """
     track = foot.track
     step_s, gyr = track.step_s, track.gyr_rad_s
     earth_from_sensor = foot.earth_from_sensor

@@ -55,7 +55,25 @@ class WalkingState:
 class LiveWalk:
     """Both legs of a walking patient, block by block, with the calibration in force.
 
-    Fed a whole recording at once it tells the same as fed in blocks of any size, and so in any order of sites.
+    Fed a whole recording at once it says the same as fed in blocks of any size, and so in any order of sites.
+
+    Parameters
+    ----------
+    sensors
+        Rate, gyroscope bias (3,) in sensor axes and kind of rate of every sensor that is worn.
+    calibration
+        Of the joints whose angles are wanted, from `analyse`; joints without both sensors are passed over.
+
+    Examples
+    --------
+    >>> sensors = {
+    ...     site: LiveSensor(rate_hz=100.0, gyro_bias_rad_s=rest_of(block).gyr_rad_s)
+    ...     for site, block in standing.imu.items()
+    ... }
+    >>> live = LiveWalk(sensors, analyse(session).calibrations[-1].joints)
+    >>> state = live.update(walk.imu)  # or block by block, as samples come
+    >>> sorted(state.joints)
+    [<Joint.LEFT_ANKLE: 'left_ankle'>, <Joint.LEFT_KNEE: 'left_knee'>]
     """
 
     def __init__(self, sensors: Mapping[Site, LiveSensor], calibration: Mapping[Joint, JointCalibration]) -> None:

@@ -64,12 +64,30 @@ def read_session(folder: Path, reader: SessionReader = IN_THIS_PROCESS) -> Sessi
     Everything the folder says and everything odd about it is in the result, its recordings in the file's order.
     `Recording.imu` of a large session reads a site when asked for; then asking can raise, if a file changed since.
 
+    Parameters
+    ----------
+    folder
+        Holds session.toml and one folder per recording.
+    reader
+        Who opens the files: this process, or a limited one for folders of unknown origin.
+
+    Returns
+    -------
+    Session
+        Samples in SI units and sensor axes, stamps in seconds on each recording's clock.
+
     Raises
     ------
     FileRefusedError
         The folder is not what it says it is: see `session_toml.parse` and `site_files.read_site`; a recording's folder
         missing or outside of the session folder, a site there twice, no samples at all, more samples than their files
         can hold.
+
+    Examples
+    --------
+    >>> session = read_session(folder)
+    >>> [recording.name for recording in session.recordings]
+    ['standing', 'free motion', 'walk 1']
     """
     try:
         return _read(folder, reader)

@@ -1,0 +1,154 @@
+"""Every example runs as its page says, prints what is true of a simulated patient, and uses public names alone."""
+
+import ast
+import re
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from core.body import Joint, Side, Site
+from core.samples import ImuBlock
+from devices.emulators.csv_lines import LineVoice
+from devices.emulators.transports import Emulation, PseudoTerminal
+from devices.host_clock import host_time_ns
+from devices.walker import SimulatedSession
+from tests.examples import (
+    analyse_a_folder,
+    events_of_one_foot,
+    live_from_a_port,
+    new_file_format,
+    new_sensor,
+    published_method,
+)
+
+HERE = Path(__file__).parent
+SCRIPTS = sorted(set(HERE.glob("*.py")) - set(HERE.glob("test_*.py")) - {HERE / "conftest.py"})
+WALK, STRIDES = "walk 1", 6
+SPEED = 10  # seconds of the emulated sensor per second of the test
+G_M_S2 = 9.80665
+
+
+class FastClock:
+    """The host's clock, SPEED times as fast."""
+
+    def __init__(self) -> None:
+        self._begin_ns = host_time_ns()
+
+    def __call__(self) -> int:
+        return self._begin_ns + SPEED * (host_time_ns() - self._begin_ns)
+
+
+def walk_of(simulated: SimulatedSession, site: Site) -> ImuBlock:
+    return simulated.session.recordings[-1].imu[site]
+
+
+def numbers(printed: str, pattern: str) -> list[float]:
+    return [float(found) for found in re.findall(pattern, printed)]
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_an_example_is_a_page_and_imports_public_names_alone(script: Path) -> None:
+    source = script.read_text(encoding="utf-8")
+    assert source.count("\n") <= 72
+    assert f"python -m tests.examples.{script.stem} " in source
+    ours = [node.module for node in ast.walk(ast.parse(source)) if isinstance(node, ast.ImportFrom) and node.module]
+    assert {module for module in ours if module.split(".")[0] in {"app", "core", "devices"}} <= {"core", "devices"}
+
+
+def test_there_are_six_examples() -> None:
+    assert len(SCRIPTS) == 6
+
+
+def test_a_folder_is_analysed(simulated: SimulatedSession, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    analyse_a_folder.main(folder)
+    printed = capsys.readouterr().out
+    truth = simulated.truth.recordings[WALK].joints
+    for joint in (Joint.LEFT_KNEE, Joint.LEFT_ANKLE):
+        (range_deg,) = numbers(printed, rf"{WALK}, {joint}: range ([\d.]+) deg, sd [\d.]+ deg")
+        low, high = np.rad2deg(np.percentile(truth[joint].angle_rad, [2, 98]))
+        assert range_deg == pytest.approx(high - low, abs=1.0)
+
+
+def test_the_published_method_finds_the_range_of_a_knee(
+    simulated: SimulatedSession, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    published_method.main(folder)
+    (range_deg,) = numbers(capsys.readouterr().out, r"range ([\d.]+) deg")
+    true_rad = simulated.truth.recordings[WALK].joints[Joint.LEFT_KNEE].angle_rad
+    assert range_deg == pytest.approx(np.rad2deg(np.ptp(true_rad)), abs=3.0)
+
+
+def test_files_of_a_new_format_become_a_session(
+    simulated: SimulatedSession, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = {"thigh": Site.LEFT_THIGH, "shank": Site.LEFT_SHANK}
+    for name, site in files.items():
+        block = walk_of(simulated, site)
+        rows = np.column_stack([np.round(100 * block.time_s), np.rad2deg(block.gyr_rad_s), block.acc_m_s2 / G_M_S2])
+        kept = np.delete(rows, slice(50, 53), axis=0)
+        np.savetxt(tmp_path / f"{name}.csv", kept, delimiter=",", header="counter,gx,gy,gz,ax,ay,az", comments="")
+    session = tmp_path / "session"
+    new_file_format.main(tmp_path / "thigh.csv", tmp_path / "shank.csv", session)
+    count = len(walk_of(simulated, Site.LEFT_THIGH)) - 3
+    assert capsys.readouterr().out.splitlines() == [
+        f"left_thigh: {count} samples, 3 missing",
+        f"left_shank: {count} samples, 3 missing",
+        f"written to {session}",
+    ]
+
+
+def test_a_new_sensor_is_understood_and_its_losses_are_counted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    frames = []
+    for number in range(300):  # its counter starts anew once
+        body = new_sensor.FRAME.pack(0xA5, number % 256, number, -5, 0, 0, 0, 981, 0, 0)[:-2]
+        frames.append(body + bytes([sum(body) % 256, 0x5A]))
+    frames[20] = frames[20][:4] + b"\x7f" + frames[20][5:]  # damaged, so it is lost as well
+    del frames[100:102]
+    file = tmp_path / "bytes"
+    file.write_bytes(b"".join(frames) + frames[-1][:7])
+    new_sensor.main(file)
+    counts, last = capsys.readouterr().out.splitlines()
+    assert counts == "297 received, 3 lost, 1 damaged"
+    assert numbers(last, r"-?\d+\.\d*") == pytest.approx([2.99, -0.05, 0.0, 0.0, 0.0, 9.81])
+
+
+def test_every_stride_of_one_foot_is_found(
+    simulated: SimulatedSession, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    events_of_one_foot.main(folder)
+    *strides, swings = capsys.readouterr().out.splitlines()
+    truth = simulated.truth.recordings[WALK].feet[Side.LEFT]
+    contacts_s = truth.events.initial_contact_s
+    assert swings.startswith(f"{len(contacts_s)} swings")
+    np.testing.assert_allclose([float(line.split()[0]) for line in strides], np.diff(contacts_s), atol=0.05)
+    lengths_m = numbers("\n".join(strides), r"([\d.]+) m\b")
+    assert np.mean(lengths_m[1:-1]) == pytest.approx(1.28, abs=0.1)
+
+
+@pytest.fixture
+def port(simulated: SimulatedSession, tmp_path: Path) -> Iterator[tuple[str, FastClock]]:
+    block, clock = walk_of(simulated, Site.LEFT_FOOT), FastClock()
+    rows = np.column_stack([np.rad2deg(block.gyr_rad_s), block.acc_m_s2 / G_M_S2]).tolist()
+    voice = LineVoice(lambda number: rows[min(number, len(rows) - 1)], now_ns=clock)
+    emulation = Emulation(voice, partial(PseudoTerminal, tmp_path / "port"))
+    yield emulation.place, clock
+    emulation.close()
+
+
+def test_events_come_live_from_a_port(
+    simulated: SimulatedSession, port: tuple[str, FastClock], capsys: pytest.CaptureFixture[str]
+) -> None:
+    place, clock = port
+    block = walk_of(simulated, Site.LEFT_FOOT)
+    live_from_a_port.main(place, float(block.time_s[-1]), clock)
+    *events, cadence = capsys.readouterr().out.splitlines()
+    contacts = [event for event in events if event.startswith("initial_contact")]
+    assert len(contacts) in (STRIDES - 1, STRIDES, STRIDES + 1)  # the port may open late, and the end comes early
+    stride_s = np.median(np.diff(simulated.truth.recordings[WALK].feet[Side.LEFT].events.initial_contact_s))
+    (steps_min,) = numbers(cadence, r"cadence ([\d.]+) steps/min")
+    assert steps_min == pytest.approx(120.0 / stride_s, rel=0.05)
