@@ -1,4 +1,4 @@
-"""Which body parts carry sensors, and which two of them meet in a joint?"""
+"""Body parts that carry sensors, and the joints between them."""
 
 from enum import StrEnum
 

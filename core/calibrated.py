@@ -1,4 +1,4 @@
-"""What does each identified joint become? Its zero and its clinical sign, from standing, walking and the knee above.
+"""Zero and clinical sign of each identified joint, from standing, walking and the knee above.
 
 Knees come first, since an ankle's sign follows its knee's; an ankle without one goes by the way its foot travels.
 """

@@ -1,4 +1,4 @@
-"""Which strides did a person leave out? They leave every mean and every count, and it is said how many they are.
+"""Strides that a person left out: they leave every mean and every count, and it is said how many they are.
 
 This comes after all else: nothing is identified or measured from chosen strides, so a choice costs no new analysis.
 """

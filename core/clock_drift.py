@@ -1,4 +1,4 @@
-"""Does the clock of one sensor run faster than those of its neighbours?
+"""Sensors whose clock runs faster or slower than those of their neighbours.
 
 A walking leg repeats itself, so each of its sensors sees by itself how like every instant is to one in the middle of
 the walk. Those likenesses rise and fall together in all sensors, whatever their axes. Where one sensor's are later

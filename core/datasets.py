@@ -1,4 +1,4 @@
-"""Which samples identify a joint? The sets S(i) of eq 2, from any number of stretches and recordings."""
+"""The samples that identify a joint: the sets S(i) of eq 2, from any number of stretches and recordings."""
 
 from dataclasses import dataclass, replace
 

@@ -1,4 +1,4 @@
-"""How was one joint found, and how sure is that? The paper's pictures on this patient's own recordings.
+"""How one joint was found and how sure that is: the paper's pictures on this patient's own recordings.
 
 Nothing is decided here: the joint is identified again by the same steps and from the same samples as in `analysis`, and
 what those steps only pass on to one another is kept to be looked at.

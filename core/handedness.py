@@ -1,4 +1,4 @@
-"""Do a sensor's accelerometer and gyroscope belong to one right-handed set of axes? Its neighbours tell.
+"""Sensors whose accelerometer and gyroscope belong to no common right-handed axes, told by their neighbours.
 
 A body that turns turns as a whole: over a second and more, thigh, shank and foot turn alike about the vertical. A
 sensor whose accelerations have the wrong sign takes up for down and turns the other way round. One sensor alone cannot

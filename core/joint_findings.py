@@ -1,4 +1,4 @@
-"""What is worth telling about the joints and their angles?"""
+"""Findings about the joints and their angles."""
 
 from typing import Protocol
 

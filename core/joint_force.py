@@ -1,4 +1,4 @@
-"""What does a sensor feel of a joint's acceleration, below the frequencies at which tissue rings?
+"""What a sensor feels of a joint's acceleration, below the frequencies at which tissue rings.
 
 The specific force of the joint is R (a - b - K o), linear in what is unknown of it (Seel et al. 2014, doi
 10.3390/s140406891, eq 7). So each of its terms may be low-passed by itself, in the sensor's own earth, and two

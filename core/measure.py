@@ -1,4 +1,4 @@
-"""What do the two sensors of a joint say over a whole recording, once their axes are known?
+"""Twist of a joint over a whole recording, once the axes of its two sensors are known.
 
 Everything here is still the bare twist (distal against proximal segment about the joint axis), without clinical sign
 and zero; `analysis` turns it. Long recordings are worked through in blocks.

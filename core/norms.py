@@ -1,4 +1,4 @@
-"""What do others walk like? Cited groups, each with its source, ages, n and speed.
+"""Reference bands of cited groups, each with its source, ages, n and speed.
 
 Nothing here is called normal: laboratories differ by 5 to 7 deg in offset, and speed changes every curve. The figures
 are files of `resources`; this module is given their text.

@@ -1,4 +1,4 @@
-"""How is each sensor turned? The offline filter VQF, without magnetometer, on the rates between two samples.
+"""Orientation of each sensor by the offline filter VQF, without magnetometer, on the rates between two samples.
 
 VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014) turns the orientation from one sample to the next by the rate
 it is given. A rate of the instant of its stamp stands for half an interval before and after it, so it is averaged with

@@ -1,4 +1,4 @@
-"""What do the two sensors at one joint measure at the same instants?"""
+"""Samples of the two sensors at one joint at the same instants."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,4 @@
-"""Are the samples what they should be? Every recording is looked at before anything is computed from it."""
+"""Quality of the samples: every recording is looked at before anything is computed from it."""
 
 from dataclasses import dataclass
 

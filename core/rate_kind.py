@@ -1,4 +1,4 @@
-"""Do the rates stand for instants or for intervals? Where no sensor says so, the joints decide together.
+"""Whether rates stand for instants or for intervals; where no sensor says so, the joints decide together.
 
 Half an interval between rates and orientations is enough to make the accelerations of a joint disagree. One joint
 alone is no evidence where tissue is loose, so what all joints tell is added up.

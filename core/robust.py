@@ -1,4 +1,4 @@
-"""How far do values scatter, whatever a few of them do?"""
+"""Spread of values, whatever a few of them do."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""What was measured? One visit's recordings as they came from the sensors, in SI units and sensor axes."""
+"""What was measured: one visit's recordings as they came from the sensors, in SI units and sensor axes."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

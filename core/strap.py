@@ -1,4 +1,4 @@
-"""Has a strap slipped? A sensor that turned about its limb no longer sees the joint's axis where it was.
+"""Straps that slipped: a sensor that turned about its limb no longer sees the joint's axis where it was.
 
 In walking the axis found from a few strides wanders by ten degrees and more, for tissue and turns move it, but it does
 so alike in both sensors of the joint. What one of them has turned against the other about the limb stays within two or

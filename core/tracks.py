@@ -1,4 +1,4 @@
-"""What did each sensor measure on an even clock? Stamps with jitter and missing rows become stretches without gaps."""
+"""A sensor's samples on an even clock: stamps with jitter and missing rows become stretches without gaps."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Which recording calibrates which walk?
+"""Which recording calibrates which walk.
 
 A joint takes the latest kept standing and the latest kept free motion before the walk that hold both its sites, else
 the first after. Re-strapping ends validity: a calibration never reaches across it. (FORMATS, section 1.)

@@ -1,4 +1,4 @@
-"""What is worth telling about the strides of a walk? Those that are missing, too few or in doubt, and missing peaks."""
+"""Findings about the strides of a walk: missing, too few or doubtful ones, and missing peaks."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping

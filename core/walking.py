@@ -1,4 +1,4 @@
-"""How does each side walk in one recording? Events, phases, strides and cycles, on the recording's clock."""
+"""Events, phases, strides and cycles of each side in one walk, on the recording's clock."""
 
 from collections.abc import Mapping
 from dataclasses import fields, replace

@@ -1,4 +1,4 @@
-"""Whose sensors are understood, and how was that shown? One line per driver; `devices/search.py` finds them."""
+"""The drivers, one line each, and how each was proved; `devices/search.py` finds their sensors."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

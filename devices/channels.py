@@ -1,4 +1,4 @@
-"""What carries a sensor's bytes? A port or a socket: opened, read and closed alike."""
+"""What carries a sensor's bytes, a port or a socket: opened, read and closed alike."""
 
 import select
 import socket

@@ -1,4 +1,4 @@
-"""When was a sample taken, by the host's clock, if the sensor says when by its own?
+"""Samples stamped by the host's clock, from the sensor's own clock and the arrivals.
 
 What arrives was sent before it arrived: latency only ever delays. So the line from the device's clock to the host's
 lies below the arrivals (Zhang, Liu & Xia 2002, Clock synchronization algorithms for network measurements, IEEE INFOCOM,

@@ -1,4 +1,4 @@
-"""When did something arrive? By a clock that nobody sets, and that goes on while the machine sleeps."""
+"""The clock that arrivals are stamped by: nobody sets it, and it goes on while the machine sleeps."""
 
 import time
 

@@ -1,4 +1,4 @@
-"""Does a port send lines of numbers, and what may its columns be?
+"""Ports that send lines of numbers, and what their columns may be.
 
 Whoever built the sensor knows; what is guessed here is shown to be confirmed, never used unseen.
 """

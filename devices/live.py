@@ -1,4 +1,4 @@
-"""What does a program that records need of a source that sends now: a port, a network inlet, a simulated patient?"""
+"""What a program that records needs of a source that sends now: a port, a network inlet, a simulated patient."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

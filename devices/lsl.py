@@ -1,4 +1,4 @@
-"""Which streams of Lab Streaming Layer can be heard, and what do their samples say?
+"""Streams of Lab Streaming Layer: which can be heard, and what their samples hold.
 
 Many programs send through it: Consensys (Shimmer), BrainVision, OpenViBE, a lab's own. A stream tells the labels and
 units of its channels; what is a rate or a force is found by these and asked for where it is not told. Stamps are the

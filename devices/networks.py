@@ -1,4 +1,4 @@
-"""In which networks is this computer, by its own addresses there? Asked of the system; nobody else is asked."""
+"""This computer's own addresses in its networks, asked of the system; nobody else is asked."""
 
 import socket
 import struct

@@ -1,4 +1,4 @@
-"""Which serial ports are there, and why does one not open? The only file that knows the serial library."""
+"""Serial ports: which there are, and why one does not open. The only file that knows the serial library."""
 
 import errno
 import os

@@ -1,4 +1,4 @@
-"""Which sensors can be heard now? At ports, where x-IMU3s announce themselves, and in streams that are asked for."""
+"""Search for sensors at ports, where x-IMU3s announce themselves, and in streams that are asked for."""
 
 import json
 import socket

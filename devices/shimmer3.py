@@ -1,4 +1,4 @@
-"""How does one speak with a Shimmer3 (LogAndStream firmware, Bluetooth serial), and what do its packets tell?
+"""Driver of Shimmer3 sensors (LogAndStream firmware, Bluetooth serial): commands, and what their packets hold.
 
     00 time (3 bytes, 32768 Hz) channels in the order that an inquiry tells [checksum (2 bytes)]
 

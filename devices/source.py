@@ -1,4 +1,4 @@
-"""What must be known of a source so that its bytes can be read again, and what does reading them again bring?
+"""What has to be known of a source so that its bytes can be read again, and what that brings.
 
 A driver's decoder makes samples of bytes; it is the same one live and when a journal is read, so it may use nothing but
 what a `SourceInfo` holds and the bytes themselves.

@@ -1,4 +1,4 @@
-"""What is asked of the simulated patient, and what body does a seed give?"""
+"""Settings of the simulated patient, and the body that a seed gives."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

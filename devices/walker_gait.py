@@ -1,4 +1,4 @@
-"""How does a leg stand and walk, so that its foot never slides and its knee bends as a human's does?
+"""Standing and walking of a simulated leg, whose foot never slides and whose knee bends as a human's does.
 
 The order of things for one leg: when and where the foot stands (`StepPlan`); the forward path of the hips, shared by
 both legs; the knee curve; the pitch of the foot while it rolls over heel, sole and toe. These give the ankle in stance.

@@ -1,4 +1,4 @@
-"""How do the segments of one leg stand and turn at every instant, from joint angles?"""
+"""Poses of the segments of one leg at every instant, from joint angles."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What does a sensor strapped to a moving segment record?
+"""What a simulated sensor records that is strapped to a moving segment.
 
 Rates and specific forces come from the sensor's poses alone, by differences of fourth order on the fine clock.
 """

@@ -1,4 +1,4 @@
-"""What is true of a simulated session, joint by joint and foot by foot?"""
+"""What is true of a simulated session, joint by joint and foot by foot."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

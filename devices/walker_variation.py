@@ -1,4 +1,4 @@
-"""How does gait vary from stride to stride, over a walk, from walk to walk and from strapping to strapping?"""
+"""How simulated gait varies from stride to stride, over a walk, from walk to walk and from strapping to strapping."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""What is in the messages of Xsens' Xbus protocol, which MTi sensors speak?
+"""Messages of Xsens' Xbus protocol, which MTi sensors speak.
 
     FA FF identifier length [length of 16 bits, if FF] data checksum
 

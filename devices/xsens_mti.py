@@ -1,4 +1,4 @@
-"""How does one speak with an Xsens MTi, and what do its messages tell?
+"""Driver of Xsens MTi sensors: how they are set up, and what their messages hold.
 
 Samples are put in order and stamped by the sensor's fine clock, of messages with rate and acceleration only: those with
 what the satellites told come late and carry an earlier time. A rate is the mean over the interval before its stamp, for

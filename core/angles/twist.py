@@ -1,4 +1,4 @@
-"""How far is the joint bent? The twist of the relative orientation about the joint axis.
+"""The joint angle: the twist of the relative orientation about the joint axis.
 
 On a human joint the integral of g1.j1 - g2.j2 (eq 11) collects what moves beside the axis; the twist does not.
 """

@@ -1,1 +1,1 @@
-"""How do the sensors sit on the joints? The robust identification, one step per module."""
+"""The robust identification of how two sensors sit on a joint, one step per module."""

@@ -1,4 +1,4 @@
-"""How sure are axes and angles? Honest figures, from how the residuals hang together in time plus a measured floor."""
+"""Standard deviations of axes and angles, from residuals correlated in time plus a measured floor."""
 
 import numpy as np
 

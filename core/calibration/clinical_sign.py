@@ -1,4 +1,4 @@
-"""Which way is flexion? Found from how people stand and walk, never asked.
+"""The sign of flexion, found from how people stand and walk, never asked.
 
 A knee bends one way only from standing, and in walking the shank swings forward faster than back. At the ankle,
 dorsiflexion turns the other way about the same line as knee flexion.

@@ -1,4 +1,4 @@
-"""Do both sensors feel the same acceleration at the joint? The test that tells true candidates from mirror images.
+"""The coincidence of both sensors' accelerations at the joint, which sorts true candidates from mirror images.
 
 With the centres o and the accelerometer biases b, a1 - b1 - K1 o1 = R12 (a2 - b2 - K2 o2), K(g) = [g]x[g]x + [g']x: the
 vector form of Seel et al. 2014, eq 7, linear in all unknowns once the relative orientation R12 is known. What decides

@@ -1,4 +1,4 @@
-"""How do the headings of the two orientation filters differ over a recording, once the axes are known?"""
+"""Relative heading of the two orientation filters over a recording, once the axes are known."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Is the joint a true hinge? Then the published constraint, from a good start, finds its axis best.
+"""Test for a true hinge, whose axis the published constraint finds best from a good start.
 
 On a hinge the rates of both sensors have the same length across the axis (Seel et al. 2014, doi 10.3390/s140406891,
 eqs 3 and 6), whatever the headings. On a human joint that length is biased by everything else that moves, so it is

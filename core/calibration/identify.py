@@ -1,4 +1,4 @@
-"""How do two sensors sit on their joint? The robust identification, step by step."""
+"""The robust identification of how two sensors sit on their joint, step by step."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace

@@ -1,4 +1,4 @@
-"""Along which direction of each sensor does the joint bend, and how do the two headings compare?
+"""Joint axes in both sensors' axes, and the relative heading of their orientation filters.
 
 The relative rate of the two segments points along the joint axis in both sensors, and the axis itself is the same
 line seen from both: j1 = R12 j2. The unknowns are the two axes and the relative heading; the heading enters the

@@ -1,4 +1,4 @@
-"""Where does the joint lie, seen from each sensor? Vectors o from the joint to the sensor, in sensor axes."""
+"""Joint centres seen from each sensor: vectors o from the joint to the sensor, in sensor axes."""
 
 import math
 from dataclasses import dataclass

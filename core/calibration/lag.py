@@ -1,4 +1,4 @@
-"""How late is the distal sensor's clock? Found from accelerations, which see a shift of a millisecond.
+"""Lag of the distal sensor's clock, found from accelerations, which see a shift of a millisecond.
 
 The rates' own criterion (eq 3) invents lags of tens of milliseconds at joints that are no perfect hinge.
 """

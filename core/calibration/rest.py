@@ -1,4 +1,4 @@
-"""When does a sensor lie still, and what does it read then?"""
+"""Stretches in which a sensor lies still, and what it reads then."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What does the joint read in standing? From gravity alone, seen in both joint planes."""
+"""What the joint reads in standing, from gravity alone, seen in both joint planes."""
 
 import numpy as np
 

@@ -1,1 +1,1 @@
-"""What does walking look like? One clinical question per module; no joint is identified and no angle computed here."""
+"""Gait events, phases, strides and figures of one or both feet; no joint is identified and no angle computed here."""

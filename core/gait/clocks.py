@@ -1,4 +1,4 @@
-"""Do the sensors of both legs tell one time? Without that, no instant of one leg may be set against one of the other.
+"""Evidence of a common clock of both legs: without one, no instant of a leg may be set against one of the other.
 
 Within a leg the joints' motion ties the clocks of its sensors; between the legs nothing does but a clock that they
 share, or stamps that were fitted to one. A stamp proves a common clock only where it carries more than the sample's

@@ -1,4 +1,4 @@
-"""Where does a signal pass a level, and where does it begin to grow? Between samples, as indices."""
+"""Where a signal passes a level and where it begins to grow, between samples, as indices."""
 
 from dataclasses import dataclass
 

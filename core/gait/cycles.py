@@ -1,4 +1,4 @@
-"""How does a joint move over a stride? Angles over 0-100 % of each stride, their mean, the peaks a clinician reads."""
+"""Joint angles over 0-100 % of each stride, their mean, and the peaks a clinician reads."""
 
 from dataclasses import dataclass
 

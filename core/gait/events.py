@@ -1,4 +1,4 @@
-"""When does a foot land and leave? Four events of every swing, from the pitch rate of the foot.
+"""Four events of every swing of a foot, from its pitch rate: heel rise, toe-off, initial and full contact.
 
 One definition of each event, for any speed and sampling rate; levels follow each foot's own peaks:
 

@@ -1,4 +1,4 @@
-"""How does a foot travel from one stance to the next? Its swings, its pitch and its velocity, in any mounting.
+"""Swings, pitch and velocity of a foot from one stance to the next, in any mounting.
 
 Between two steps every foot comes to rest, or nearly so: the calmest instant of each stance anchors everything. From
 stance to stance the specific force is integrated and what velocity is left in the next is taken off (zero-velocity

@@ -1,4 +1,4 @@
-"""How does a foot turn and travel, sample by sample? Its pitch axis and its speed since it last stood, in any mounting.
+"""Pitch axis of a foot and its speed since it last stood, sample by sample, in any mounting.
 
 What `core.gait.foot` does with a whole walk, causally. In plain floats: a sample costs some microseconds, an array of
 three alone would cost more.

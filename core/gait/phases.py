@@ -1,4 +1,4 @@
-"""In which phase is a foot at each instant? Loading, foot flat, pre-swing, swing (references 34 and 35 of the paper).
+"""The phase of a foot at each instant: loading, foot flat, pre-swing, swing (references 34 and 35 of the paper).
 
 Pre-swing is heel rise to toe-off, not Perry's, which starts at the other foot's contact.
 """

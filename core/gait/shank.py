@@ -1,4 +1,4 @@
-"""When does a foot land and leave, if only the shank wears a sensor? Initial contact and toe-off, less sure and marked.
+"""Initial contact and toe-off where only the shank wears a sensor: less sure, and marked.
 
 In swing the shank turns fast and forward; toe-off is the trough of its rate before (Salarian et al. 2004,
 doi 10.1109/TBME.2004.827933). Their trough after it is blurred by the shock of landing: initial contact is taken

@@ -1,4 +1,4 @@
-"""When does a foot's sole begin to travel over the floor, and when does it cease to? Where pitch tells no contact.
+"""When a foot's sole begins and ceases to travel over the floor, for contacts that pitch does not show.
 
 A foot that stands may roll, and the point that it rolls on keeps still: what its sensor does is the rolling. Taking
 the rolling off the sensor's velocity leaves that of the sole, in any way of landing and leaving: heels first, toes

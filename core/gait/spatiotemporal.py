@@ -1,4 +1,4 @@
-"""How fast, how far, how evenly? Time and distance of both feet's strides."""
+"""Time and distance of both feet's strides, and how much they vary."""
 
 from dataclasses import dataclass
 

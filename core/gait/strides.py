@@ -1,4 +1,4 @@
-"""Which strides did a foot make, and which of them tell how the patient walks?
+"""The strides of a foot, and which of them show how the patient walks.
 
 A stride leads from one initial contact to the next of the same foot. Starts, stops, turns, pauses, gaps, doubtful
 events and outliers keep their stride out of averages, each with its reason; nothing is dropped in silence.

@@ -1,4 +1,4 @@
-"""How alike are the two sides, and how like a reference group?"""
+"""Likeness of the two sides, and of one side with a reference group."""
 
 import numpy as np
 

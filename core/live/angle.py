@@ -1,4 +1,4 @@
-"""How far is a joint bent right now? The twist of the causal orientations; on a true hinge the rates' angle.
+"""Angle of a joint as it moves: the twist of the causal orientations; on a true hinge the rates' angle.
 
 Two causal forms were measured against the offline result (tests/benchmarks/live_angle.py). On a human joint the twist
 is better: there the rates' integral collects off-axis motion, and tissue keeps the accelerations of both segments from

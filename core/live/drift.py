@@ -1,4 +1,4 @@
-"""An angle that wanders slowly and is seen only roughly: where does it stand now?"""
+"""Estimator of an angle that wanders slowly and is seen only roughly."""
 
 from collections import deque
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""How well would this free motion identify a joint, were it stopped now, and which motion is missing?
+"""How well a free motion would identify a joint, were it stopped now, and which motion is missing.
 
 Every tenth of a second, from what the calibration itself uses: for the axis the relative rate under all relative
 headings, for the centre eq 8 of Seel et al. 2014 (doi 10.3390/s140406891) with the accelerometers' biases and the

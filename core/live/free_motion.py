@@ -1,4 +1,4 @@
-"""How well does the free motion show the joints, while it lasts, and what is missing? All joints of both legs."""
+"""How well a free motion shows all joints of both legs while it lasts, and what is missing."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,4 +1,4 @@
-"""Along which lines does a joint bend, for every relative heading there could be, and which headings fit?
+"""Axes of a joint for every relative heading there could be, and which headings fit.
 
 The relative rate of two segments and the accelerations of their joint depend on the relative heading d only through
 cos d, sin d and a constant, so a few sums over the samples hold what all headings say. The offline identification

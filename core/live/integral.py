@@ -1,4 +1,4 @@
-"""How far is a true hinge bent? The integral of the rates, whose slow drift the joint's accelerations show.
+"""Angle of a true hinge: the integral of the rates, whose slow drift the joint's accelerations show.
 
 Seel et al. 2014, doi 10.3390/s140406891, eqs 11 to 14, and instead of eq 15 a Kalman filter of the drift and of the
 relative bias behind it: the causal form of `core.angles.hinge_angle`.

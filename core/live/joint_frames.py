@@ -1,4 +1,4 @@
-"""How do the frames of a joint's two sensors stand to each other? The algebra of `core.angles.twist`, quick for blocks.
+"""Frames of a joint's two sensors against each other: the algebra of `core.angles.twist`, quick for blocks.
 
 A joint frame is (x, y, j) of eq 13, z along the axis. The unit quaternion w + x i + y j + z k that turns it into the
 earth is kept as two complex numbers, u = w + i z and v = x + i y (Cayley and Klein's parameters). A turn of the earth

@@ -1,4 +1,4 @@
-"""How late is the distal sensor's clock? Looked at every few seconds of a free motion, as offline."""
+"""Lag of the distal sensor's clock, looked for every few seconds of a free motion, as offline."""
 
 from collections import deque
 from dataclasses import dataclass

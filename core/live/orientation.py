@@ -1,4 +1,4 @@
-"""How is each sensor turned, as its samples come in? The causal filter VQF, without magnetometer.
+"""Orientation of each sensor as its samples come in, by the causal filter VQF, without magnetometer.
 
 VQF as in `core.orientation` (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014), whose offline form knows the
 future. Two of its settings are our own, measured on simulated walks against the offline result.

@@ -1,4 +1,4 @@
-"""What did both sensors of a joint measure at the same instants, as their samples come in?"""
+"""Samples of both sensors of a joint at the same instants, as they come in."""
 
 from collections.abc import Collection
 from dataclasses import dataclass

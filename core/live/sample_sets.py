@@ -1,4 +1,4 @@
-"""Which samples tell about a joint while it moves? A set S(i) of both sensors every tenth of a second (eq 2)."""
+"""The samples that identify a joint while it moves: a set S(i) of both sensors every tenth of a second (eq 2)."""
 
 from collections import deque
 from collections.abc import Iterator

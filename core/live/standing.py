@@ -1,4 +1,4 @@
-"""Does the patient stand still, which sensor moved, and what do the sensors read meanwhile?
+"""Whether the patient stands still, which sensor moved, and what the sensors read meanwhile.
 
 The limits of stillness are those of `core.calibration.rest`; what is found is what that module finds in the samples
 since the last movement.

@@ -1,4 +1,4 @@
-"""What did one sensor measure on an even clock, as its samples come in? The rules of `core.tracks`, causally."""
+"""One sensor's samples on an even clock as they come in: the rules of `core.tracks`, causally."""
 
 from dataclasses import dataclass
 

@@ -1,4 +1,4 @@
-"""What does the walking patient do right now? Angles, phases and steps of both legs, and straps that slip."""
+"""Angles, phases and steps of both legs of a walking patient as they happen, and straps that slip."""
 
 from collections import deque
 from collections.abc import Mapping

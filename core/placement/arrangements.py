@@ -1,4 +1,4 @@
-"""Of all ways to put the sensors on the sites, which lets the fewest strangers share a joint?"""
+"""All ways to put the sensors on the sites, ranked by how well neighbours share their joints."""
 
 from collections.abc import Generator, Mapping
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Which sensors make up a leg, which end of it is up, and which leg moved first? Found without any label."""
+"""Sensors arranged to legs without any label: which make up one, which end is up, which leg moved first."""
 
 from collections.abc import Generator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Do the labels contradict the motion? Then which sensors seem to have been exchanged?"""
+"""Labels that contradict the motion, and which sensors seem to have been exchanged."""
 
 from collections.abc import Generator, Mapping
 

@@ -1,4 +1,4 @@
-"""Do two sensors share a joint? The acceleration that both feel there must be the same (Seel et al. 2014, eq 7)."""
+"""Test of two sensors for a common joint: both must feel the same acceleration there (Seel et al. 2014, eq 7)."""
 
 from dataclasses import dataclass
 

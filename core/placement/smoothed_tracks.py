@@ -1,4 +1,4 @@
-"""What does every sensor feel at the same instants, smooth enough that neighbours can be told from strangers?
+"""Smoothed terms of every sensor at the same instants, which show neighbours from strangers.
 
 Everything here is linear in the unknowns of a joint, so it may be averaged over time first. That takes away what
 tissue, impacts and small lags do between two neighbours, and leaves the slow swing of the limbs, which strangers do not

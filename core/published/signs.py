@@ -1,4 +1,4 @@
-"""Do the two axes point the same way? The projected rates are congruent when they do, mirror images when not.
+"""Pairing of the two axes' signs: the projected rates are congruent when they match, mirror images when not.
 
 Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, section 3.1.2 and Figure 4: at times when little happens about
 the joint axis, the rates in the two joint planes are the same curve up to a rotation.

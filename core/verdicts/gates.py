@@ -1,4 +1,4 @@
-"""Which gates does a recording pass? From what was measured to a verdict per joint, leg and kind of quantity.
+"""The gates that a recording passes: from what was measured to a verdict per joint, leg and kind of quantity.
 
 Every limit stands in `LIMITS`, each with its reason; a reason in a verdict carries the value found beside its limit.
 """

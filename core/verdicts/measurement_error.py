@@ -1,4 +1,4 @@
-"""By how much do two means have to differ before anything differs but chance, drift, clocks and straps?
+"""By how much two means have to differ before more than chance, drift, clocks and straps is behind it.
 
 Of one mean u^2 = se^2 + d^2 + c^2: its standard error with the strides' correlation, half of what the walk's halves
 or thirds differ by, and what the lag's uncertainty makes of it. Of a difference U^2 = u1^2 + u2^2 + v^2 + 2 sigma^2

@@ -1,4 +1,4 @@
-"""Which figures does a walk give, and which verdict does each rest on? Values per stride, empty where withheld."""
+"""The figures of a walk and the verdict that each rests on; values per stride, empty where withheld."""
 
 import math
 from collections.abc import Mapping

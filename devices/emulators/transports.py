@@ -1,4 +1,4 @@
-"""Where does an emulated sensor speak? At the far end of a pseudo-terminal, of a TCP connection, of a UDP port."""
+"""Far ends where an emulated sensor speaks: of a pseudo-terminal, a TCP connection, a UDP port."""
 
 import contextlib
 import os

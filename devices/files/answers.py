@@ -1,4 +1,4 @@
-"""How does what a limited process read come back, so that nothing of it has to be trusted?
+"""Answers of a limited process, written so that nothing in them has to be trusted.
 
 An answer is JSON, then the arrays that it names by number, as raw bytes. Nothing is unpickled: whoever receives it
 builds every object anew, and refuses with `BrokenAnswerError` what has not the shape it should have.

@@ -1,4 +1,4 @@
-"""Which file belongs to which site, and how do imported samples join a session?"""
+"""Files assigned to sites, and imported samples joined to a session."""
 
 import re
 from collections.abc import Callable, Collection, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""How are files of others read without trusting them? By a process of its own, with limits, that may end at any time.
+"""Reading of foreign files without trust: in a process of its own, with limits, that may end at any time.
 
 One process reads all files of this program, one after the other. It is renewed after `FILES_EACH` files and whenever it
 ended: a file that takes too much memory or time, or that ends its reader, is refused like any other, in one line.

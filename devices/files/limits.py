@@ -1,4 +1,4 @@
-"""What may a process that reads foreign files not do?
+"""Limits of a process that reads foreign files.
 
 What holds where:
 

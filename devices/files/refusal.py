@@ -1,4 +1,4 @@
-"""What do we say when a file is not what it says it is?"""
+"""The refusal of a file that is not what it says it is."""
 
 from collections.abc import Mapping
 

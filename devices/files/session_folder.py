@@ -1,4 +1,4 @@
-"""How is one visit read from a session folder, and written into one?
+"""Session folders, read and written: one visit each.
 
 The folder is a public interface: `session.toml` and, per recording, a folder with one table per site. Reading checks
 every file whole, so that nothing is refused later, in the middle of an analysis. Beyond `HELD_BYTES` of files the

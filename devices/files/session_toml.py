@@ -1,4 +1,4 @@
-"""What does `session.toml` say about a session, and how is it said again?
+"""`session.toml`, read to a session and written from one.
 
 Every key that means something stands in one of the tables below, once, with the check that its value must pass. What
 stands in none of them is unknown: it is kept where it was, with a finding.

@@ -1,4 +1,4 @@
-"""How does one sensor's file become a block of samples, and the other way round?"""
+"""One sensor's file read to a block of samples, and written from one."""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence

@@ -1,4 +1,4 @@
-"""Which columns does a file hold, and which of its lines is at fault?
+"""Tables read from files: their columns, and which line is at fault.
 
 CSV and Parquet, read by Arrow. When Arrow cannot read a text, a slow pass over its lines finds the one to name.
 """

@@ -1,4 +1,4 @@
-"""What did Xsens MT Manager export? One text per sensor, all of one trial on one packet counter.
+"""Exports of Xsens MT Manager: one text per sensor, all of one trial on one packet counter.
 
 The matrix is written by columns and earth from sensor: Mat[i][j] is row i, column j, and turns the specific force of a
 sensor at rest to earth z. Euler angles are degrees, turned about z (yaw), then y, then x. The rates of MTw sensors are
