@@ -63,8 +63,10 @@ class Joint(StrEnum):
 
 
 def knee_of(side: Side) -> Joint:
+    """The knee of one side."""
     return Joint(f"{side}_knee")
 
 
 def ankle_of(side: Side) -> Joint:
+    """The ankle of one side."""
     return Joint(f"{side}_ankle")

@@ -91,6 +91,11 @@ def diagnostics_of(
         The joint's, as `analyse` found it for that recording.
     tau_s
         Time constant of the paper's fusion (eq 15).
+
+    Returns
+    -------
+    JointDiagnostics or None
+        Angles in rad, rates in rad/s, axes in sensor axes.
     """
     span = next((s for s in spans_of_validity(session) if any(r.name == recording_name for r in s)), None)
     if span is None:

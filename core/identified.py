@@ -199,6 +199,11 @@ def clock_moved_s(tracks: SensorTracks, recording: Recording, found: Identified)
     """How far the distal clock of one recording is from where the identification found it, 0 where it is not.
 
     One lag holds for all recordings of a joint; one whose own accelerations ask for another is worth telling.
+
+    Returns
+    -------
+    float
+        s.
     """
     geometry, joint = found.geometry, found.basis.joint
     pairs = pairs_of(tracks, recording, joint, tracks.blocks(recording)[0], geometry.lag_s)

@@ -72,6 +72,11 @@ def joint_force(
         Angular rate, angular acceleration (NaN where unknown) and specific force, in sensor axes.
     earth_from : (n, 3, 3)
     is_heard : (n,)
+
+    Returns
+    -------
+    JointForce
+        Terms in the sensor's own earth axes.
     """
     is_known = is_heard & np.isfinite(acceleration[:, 0])
     # one signal after the other, which is several times faster than one sample after the other

@@ -66,7 +66,18 @@ class Twist:
 
 
 def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Block, lag_s: float) -> list[Pair]:
-    """All stretches of one block in which both sensors of a joint were heard."""
+    """All stretches of one block in which both sensors of a joint were heard.
+
+    Parameters
+    ----------
+    lag_s
+        What is added to the distal sensor's stamps.
+
+    Returns
+    -------
+    list of Pair
+        In order of time, on the proximal sensor's clock.
+    """
     key = (recording.name, joint, lag_s)
     if block.number or key not in tracks.pairs:
         proximal, distal = (tracks.oriented(recording, site, block) for site in (joint.proximal, joint.distal))
@@ -80,7 +91,18 @@ def pairs_of(tracks: SensorTracks, recording: Recording, joint: Joint, block: Bl
 
 
 def paired(proximal: list[OrientedTrack], distal: list[OrientedTrack], lag_s: float) -> list[Pair]:
-    """All stretches in which both sensors of a joint were heard, the distal one's stamps moved by a lag."""
+    """All stretches in which both sensors of a joint were heard, the distal one's stamps moved by a lag.
+
+    Parameters
+    ----------
+    lag_s
+        What is added to the distal sensor's stamps.
+
+    Returns
+    -------
+    list of Pair
+        In order of time, on the proximal sensor's clock.
+    """
     pairs = [pair_up(one, two, lag_s) for one in proximal for two in distal]
     return [pair for pair in pairs if pair is not None]
 
@@ -97,8 +119,15 @@ def measure(
 
     Parameters
     ----------
+    time_s : (n,)
+        Ascending stamps of the recording.
     clock_offset_s
         What brings the proximal sensor's clock to the clock of `time_s`.
+
+    Returns
+    -------
+    Twist
+        Angles in rad at `time_s`, NaN where unknown.
     """
     angles = {name: np.full(len(time_s), np.nan) for name in ("twist", "published", "orientation", "broken_sd")}
     witnesses: list[tuple[FloatArray, ...]] = []
@@ -172,7 +201,13 @@ def _place(
 
 
 def unwrap_over_gaps(angle_rad: FloatArray) -> None:
-    """Take jumps of whole turns out of an angle (n,) with gaps, in place."""
+    """Take jumps of whole turns out of an angle (n,) with gaps, in place.
+
+    Parameters
+    ----------
+    angle_rad : (n,)
+        NaN in gaps; changed in place.
+    """
     heard = np.flatnonzero(np.isfinite(angle_rad))
     if len(heard):
         angle_rad[heard] = np.unwrap(angle_rad[heard])

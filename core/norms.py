@@ -155,12 +155,24 @@ class Bands:
 
 
 def froude_number(speed_m_s: float, leg_length_m: float) -> float:
-    """Speed told in the length of the leg, so that short and tall people who walk alike have one number."""
+    """Speed told in the length of the leg, so that short and tall people who walk alike have one number.
+
+    Returns
+    -------
+    float
+        Without unit.
+    """
     return speed_m_s**2 / (GRAVITY_M_S2 * leg_length_m)
 
 
 def class_of_speed(speed_m_s: float, height_m: float | None) -> str | None:
-    """Slow, comfortable or fast; None where without a height the legs of adults leave both open."""
+    """Slow, comfortable or fast; None where without a height the legs of adults leave both open.
+
+    Returns
+    -------
+    str or None
+        The class's name in the reference group.
+    """
     lengths_m = LEG_LENGTHS_M if height_m is None else (LEG_PER_HEIGHT * height_m,)
     found = {_class_of(froude_number(speed_m_s, length_m)) for length_m in lengths_m}
     return found.pop() if len(found) == 1 else None
@@ -169,7 +181,13 @@ def class_of_speed(speed_m_s: float, height_m: float | None) -> str | None:
 def choose_bands(
     curves: ReferenceCurves, classes: tuple[ReferenceValues, ...], speed_m_s: float, who: AgeAndHeight
 ) -> Bands:
-    """The bands of adults who walked as fast for their legs; of the curves those near in speed as well."""
+    """The bands of adults who walked as fast for their legs; of the curves those near in speed as well.
+
+    Returns
+    -------
+    Bands
+        Degrees over percent of the stride, and values in their own units.
+    """
     if who.age_years is not None and who.age_years < ADULT_FROM_YEARS:
         return Bands(None, None, NoBand.CHILD, NoBand.CHILD)
     if not np.isfinite(speed_m_s):
@@ -186,7 +204,18 @@ def choose_bands(
 
 
 def height_offset_deg(curve_deg: FloatArray, group_mean_deg: FloatArray) -> float:
-    """How much higher than the group's a curve (101,) lies as a whole: the median of their difference."""
+    """How much higher than the group's a curve (101,) lies as a whole: the median of their difference.
+
+    Parameters
+    ----------
+    curve_deg, group_mean_deg : (101,)
+        Mean cycles.
+
+    Returns
+    -------
+    float
+        Degrees.
+    """
     return float(np.median(curve_deg - group_mean_deg))
 
 
@@ -207,6 +236,11 @@ def peak_away_sd(
         Mean and SD of the group (101,), degrees.
     at
         Percent of the stride where the group's mean has this peak.
+
+    Returns
+    -------
+    float
+        Standard deviations of the group.
     """
     mean_deg, sd_deg = band
 

@@ -19,6 +19,16 @@ def oriented(track: Track, rate_kind: RateKind, gyro_bias_rad_s: FloatArray) -> 
     """Take the gyroscope's bias (3,) off and find the orientation; its heading starts anywhere and may drift.
 
     The rates of the result stand for the instants of their stamps, whatever the device sent.
+
+    Parameters
+    ----------
+    gyro_bias_rad_s : (3,)
+        In sensor axes.
+
+    Returns
+    -------
+    OrientedTrack
+        Earth from sensor, earth z up, by VQF (Laidig & Seel 2023, doi 10.1016/j.inffus.2022.10.014).
     """
     rates = track.gyr_rad_s - gyro_bias_rad_s
     if rate_kind is RateKind.AVERAGED:
@@ -64,7 +74,18 @@ def oriented_to_north(track: Track) -> OrientedTrack | None:
 
 
 def interval_rates(rates: FloatArray) -> FloatArray:
-    """Mean of each rate and its predecessor: the rate over the interval before each sample."""
+    """Mean of each rate and its predecessor: the rate over the interval before each sample.
+
+    Parameters
+    ----------
+    rates : (n, 3)
+        rad/s, at the instants of their stamps.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s.
+    """
     mean = rates.copy()
     mean[1:] += rates[:-1]
     mean[1:] *= 0.5

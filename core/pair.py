@@ -80,7 +80,18 @@ class Pair:
 
 
 def moving_mean(values: FloatArray, width: int) -> FloatArray:
-    """Centred mean of (n, ...) over up to `width` samples, fewer at the borders."""
+    """Centred mean of (n, ...) over up to `width` samples, fewer at the borders.
+
+    Parameters
+    ----------
+    values : (n, ...)
+        In any unit.
+
+    Returns
+    -------
+    (n, ...)
+        In that unit.
+    """
     total = np.zeros((len(values) + 1, *values.shape[1:]))
     np.cumsum(values, axis=0, out=total[1:])
     index = np.arange(len(values))
@@ -93,6 +104,16 @@ def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
     """Derivative (n, 3) of rates on an even clock, unknown (NaN) for two samples at each end.
 
     Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 1.
+
+    Parameters
+    ----------
+    rate : (n, 3)
+        rad/s, in sensor axes.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s2, in sensor axes.
     """
     derivative = np.full_like(rate, np.nan)
     derivative[2:-2] = (rate[:-4] - 8 * rate[1:-3] + 8 * rate[3:-1] - rate[4:]) / (12 * step_s)
@@ -100,7 +121,20 @@ def angular_acceleration(rate: FloatArray, step_s: float) -> FloatArray:
 
 
 def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArray:
-    """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3)."""
+    """K with K o the acceleration of a point at o about the joint (Seel et al. 2014, eq 7); (..., 3, 3).
+
+    Parameters
+    ----------
+    rate : (..., 3)
+        rad/s, in sensor axes.
+    angular_acceleration : (..., 3)
+        rad/s2, in sensor axes.
+
+    Returns
+    -------
+    (..., 3, 3)
+        1/s2.
+    """
     matrix = rate[..., :, None] * rate[..., None, :]
     square = np.sum(rate**2, axis=-1)
     for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):  # [g]x[g]x = g g' - |g|^2
@@ -111,7 +145,22 @@ def lever_matrix(rate: FloatArray, angular_acceleration: FloatArray) -> FloatArr
 
 
 def lever_acceleration(rate: FloatArray, angular_acceleration: FloatArray, lever_m: FloatArray) -> FloatArray:
-    """K o (n, 3) of one lever o (3,)."""
+    """K o (n, 3) of one lever o (3,).
+
+    Parameters
+    ----------
+    rate : (n, 3)
+        rad/s, in sensor axes.
+    angular_acceleration : (n, 3)
+        rad/s2, in sensor axes.
+    lever_m : (3,)
+        In sensor axes.
+
+    Returns
+    -------
+    (n, 3)
+        m/s2, in sensor axes.
+    """
     along, square = rate @ lever_m, np.sum(rate**2, axis=1)
     return along[:, None] * rate - square[:, None] * lever_m - angular_acceleration @ cross_matrix(lever_m).T
 
@@ -123,6 +172,11 @@ def pair_up(proximal: OrientedTrack, distal: OrientedTrack, lag_s: float) -> Pai
     ----------
     lag_s
         What is added to the distal sensor's stamps.
+
+    Returns
+    -------
+    Pair or None
+        Both sensors at the proximal one's samples, each in its own axes.
     """
     one, two = proximal.track, distal.track
     first = max(0, int(np.ceil((two.start_s + lag_s - one.start_s) / one.step_s - 1e-6)))
@@ -157,10 +211,19 @@ def pair_of(
 
     Parameters
     ----------
+    time_s : (n,)
+        Even instants, `step_s` apart.
     rates, forces : two of (n, 3)
         Proximal and distal, in sensor axes.
     orientations : two of (n, 4)
         Earth from sensor.
+    is_measured : (n,)
+        False where a sample was interpolated over a gap.
+
+    Returns
+    -------
+    Pair
+        Each sensor in its own axes.
     """
     one, two = (
         OrientedTrack(Track(float(time_s[0]), step_s, rate, force, None, None, is_measured), q)

@@ -163,7 +163,13 @@ def _lengths(vectors: FloatArray) -> FloatArray:
 
 
 def lost_percent(block: ImuBlock) -> float:
-    """How many of a sensor's samples are missing, to its own rate; 100 where next to none was heard."""
+    """How many of a sensor's samples are missing, to its own rate; 100 where next to none was heard.
+
+    Returns
+    -------
+    float
+        Percent.
+    """
     heard_s = block.time_s[is_heard(block.time_s, block.gyr_rad_s, block.acc_m_s2)]
     return _missing_percent(block, heard_s, nominal_step_s(heard_s)) if len(heard_s) >= MIN_STRETCH_SAMPLES else 100.0
 

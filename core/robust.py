@@ -6,7 +6,18 @@ from core.samples import FloatArray
 
 
 def robust_sd(values: FloatArray) -> float:
-    """Standard deviation by the median of the absolute values."""
+    """Standard deviation by the median of the absolute values.
+
+    Parameters
+    ----------
+    values : (n,)
+        In any unit, scattered around zero.
+
+    Returns
+    -------
+    float
+        In that unit.
+    """
     if not values.size:
         return float("nan")
     size = np.abs(values).ravel()

@@ -67,6 +67,16 @@ def turns_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray) -> Turns:
 
     Each window solves one Gauss-Newton step of the joint's axes and relative heading from the calibrated axes (3,),
     with the residuals that identify them; their common part is the motion's, the difference is the strap's.
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Calibrated unit axes, each in its own sensor's axes.
+
+    Returns
+    -------
+    Turns
+        rad, one per window.
     """
     index = np.flatnonzero(pair.is_moving & pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]
     number = ((pair.time_s[index] - pair.time_s[0]) / WINDOW_S).astype(np.int64)
@@ -132,6 +142,11 @@ def slips(turns: Mapping[Joint, Turns], since_calibration_rad: float = MIN_SLIP_
     ----------
     since_calibration_rad
         A greater turn at the very beginning is a slip before it; infinite where the axes are not to be trusted so far.
+
+    Returns
+    -------
+    list of Slip
+        At most one per side; times as in `turns`.
     """
     found = []
     for side in Side:
@@ -157,6 +172,11 @@ def slips_in_walks(
         In order of time; what is usual in one holds in the next.
     lags_s
         What is added to the distal clock, by the recording's name and the joint.
+
+    Returns
+    -------
+    list of Recording and Slip
+        In order of time.
     """
     starts_s = np.cumsum([0.0, *(last - first for first, last in map(tracks.span_of, walks))])
     turns = {}

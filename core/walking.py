@@ -44,7 +44,18 @@ def prosthetic_sides(patient: Patient) -> frozenset[Side]:
 def clocks_in(
     tracks: SensorTracks, recording: Recording, gait: Mapping[Side, SideGait], lags_s: Mapping[Joint, float]
 ) -> LegClocks | None:
-    """What ties the clocks of both legs in one walk; None where not both were measured."""
+    """What ties the clocks of both legs in one walk; None where not both were measured.
+
+    Parameters
+    ----------
+    lags_s
+        Of each joint, as found between its two sensors.
+
+    Returns
+    -------
+    LegClocks or None
+        Times in seconds.
+    """
     sites = {side: site for side in gait if (site := site_of_events(tracks, recording, side)) is not None}
     if len(sites) < len(Side):
         return None
@@ -77,6 +88,11 @@ def gait_in(
         The recording's clock.
     clock_offsets_s
         What brings the clock of each side's sensor, `site_of_events`, to it.
+
+    Returns
+    -------
+    dict of Side to SideGait
+        On the recording's clock.
     """
     events = {
         side: _events(tracks, recording, site, clock_offsets_s[side])

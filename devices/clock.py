@@ -57,7 +57,20 @@ class ClockFit:
 
 
 def fit_clock(device_s: FloatArray, host_s: FloatArray) -> ClockFit:
-    """Find the line below all arrivals (n,), n > 0, in any order."""
+    """Find the line below all arrivals (n,), n > 0, in any order.
+
+    Parameters
+    ----------
+    device_s : (n,)
+        By the sensor's clock.
+    host_s : (n,)
+        When each sample arrived, by the host's clock.
+
+    Returns
+    -------
+    ClockFit
+        From the sensor's seconds to the host's.
+    """
     order = np.argsort(device_s, kind="stable")
     x_s, late_s = device_s[order], (host_s - device_s)[order]
     origin_s, least_s = float(x_s[0]), float(late_s.min())
@@ -296,10 +309,19 @@ def put_in_order(device_s: FloatArray, host_s: FloatArray, step_s: float | None,
 
     Parameters
     ----------
+    device_s : (n,)
+        By the sensor's clock, in the order of arrival.
+    host_s : (n,)
+        When each sample arrived, by the host's clock.
     step_s
         Between two samples, where it is known; else the usual one.
     begins
         Ascending indexes of arrivals before which something was lost, so that the sensor may have begun anew.
+
+    Returns
+    -------
+    Ordered
+        Rows in order of time, their stamps by the host's clock, and what was lost, doubled or late.
     """
     runs, pieces = ClockRuns(), []
     for begin, end in pairwise([0, *begins, len(device_s)]):

@@ -124,7 +124,23 @@ def ask_in(address: str) -> None:
 
 
 def find_streams(address: str, wait_s: float = SEARCH_S) -> tuple[LslStream, ...]:
-    """Ask for streams of numbers, see `ask_in`; raises as it does."""
+    """Ask for streams of numbers, see `ask_in`; raises as it does.
+
+    Parameters
+    ----------
+    wait_s
+        How long answers are waited for.
+
+    Returns
+    -------
+    tuple of LslStream
+        Those that hold numbers.
+
+    Raises
+    ------
+    SourceRefusedError
+        See `ask_in`.
+    """
     ask_in(address)
     pylsl = _library()
     found = [one for one in pylsl.resolve_streams(wait_s) if one.channel_format() != pylsl.cf_string]

@@ -103,6 +103,11 @@ def calibrating(block: bytes, scale: float) -> tuple[FloatArray, FloatArray]:
     scale
         What sensitivities are stored as multiples of.
 
+    Returns
+    -------
+    (3,) and (3, 3)
+        In raw numbers, and in the sensor's unit per raw number.
+
     Raises
     ------
     ValueError

@@ -95,7 +95,20 @@ class SensorProtocol(Protocol):
 def decoded(
     sensor: str, heard: Heard, host_s: Sequence[float], step_s: float | None = None, begins: Sequence[int] = ()
 ) -> DecodedSensor:
-    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`."""
+    """Put what was heard of one sensor in order, its rows having arrived at `host_s` (n,); see `put_in_order`.
+
+    Parameters
+    ----------
+    host_s : (n,)
+        When each row arrived, by the host's clock.
+    step_s
+        Between two samples, where it is known.
+
+    Returns
+    -------
+    DecodedSensor
+        SI units, sensor axes, stamps by the host's clock.
+    """
     rows = np.array(heard.rows, dtype=float).reshape(-1, COLUMNS)
     ordered = put_in_order(rows[:, 0], np.array(host_s, dtype=float), step_s, begins)
     block = ImuBlock(
@@ -266,13 +279,35 @@ class ByteSource:
 
 
 def ask(channel: Channel, framer: Framer, command: bytes, is_answer: Callable[[bytes], bool], within_s: float) -> bytes:
-    """Send a command and wait for its answer; empty where none comes. What is heard meanwhile stays with the framer."""
+    """Send a command and wait for its answer; empty where none comes. What is heard meanwhile stays with the framer.
+
+    Parameters
+    ----------
+    within_s
+        How long to wait.
+
+    Returns
+    -------
+    bytes
+        The answer, or none.
+    """
     channel.write(command)
     return listen(channel, framer, lambda heard: next(filter(is_answer, heard.replies), b""), within_s)
 
 
 def listen(channel: Channel, framer: Framer, found: Callable[[Heard], bytes], within_s: float) -> bytes:
-    """Read until `found` finds something in what was heard, for so long at most."""
+    """Read until `found` finds something in what was heard, for so long at most.
+
+    Parameters
+    ----------
+    within_s
+        How long at most.
+
+    Returns
+    -------
+    bytes
+        What `found` gave, or none.
+    """
     until_s = time.monotonic() + within_s
     while time.monotonic() < until_s:
         framer.feed(channel.read(), time.monotonic())

@@ -276,6 +276,7 @@ SENSOR_PLACES_M = {  # from the proximal joint, y outward: side of the thigh, fr
 
 
 def make_leg(settings: WalkerSettings, side: Side) -> Leg:
+    """One leg of the body that the settings' seed gives, in segment axes."""
     rng = np.random.default_rng([settings.seed, 1, list(Side).index(side)])
     is_prosthetic = settings.prosthetic_side is side
     knee_axis = np.array([0.0, 1.0, 0.0]) + rng.normal(0.0, np.tan(np.deg2rad(3.0)), 3) * [1, 0, 1]

@@ -94,7 +94,18 @@ def plan_walk(
     rng: np.random.Generator,
     changes: StepChanges = NO_CHANGES,
 ) -> WalkPlan:
-    """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording."""
+    """Footsteps on the fine clock `time_s` (n,), seconds from the start of the recording.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Fine clock, from the start of the recording.
+
+    Returns
+    -------
+    WalkPlan
+        Times in seconds, places in metres.
+    """
     gaits = gaits_of_walk(walk)
     gait = gaits[first]
     stride_s, swing_s = gait.stride_s, (1.0 - gait.stance) * gait.stride_s
@@ -158,7 +169,18 @@ def _plan_foot(
 
 
 def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
-    """Both feet side by side, no step."""
+    """Both feet side by side, no step.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Fine clock, from the start of the recording.
+
+    Returns
+    -------
+    WalkPlan
+        Without steps.
+    """
     gait = gait_at(1.19)
     place_m = np.array([-HIP_AHEAD_OF_ANKLE_M])
     foot = _plan_foot(gait, False, np.empty(0), place_m, np.empty(0), NO_CHANGES.of_foot(Side.LEFT, 0))
@@ -168,7 +190,20 @@ def plan_standing(time_s: FloatArray, duration_s: float) -> WalkPlan:
 def walk_leg(
     leg: Leg, plan: WalkPlan, walk: Walk | None, time_s: FloatArray, sway_m: FloatArray, rng: np.random.Generator
 ) -> LegMotion:
-    """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left."""
+    """One leg's poses on the fine clock; `sway_m` (n, 2) is the body's, forward and left.
+
+    Parameters
+    ----------
+    time_s : (n,)
+        Fine clock, from the start of the recording.
+    sway_m : (n, 2)
+        Of the body, forward and left.
+
+    Returns
+    -------
+    LegMotion
+        Earth axes, z up, metres.
+    """
     steps, gait = plan.steps[leg.side], plan.gaits[leg.side]
     step_s = time_s[1] - time_s[0]
     stance = _stance_at(steps, time_s)

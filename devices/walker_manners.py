@@ -51,7 +51,13 @@ def gaits_of_walk(walk: Walk) -> Mapping[Side, Gait]:
 
 
 def gait_at(speed_m_s: float, manner: Manner = Manner.ORDINARY) -> Gait:
-    """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640)."""
+    """Plausible strides at 0.3 to 2 m/s, 1.28 m at 1.19 m/s; stance as Fukuchi et al. 2018 (doi 10.7717/peerj.4640).
+
+    Returns
+    -------
+    Gait
+        Times in seconds, lengths in metres, shares of a stride.
+    """
     ordinary = _ordinary_gait(speed_m_s)
     if manner is Manner.SHUFFLING:
         return replace(

@@ -66,12 +66,24 @@ class Ride:
 
 
 def draw_ride(rng: np.random.Generator) -> Ride:
+    """How one sensor rides on soft tissue, by chance."""
     turn, shift = (np.stack([_direction(rng) for _ in range(3)]) for _ in range(2))
     return Ride(turn, shift, rng.uniform(*REAL_RING_HZ), rng.uniform(*REAL_RING_DECAY_S))
 
 
 def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Mounting:
-    """Any rotation alike, near the nominal place of the segment."""
+    """Any rotation alike, near the nominal place of the segment.
+
+    Parameters
+    ----------
+    spread_m
+        Standard deviation of each coordinate of the place.
+
+    Returns
+    -------
+    Mounting
+        In segment axes.
+    """
     q = rng.normal(size=4)
     w, x, y, z = q / np.linalg.norm(q)
     v = np.array([x, y, z])
@@ -82,6 +94,7 @@ def draw_mounting(site: Site, spread_m: float, rng: np.random.Generator) -> Moun
 
 
 def draw_faults(errors: SensorErrors, rng: np.random.Generator) -> SensorFaults:
+    """Scales and biases of one sensor, by chance."""
     draws = rng.normal(size=(4, 3))
     return SensorFaults(
         1.0 + errors.gyro_scale_sd * draws[0],
@@ -103,6 +116,16 @@ def sensor_poses(
     """Earth from sensor (n, 3, 3) and place (n, 3) on the fine clock; chance makes the wobble of real tissue alone.
 
     With `following` (n, 3, 3) the sensor and the tissue under it are turned so against their segment.
+
+    Parameters
+    ----------
+    following : (n, 3, 3) or None
+        Rotation of sensor and tissue against their segment.
+
+    Returns
+    -------
+    (n, 3, 3) and (n, 3)
+        Earth from sensor, and its place in m, earth axes, z up.
     """
     row = SEGMENT_ROW[site.segment]
     segment, origin = leg.rotations[row], leg.origins_m[row]
@@ -211,7 +234,18 @@ def _small_rotation(v: FloatArray) -> FloatArray:
 
 
 def angular_rate(rotations: FloatArray, step_s: float) -> FloatArray:
-    """Rate in sensor axes (n, 3) of earth-from-sensor (n, 3, 3) by central differences; two at each end repeat."""
+    """Rate in sensor axes (n, 3) of earth-from-sensor (n, 3, 3) by central differences; two at each end repeat.
+
+    Parameters
+    ----------
+    rotations : (n, 3, 3)
+        Earth from sensor.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s, in sensor axes.
+    """
     near = _rotation_between(rotations[1:-3], rotations[3:-1])
     far = _rotation_between(rotations[:-4], rotations[4:])
     return _repeat_ends((8.0 * near - far) / (12.0 * step_s))
@@ -227,7 +261,18 @@ def _rotation_between(first: FloatArray, second: FloatArray) -> FloatArray:
 
 
 def acceleration(place_m: FloatArray, step_s: float) -> FloatArray:
-    """Second derivative (n, 3) of a path by central differences; two at each end repeat."""
+    """Second derivative (n, 3) of a path by central differences; two at each end repeat.
+
+    Parameters
+    ----------
+    place_m : (n, 3)
+        In earth axes.
+
+    Returns
+    -------
+    (n, 3)
+        m/s2, in earth axes, without gravity.
+    """
     p = place_m
     return _repeat_ends((-p[:-4] + 16.0 * p[1:-3] - 30.0 * p[2:-2] + 16.0 * p[3:-1] - p[4:]) / (12.0 * step_s**2))
 
@@ -237,7 +282,20 @@ def _repeat_ends(inner: FloatArray) -> FloatArray:
 
 
 def interpolate(signal: FloatArray, at: FloatArray) -> FloatArray:
-    """Cubic through the four nearest values of `signal` (n, ...), at fractional indices (m,)."""
+    """Cubic through the four nearest values of `signal` (n, ...), at fractional indices (m,).
+
+    Parameters
+    ----------
+    signal : (n, ...)
+        In any unit.
+    at : (m,)
+        Fractional indices.
+
+    Returns
+    -------
+    (m, ...)
+        In that unit.
+    """
     i = np.clip(np.floor(at).astype(int), 1, len(signal) - 3)
     u = (at - i).reshape(-1, *(1,) * (signal.ndim - 1))
     a, b, c, d = (signal[i + k] for k in (-1, 0, 1, 2))
@@ -268,6 +326,18 @@ class SensorClock:
 
 
 def make_clock(settings: WalkerSettings, site: Site, duration_s: float, rng: np.random.Generator) -> SensorClock:
+    """The instants at which one sensor samples, with its lag, pace, jitter and losses.
+
+    Parameters
+    ----------
+    duration_s
+        Of the recording, on the true clock.
+
+    Returns
+    -------
+    SensorClock
+        True instants and stamps (m,), s.
+    """
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)
     late_s, pace = settings.clock_late_s.get(site, 0.0), settings.clock_rate.get(site, 1.0)
     # samples come at the rate that the sensor's own clock calls `rate_hz`
@@ -298,7 +368,20 @@ def record(
     faults: SensorFaults,
     rng: np.random.Generator,
 ) -> tuple[ImuBlock, FloatArray]:
-    """One sensor's samples over one recording, and the gyroscope's bias at each (m, 3)."""
+    """One sensor's samples over one recording, and the gyroscope's bias at each (m, 3).
+
+    Parameters
+    ----------
+    fine_s : (n,)
+        Fine clock, from the start of the recording.
+    poses : (n, 3, 3) and (n, 3)
+        Earth from sensor, and its place in m, at `fine_s`.
+
+    Returns
+    -------
+    ImuBlock and (m, 3)
+        In sensor axes; the bias in rad/s.
+    """
     rotations, place = poses
     step_s = float(fine_s[1] - fine_s[0])
     rate_hz = settings.site_rates_hz.get(site, settings.rate_hz)

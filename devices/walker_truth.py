@@ -107,7 +107,18 @@ def tell_truth(
     moved: Sequence[MovedRecording],
     acc_bias_m_s2: Mapping[Site, FloatArray],
 ) -> SessionTruth:
-    """All that is known of `moved`, in the terms of the sensors."""
+    """All that is known of `moved`, in the terms of the sensors.
+
+    Parameters
+    ----------
+    acc_bias_m_s2
+        (3,) by site, in sensor axes.
+
+    Returns
+    -------
+    SessionTruth
+        Angles in rad, clinical sign; axes and places in sensor axes.
+    """
     joints = [j for j in Joint if j.proximal in settings.sites and j.distal in settings.sites]
     functional = {joint: _functional_axes(joint, legs[joint.side], moved) for joint in joints}
     standing = {joint: _standing_angle(joint, moved) for joint in joints}

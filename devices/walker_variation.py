@@ -92,7 +92,13 @@ class StrideSeries:
 
 
 def draw_gain(settings: WalkerSettings, joint: Joint, strapping: int) -> float:
-    """By what share of the angle the sensors at a joint read more, with the straps of recording `strapping`."""
+    """By what share of the angle the sensors at a joint read more, with the straps of recording `strapping`.
+
+    Returns
+    -------
+    float
+        A share without unit; 0.1 reads 10 % more.
+    """
     who = list(Joint).index(joint)
     of_leg, of_strap = (
         np.random.default_rng([settings.seed, *key]).normal() for key in ((12, who), (13, who, strapping))
@@ -105,7 +111,20 @@ def draw_gain(settings: WalkerSettings, joint: Joint, strapping: int) -> float:
 
 
 def follow_joint(leg: LegMotion, axis: FloatArray, joint: Joint, site: Site, gain: float) -> FloatArray | None:
-    """How far the thigh's sensor stays behind its knee, or the foot's runs ahead of its ankle: (n, 3, 3)."""
+    """How far the thigh's sensor stays behind its knee, or the foot's runs ahead of its ankle: (n, 3, 3).
+
+    Parameters
+    ----------
+    axis : (3,)
+        Unit axis of the joint, in its segments' axes.
+    gain
+        Share of the angle that the sensor reads more.
+
+    Returns
+    -------
+    (n, 3, 3) or None
+        Rotation of the sensor against its segment; None where there is none.
+    """
     if gain == 0.0 or site is not (joint.proximal if joint.is_knee else joint.distal):
         return None
     return rotation_about(axis, -gain * leg.angles.knee if joint.is_knee else gain * leg.angles.ankle)

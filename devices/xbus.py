@@ -103,11 +103,18 @@ def message(mid: int, data: bytes = b"") -> bytes:
 
 
 def item(identifier: int, data: bytes) -> bytes:
+    """One item as it stands in a message: identifier, length, data."""
     return HEADER.pack(identifier, len(data)) + data
 
 
 def values(identifier: int, data: bytes) -> tuple[float, ...]:
-    """The numbers of one item; none of an item that is not known, or of another length than it should have."""
+    """The numbers of one item; none of an item that is not known, or of another length than it should have.
+
+    Returns
+    -------
+    tuple of float
+        In the unit of the item.
+    """
     kind = identifier & ITEM_MASK
     if count := REALS.get(kind):
         return _reals(identifier & FORMAT_MASK, count, data)

@@ -56,6 +56,11 @@ def stuffed(message: bytes) -> bytes:
 def numbers_of(message: bytes, shape: Struct, count: int) -> tuple[float, ...]:
     """Microseconds and arguments of an unstuffed message, text or binary.
 
+    Returns
+    -------
+    tuple of float
+        Microseconds, then `count` arguments in the message's units.
+
     Raises
     ------
     DamagedError
@@ -228,6 +233,7 @@ class Ximu3:
 
 
 def command(key: str, value: object = None) -> bytes:
+    """A command as it is sent, with its end."""
     return json.dumps({key: value}, separators=(",", ":")).encode() + END
 
 

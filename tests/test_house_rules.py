@@ -193,3 +193,69 @@ def test_the_lock_holds_everything_the_project_asks_for() -> None:
     asked = PROJECT["project"]["dependencies"] + PROJECT["project"]["optional-dependencies"]["dev"]
     names = {re.split(r"[^\w.-]", requirement)[0].lower() for requirement in asked}
     assert names - set(re.findall(r"^([\w.-]+)==", LOCK, re.MULTILINE)) == set()
+
+
+ARRAYS = {"FloatArray", "IntArray", "BoolArray", "ComplexArray"}
+GIVES_NUMBERS = re.compile(r"\b(float|FloatArray|IntArray|BoolArray|ComplexArray)\b")
+
+
+def section(docstring: str, title: str) -> str:
+    """The text below a heading of a docstring, up to the next one; empty without it."""
+    found = re.search(rf"^{title}\n-+\n(.*?)(?=^\w+\n-+\n|\Z)", docstring, re.MULTILINE | re.DOTALL)
+    return found[1] if found else ""
+
+
+def undocumented(function: ast.FunctionDef) -> list[str]:
+    """What a function lacks that takes or gives numbers: a docstring, the shape of an array, what is returned."""
+    docstring = ast.get_docstring(function)
+    if docstring is None:
+        return ["docstring"]
+    shaped = re.findall(r"^(\w[\w, ]*) : .*\(.*\)", section(docstring, "Parameters"), re.MULTILINE)
+    named = {name.strip() for names in shaped for name in names.split(",")}
+    arguments = [*function.args.args, *function.args.kwonlyargs]
+    arrays = [one.arg for one in arguments if one.annotation is not None and ast.unparse(one.annotation) in ARRAYS]
+    returns = ast.unparse(function.returns) if function.returns is not None else ""
+    is_silent = GIVES_NUMBERS.search(returns) is not None and not section(docstring, "Returns")
+    return [f"shape of {name}" for name in arrays if name not in named] + (["Returns"] if is_silent else [])
+
+
+def test_a_docstring_that_lacks_a_shape_or_what_is_returned_is_found() -> None:
+    bare = "def f(v: FloatArray, k: int) -> float:\n    '''Length.'''"
+    half = "def f(v: FloatArray) -> float:\n    '''Length.\n\n    Returns\n    -------\n    float\n        m.\n    '''"
+    whole = half.replace("    Returns", "    Parameters\n    ----------\n    v : (3,)\n        m.\n\n    Returns")
+    sources = ("def f() -> None: ...", bare, half, whole)
+    functions = [node for source in sources for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)]
+    assert [undocumented(function) for function in functions] == [
+        ["docstring"],
+        ["shape of v", "Returns"],
+        ["shape of v"],
+        [],
+    ]
+
+
+def test_a_public_function_of_core_and_devices_says_what_its_numbers_are() -> None:
+    assert [
+        f"{place(file, node.lineno)} {node.name}: {', '.join(lacking)}"
+        for file in python_files("core", "devices")
+        for node in parse(file).body
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_") and (lacking := undocumented(node))
+    ] == []
+
+
+def test_a_class_of_core_and_devices_has_its_name_for_itself() -> None:
+    defined: dict[str, list[Path]] = {}
+    for file in python_files(*PACKAGES, "packaging", "tests"):
+        for node in ast.walk(parse(file)):
+            if isinstance(node, ast.ClassDef):
+                defined.setdefault(node.name, []).append(file.relative_to(ROOT))
+    ours = {"core", "devices", "tests/core", "tests/devices", "tests/examples"}
+    assert {
+        name: sorted(map(str, files))
+        for name, files in defined.items()
+        if len(files) > 1 and any(file.as_posix().startswith(tuple(f"{room}/" for room in ours)) for file in files)
+    } == {}
+
+
+def test_modules_of_core_and_devices_open_with_a_statement() -> None:
+    files = python_files("core", "devices")
+    assert [file for file in files if "?" in (ast.get_docstring(parse(file)) or "").partition("\n")[0]] == []

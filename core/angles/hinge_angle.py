@@ -27,8 +27,15 @@ def hinge_angle(pair: Pair, j1: FloatArray, j2: FloatArray, unknowns: FloatArray
 
     Parameters
     ----------
+    j1, j2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
     unknowns : (12,)
         Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2) as `joint_centre` found them.
+
+    Returns
+    -------
+    (n,)
+        rad.
     """
     from_rates = -angle_from_rates(pair.g1, pair.g2, j1, j2, pair.step_s)
     chosen = np.flatnonzero(pair.is_known)[:: max(1, round(1 / (SAMPLES_PER_S * pair.step_s)))]

@@ -23,8 +23,15 @@ def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: Float
 
     Parameters
     ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
     heading_rad : (n,)
         Heading of the distal sensor's earth in the proximal one's.
+
+    Returns
+    -------
+    (n,)
+        rad, unwrapped.
     """
     x1, y1 = _in_earth(pair.earth_from_1, axis_1)
     x2, y2 = (turn_about_vertical(heading_rad, v) for v in _in_earth(pair.earth_from_2, axis_2))
@@ -34,7 +41,20 @@ def twist(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, heading_rad: Float
 
 
 def off_axis_rate(pair: Pair, axis_1: FloatArray, heading_rad: FloatArray) -> FloatArray:
-    """The two components (n, 2), rad/s, of the relative rate across the joint axis: what a hinge does not do."""
+    """The two components (n, 2), rad/s, of the relative rate across the joint axis: what a hinge does not do.
+
+    Parameters
+    ----------
+    axis_1 : (3,)
+        Unit axis of the proximal sensor, in its axes.
+    heading_rad : (n,)
+        Heading of the distal sensor's earth in the proximal one's.
+
+    Returns
+    -------
+    (n, 2)
+        rad/s, in the proximal sensor's joint plane.
+    """
     rate_1 = np.einsum("nij,nj->ni", pair.earth_from_1, pair.g1)
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", pair.earth_from_2, pair.g2))
     relative = rate_2 - rate_1
@@ -52,7 +72,18 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 
 
 def ringing(off_axis: FloatArray, step_s: float) -> FloatArray:
-    """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings."""
+    """What of an off-axis rate (n, 2) is above 3 Hz, where a joint hardly moves and tissue rings.
+
+    Parameters
+    ----------
+    off_axis : (n, 2)
+        rad/s, as `off_axis_rate` gives it.
+
+    Returns
+    -------
+    (n, 2)
+        rad/s.
+    """
     if 1 / step_s < 4 * RINGING_HZ:
         return off_axis
     return np.asarray(sosfiltfilt(_above_ringing(step_s), off_axis, axis=0))

@@ -40,6 +40,11 @@ def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray
     value, weight : (n, r)
     block : (n,)
         Which block each sample belongs to.
+
+    Returns
+    -------
+    (p, p)
+        In the unknowns' units squared.
     """
     weighted = slope * weight[..., None]
     information = np.tensordot(weighted, slope, axes=([0, 1], [0, 1]))
@@ -53,7 +58,13 @@ def sandwich_covariance(slope: FloatArray, value: FloatArray, weight: FloatArray
 
 
 def time_blocks(data: Datasets) -> IntArray:
-    """Number (n,) of the one-second block that each sample lies in, counted over all stretches."""
+    """Number (n,) of the one-second block that each sample lies in, counted over all stretches.
+
+    Returns
+    -------
+    (n,)
+        Ascending within each stretch.
+    """
     block = np.zeros(len(data), dtype=np.int64)
     first = 0
     for s in range(len(data.pairs)):
@@ -72,6 +83,13 @@ def axis_sd_rad(covariance: FloatArray, floor_rad: float) -> float:
     ----------
     covariance : (4, 4)
         Of the tangent coordinates of both axes.
+    floor_rad
+        What no fit on such a joint is better than.
+
+    Returns
+    -------
+    float
+        rad.
     """
     worst = max(float(np.linalg.eigvalsh(covariance[part, part])[-1]) for part in (slice(0, 2), slice(2, 4)))
     return float(np.sqrt(max(worst, 0.0) + floor_rad**2))
@@ -84,8 +102,15 @@ def looseness(data: Datasets, axis_1: FloatArray, heading_rad: FloatArray) -> fl
 
     Parameters
     ----------
+    axis_1 : (3,)
+        Unit axis of the proximal sensor, in its axes.
     heading_rad : (n,)
         Of the distal earth in the proximal one.
+
+    Returns
+    -------
+    float
+        A ratio without unit.
     """
     rate_1 = np.einsum("nij,nj->ni", data.earth_from_1, data.g1)
     rate_2 = turn_about_vertical(heading_rad, np.einsum("nij,nj->ni", data.earth_from_2, data.g2))
@@ -96,7 +121,18 @@ def looseness(data: Datasets, axis_1: FloatArray, heading_rad: FloatArray) -> fl
 
 
 def hinge_floor_rad(loose: float) -> float:
-    """Floor of a hinge's axis."""
+    """Least standard deviation of a hinge's axis.
+
+    Parameters
+    ----------
+    loose
+        As `looseness` gives it.
+
+    Returns
+    -------
+    float
+        rad.
+    """
     return float(np.hypot(AXIS_FLOOR_HINGE_RAD, loose))
 
 
@@ -120,6 +156,11 @@ def angle_sd_rad(
         Of the angle; counts on a hinge only.
     ringing_rad_s
         Of an ankle, the part of the off-axis rate above 3 Hz in walking, root mean square; None where not known.
+
+    Returns
+    -------
+    (n,)
+        rad.
     """
     if is_hinge:
         return np.full(np.shape(distance_rad), ANGLE_FLOOR_HINGE_RAD + HINGE_PER_SQUARE_RANGE * range_rad**2)

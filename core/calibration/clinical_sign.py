@@ -32,18 +32,54 @@ class ClinicalSign:
 
 
 def skewness(values: FloatArray, share: float) -> float:
-    """(p_hi + p_lo)/(p_hi - p_lo) of the quantiles `share` and 1 - share: 1 all positive, 0 symmetric."""
+    """(p_hi + p_lo)/(p_hi - p_lo) of the quantiles `share` and 1 - share: 1 all positive, 0 symmetric.
+
+    Parameters
+    ----------
+    values : (n,)
+        In any unit.
+    share
+        Of the lower quantile, 0 to 0.5.
+
+    Returns
+    -------
+    float
+        Within -1 and 1 where the quantiles lie on both sides of zero; 0 where they are equal.
+    """
     low, high = np.quantile(values, [share, 1 - share])
     return float((high + low) / (high - low)) if high > low else 0.0
 
 
 def range_of(theta_rad: FloatArray) -> float:
+    """Range of an angle between its 2nd and 98th percentile.
+
+    Parameters
+    ----------
+    theta_rad : (n,)
+        Without NaN.
+
+    Returns
+    -------
+    float
+        rad.
+    """
     low, high = np.quantile(theta_rad, [0.02, 0.98])
     return float(high - low)
 
 
 def forward_swing(rate_rad_s: FloatArray) -> float:
-    """How much faster the shank turns one way than the other, -1 to 1; 0 for a shank that hardly swings."""
+    """How much faster the shank turns one way than the other, -1 to 1; 0 for a shank that hardly swings.
+
+    Parameters
+    ----------
+    rate_rad_s : (m,)
+        Of the shank about its joint axis while moving.
+
+    Returns
+    -------
+    float
+        A ratio without unit.
+    """
     low, high = np.quantile(rate_rad_s, [0.005, 0.995])
     if high - low < 2 * MIN_SWING_RAD_S:
         return 0.0
@@ -65,6 +101,11 @@ def knee_sign(
         Otherwise the shank's swing tells nothing.
     has_standing
         Without it, and without walking, nothing does.
+
+    Returns
+    -------
+    ClinicalSign
+        1 or -1, by which the twist becomes flexion, and how surely.
     """
     bend = skewness(theta_rad, 0.02) if range_of(theta_rad) > MIN_RANGE_RAD else 0.0
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
@@ -88,6 +129,11 @@ def ankle_sign(
         j2,knee . j1,ankle, both in the shank's sensor; 0 without knee.
     shank_rate_rad_s : (m,)
         -g1.j1,ankle while moving.
+
+    Returns
+    -------
+    ClinicalSign
+        1 or -1, by which the twist becomes dorsiflexion, and how surely.
     """
     swing = forward_swing(shank_rate_rad_s) if is_walking else 0.0
     if knee is None or not knee.is_certain:
@@ -109,6 +155,11 @@ def ankle_sign_from_foot(pitch_alignment: float, swings: int) -> ClinicalSign:
         j2,ankle . the foot's pitch axis, toes up positive, both in the foot's sensor.
     swings
         How many told where the toes are.
+
+    Returns
+    -------
+    ClinicalSign
+        1 or -1, by which the twist becomes dorsiflexion, and how surely.
     """
     is_certain = swings >= MIN_SWINGS and abs(pitch_alignment) >= MIN_AXES_ALIGNMENT
     return ClinicalSign(1 if pitch_alignment >= 0 else -1, abs(pitch_alignment), is_certain)

@@ -31,7 +31,18 @@ class Coincidence:
 
 
 def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
-    """R12 (c, n, 3, 3), turning vectors of sensor 2 into sensor 1, for headings (c, n)."""
+    """R12 (c, n, 3, 3), turning vectors of sensor 2 into sensor 1, for headings (c, n).
+
+    Parameters
+    ----------
+    heading : (c, n)
+        rad, of the distal earth in the proximal one, for each of c candidates.
+
+    Returns
+    -------
+    (c, n, 3, 3)
+        Takes vectors in the distal sensor's axes to the proximal one's.
+    """
     c, s = np.cos(heading), np.sin(heading)
     turn = np.zeros((*heading.shape, 3, 3))
     turn[..., 0, 0] = turn[..., 1, 1] = c
@@ -40,12 +51,36 @@ def relative_rotation(data: Datasets, heading: FloatArray) -> FloatArray:
 
 
 def fit_coincidence(data: Datasets, rotation_12: FloatArray, scale_m_s2: float = SCALE_M_S2) -> Coincidence:
-    """Robust linear least squares for centres and biases under rotations (c, n, 3, 3)."""
+    """Robust linear least squares for centres and biases under rotations (c, n, 3, 3).
+
+    Parameters
+    ----------
+    rotation_12 : (c, n, 3, 3)
+        As `relative_rotation` gives it.
+    scale_m_s2
+        Residuals beyond this count less and less.
+
+    Returns
+    -------
+    Coincidence
+        One solution per candidate.
+    """
     return solve_robustly(coincidence_design(data, rotation_12), scale_m_s2)
 
 
 def coincidence_design(data: Datasets, rotation_12: FloatArray) -> FloatArray:
-    """What `solve_robustly` takes (c, 13, 3, n), of accelerations as they are, under rotations (c, n, 3, 3)."""
+    """What `solve_robustly` takes (c, 13, 3, n), of accelerations as they are, under rotations (c, n, 3, 3).
+
+    Parameters
+    ----------
+    rotation_12 : (c, n, 3, 3)
+        As `relative_rotation` gives it.
+
+    Returns
+    -------
+    (c, 13, 3, n)
+        Slopes by o1, o2, b1, b2 (12), then what they have to give, m/s2, in the proximal sensor's axes.
+    """
     c, n = rotation_12.shape[:2]
     design = np.empty((c, 13, 3, n))
     rows = np.moveaxis(design, (3, 2, 1), (1, 2, 3))  # the same, sample by sample
@@ -79,6 +114,11 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
     ----------
     room_s
         How much earlier and later the distal sensor has to be heard as well.
+
+    Returns
+    -------
+    JointForces
+        Terms of both sensors, each in its own earth axes.
     """
     is_clear = np.zeros(len(data), dtype=bool)
     for s, pair in enumerate(data.pairs):
@@ -99,7 +139,20 @@ def joint_forces(data: Datasets, room_s: float = 0.0) -> JointForces:
 
 
 def distal_terms(data: Datasets, chosen: IntArray, shifts_s: FloatArray) -> FloatArray:
-    """Terms (c, 7, 3, n) of the distal sensor, its stamps moved by each of `shifts_s` (c,) more."""
+    """Terms (c, 7, 3, n) of the distal sensor, its stamps moved by each of `shifts_s` (c,) more.
+
+    Parameters
+    ----------
+    chosen : (n,)
+        Numbers of samples of `data`.
+    shifts_s : (c,)
+        Added to the distal stamps.
+
+    Returns
+    -------
+    (c, 7, 3, n)
+        In the distal sensor's earth axes; see `JointForce`.
+    """
     terms = np.empty((len(shifts_s), 7, 3, len(chosen)))
     for s, pair in enumerate(data.pairs):
         mine = data.stretch[chosen] == s
@@ -110,12 +163,36 @@ def distal_terms(data: Datasets, chosen: IntArray, shifts_s: FloatArray) -> Floa
 
 
 def fit_forces(forces: JointForces, heading: FloatArray) -> Coincidence:
-    """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples."""
+    """As `fit_coincidence`, of low-passed forces under headings (c, n) at their samples.
+
+    Parameters
+    ----------
+    heading : (c, n)
+        rad, of the distal earth in the proximal one.
+
+    Returns
+    -------
+    Coincidence
+        One solution per candidate.
+    """
     return solve_robustly(force_design(forces.terms_1, forces.terms_2, heading), SCALE_M_S2)
 
 
 def force_design(terms_1: FloatArray, terms_2: FloatArray, heading: FloatArray) -> FloatArray:
-    """What `solve_robustly` takes (c, 13, 3, n), of terms (7, 3, n) or (c, 7, 3, n) under headings (c, n)."""
+    """What `solve_robustly` takes (c, 13, 3, n), of terms (7, 3, n) or (c, 7, 3, n) under headings (c, n).
+
+    Parameters
+    ----------
+    terms_1, terms_2 : (7, 3, n) or (c, 7, 3, n)
+        Of the proximal and the distal sensor, each in its own earth axes.
+    heading : (c, n)
+        rad, of the distal earth in the proximal one.
+
+    Returns
+    -------
+    (c, 13, 3, n)
+        As `coincidence_design`, in the proximal sensor's earth axes.
+    """
     turned = turned_about_vertical(heading, terms_2)
     design = np.empty((len(turned), 13, *turned.shape[2:]))
     design[:, 0:3], design[:, 6:9] = terms_1[0:3], terms_1[3:6]
@@ -126,7 +203,20 @@ def force_design(terms_1: FloatArray, terms_2: FloatArray, heading: FloatArray) 
 
 
 def turned_about_vertical(heading: FloatArray, terms: FloatArray) -> FloatArray:
-    """Rz(heading) terms, (c, t, 3, n) for headings (c, n) and terms (t, 3, n) or (c, t, 3, n)."""
+    """Rz(heading) terms, (c, t, 3, n) for headings (c, n) and terms (t, 3, n) or (c, t, 3, n).
+
+    Parameters
+    ----------
+    heading : (c, n)
+        rad.
+    terms : (t, 3, n) or (c, t, 3, n)
+        Vectors in earth axes, z up.
+
+    Returns
+    -------
+    (c, t, 3, n)
+        The same turned.
+    """
     c, s = np.cos(heading)[:, None], np.sin(heading)[:, None]
     turned = np.empty((*np.broadcast_shapes(terms.shape[:-2], (len(heading), 1)), 3, heading.shape[1]))
     turned[..., 0, :] = c * terms[..., 0, :] - s * terms[..., 1, :]
@@ -142,6 +232,11 @@ def disagreement(forces: JointForces, heading: FloatArray, unknowns: FloatArray)
     ----------
     heading : (n,)
     unknowns : (12,)
+
+    Returns
+    -------
+    float
+        A ratio without unit.
     """
     turned = turned_about_vertical(heading[None], forces.terms_2)[0]
     one = forces.terms_1[6] - np.tensordot(unknowns[[0, 1, 2, 6, 7, 8]], forces.terms_1[:6], 1)
@@ -160,6 +255,18 @@ def solve_robustly(design: FloatArray, scale_m_s2: float) -> Coincidence:
     """Unknowns of each candidate, from design (c, 13, 3, n): the slopes by the unknowns, and what they have to give.
 
     Samples come last, for along so long an axis arrays are several times as fast.
+
+    Parameters
+    ----------
+    design : (c, 13, 3, n)
+        As `coincidence_design` gives it.
+    scale_m_s2
+        Residuals beyond this count less and less.
+
+    Returns
+    -------
+    Coincidence
+        One solution per candidate.
     """
     c, n = len(design), design.shape[3]
     prior = np.diag([CENTRE_PRIOR_M**-2] * 6 + [BIAS_PRIOR_M_S2**-2] * 6) * scale_m_s2**2

@@ -37,8 +37,15 @@ def heading_over(pair: Pair, axis_1: FloatArray, axis_2: FloatArray, unknowns: F
 
     Parameters
     ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
     unknowns : (12,)
         Centres o1, o2 (m) and accelerometer biases b1, b2 (m/s2).
+
+    Returns
+    -------
+    (n,)
+        rad.
     """
     data = _spread(pair, pair.is_known)
     if len(data) < 10:
@@ -118,7 +125,13 @@ def _force_terms(data: Datasets, forces: Forces, heading: FloatArray) -> tuple[F
 
 
 def residual_scales(data: Datasets, fit: Candidates) -> tuple[float, float]:
-    """Robust spreads of the off-axis rate (rad/s) and of the parting of the axes (rad) under the first candidate."""
+    """Robust spreads of the off-axis rate (rad/s) and of the parting of the axes (rad) under the first candidate.
+
+    Returns
+    -------
+    float, float
+        rad/s and rad.
+    """
     r = residuals(data, fit.axis_1, fit.axis_2, data.heading(fit.knots_rad), RATE_SCALE_RAD_S, NEUTRAL_SCALE_RAD)
     rate = robust_sd(r.value[0, :, :4]) * np.sqrt(2) * RATE_SCALE_RAD_S
     neutral = robust_sd(r.value[0, :, 4:]) * NEUTRAL_SCALE_RAD

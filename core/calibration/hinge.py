@@ -25,7 +25,18 @@ MIN_STEP = 1e-5
 
 
 def in_plane_difference(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
-    """|g1 x j1| - |g2 x j2| (n,), rad/s: zero on a hinge (eq 3)."""
+    """|g1 x j1| - |g2 x j2| (n,), rad/s: zero on a hinge (eq 3).
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
+
+    Returns
+    -------
+    (n,)
+        rad/s. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 3.
+    """
     return _in_plane_length(data.g1, axis_1) - _in_plane_length(data.g2, axis_2)
 
 
@@ -36,6 +47,18 @@ def _in_plane_length(rate: FloatArray, axis: FloatArray) -> FloatArray:
 
 
 def hinge_residual(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> float:
+    """Spread of `in_plane_difference`, which decides whether a joint is a hinge.
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
+
+    Returns
+    -------
+    float
+        rad/s.
+    """
     return robust_sd(in_plane_difference(data, axis_1, axis_2))
 
 
@@ -48,6 +71,8 @@ def hinge_axes(
 
     Parameters
     ----------
+    axis_1, axis_2 : (3,)
+        Unit axes to start from, each in its own sensor's axes.
     unknowns : (12,)
         Centres and accelerometer biases as `coincidence` found them.
 

@@ -44,6 +44,7 @@ class Candidates:
 
 
 def joined(many: list[Candidates]) -> Candidates:
+    """Candidates of several searches in one table, in their order."""
     return Candidates(*(np.concatenate([getattr(one, name) for one in many]) for name in Candidates.__slots__))
 
 
@@ -116,7 +117,18 @@ def _scatter(sensor_from: FloatArray, turned: FloatArray, fixed: FloatArray, hea
 
 
 def heading_from_axes(data: Datasets, axis_1: FloatArray, axis_2: FloatArray) -> FloatArray:
-    """Heading knots (c, k) under which the axes (c, 3) of both sensors point the same way, in closed form."""
+    """Heading knots (c, k) under which the axes (c, 3) of both sensors point the same way, in closed form.
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (c, 3)
+        Unit axes of each candidate, each in its own sensor's axes.
+
+    Returns
+    -------
+    (c, k)
+        rad, at the heading knots of `data`.
+    """
     e1 = np.einsum("nij,cj->cni", data.earth_from_1, axis_1)
     e2 = np.einsum("nij,cj->cni", data.earth_from_2, axis_2)
     product = (e1[..., 0] + 1j * e1[..., 1]) * (e2[..., 0] - 1j * e2[..., 1])
@@ -137,7 +149,13 @@ def _stretch_knots(data: Datasets) -> list[tuple[int, int]]:
 
 
 def knot_weights(data: Datasets) -> FloatArray:
-    """Share (n, k) that each knot has in the heading of each sample."""
+    """Share (n, k) that each knot has in the heading of each sample.
+
+    Returns
+    -------
+    (n, k)
+        Rows sum to 1.
+    """
     weights = np.zeros((len(data), data.knots))
     row = np.arange(len(data))
     weights[row, data.knot_left] = 1 - data.knot_share
@@ -156,6 +174,7 @@ class InEarth:
 
 
 def in_earth(data: Datasets) -> InEarth:
+    """Rotations and rates of both sensors, turned to their own earths once for all hypotheses."""
     turns = [np.ascontiguousarray(turn.transpose(1, 2, 0)) for turn in (data.earth_from_1, data.earth_from_2)]
     rates = [np.sum(turn * rate.T, axis=1) for turn, rate in zip(turns, (data.g1, data.g2), strict=True)]
     return InEarth(*turns, *rates)
@@ -206,8 +225,19 @@ def residuals(
 
     Parameters
     ----------
+    axis_1, axis_2 : (c, 3)
+        Unit axes of each candidate, each in its own sensor's axes.
+    heading : (c, n)
+        rad, of the distal earth in the proximal one.
+    rate_scale, neutral_scale
+        Scales of the off-axis rate, rad/s, and of the parting of the axes, rad.
     known
         Of `data`, where it is at hand.
+
+    Returns
+    -------
+    Residuals
+        Without unit, each over its scale.
     """
     earth = known or in_earth(data)
     axes = np.stack([axis_1, axis_2])
@@ -251,7 +281,18 @@ def _turned(cosine: FloatArray, sine: FloatArray, v: FloatArray) -> FloatArray:
 
 
 def loss_and_weights(value: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Robust loss 2 (sqrt(1 + r^2) - 1) per sample (c, n), and the weight (c, n, 7) each residual has in it."""
+    """Robust loss 2 (sqrt(1 + r^2) - 1) per sample (c, n), and the weight (c, n, 7) each residual has in it.
+
+    Parameters
+    ----------
+    value : (c, n, 7)
+        Residuals over their scales.
+
+    Returns
+    -------
+    (c, n) and (c, n, 7)
+        Loss, and weights 0 to 1, without unit.
+    """
     roots = _roots(value)
     weights = np.empty_like(value)
     for group, root in zip(GROUPS, roots, strict=True):
@@ -277,7 +318,22 @@ def polish(
     neutral_scale: float = NEUTRAL_SCALE_RAD,
     is_axis_fixed: bool = False,
 ) -> Candidates:
-    """Gauss-Newton on axes and heading knots of every candidate at once."""
+    """Gauss-Newton on axes and heading knots of every candidate at once.
+
+    Parameters
+    ----------
+    start
+        Where the steps begin.
+    rate_scale, neutral_scale
+        Scales of the off-axis rate, rad/s, and of the parting of the axes, rad.
+    is_axis_fixed
+        Only the heading knots move.
+
+    Returns
+    -------
+    Candidates
+        In the order of `start`.
+    """
     axis_1, axis_2, knots = start.axis_1, start.axis_2, start.knots_rad
     shares, information, prior = knot_weights(data), sample_information(data), heading_prior(data)
     known = in_earth(data)
@@ -331,7 +387,13 @@ def _step(
 
 
 def sample_information(data: Datasets) -> float:
-    """What one sample tells, where neighbours within the correlation time tell the same."""
+    """What one sample tells, where neighbours within the correlation time tell the same.
+
+    Returns
+    -------
+    float
+        0 to 1, without unit.
+    """
     if len(data) < 2:
         return 1.0
     same = data.stretch[1:] == data.stretch[:-1]
@@ -340,7 +402,13 @@ def sample_information(data: Datasets) -> float:
 
 
 def heading_prior(data: Datasets) -> FloatArray:
-    """Information matrix (k, k) of the headings' random walk between neighbouring knots."""
+    """Information matrix (k, k) of the headings' random walk between neighbouring knots.
+
+    Returns
+    -------
+    (k, k)
+        1/rad2.
+    """
     prior = np.zeros((data.knots, data.knots))
     for k, spacing_s in enumerate(data.knot_spacing_s):
         if np.isfinite(spacing_s):
@@ -350,7 +418,20 @@ def heading_prior(data: Datasets) -> FloatArray:
 
 
 def moved(axis: FloatArray, tangent: FloatArray) -> FloatArray:
-    """Axes (..., 3) moved along their own tangent coordinates (..., 2) and back to unit length."""
+    """Axes (..., 3) moved along their own tangent coordinates (..., 2) and back to unit length.
+
+    Parameters
+    ----------
+    axis : (..., 3)
+        Unit vectors.
+    tangent : (..., 2)
+        rad, along the two axes of `joint_frame`.
+
+    Returns
+    -------
+    (..., 3)
+        Unit vectors.
+    """
     x, y = joint_frame(axis)
     there = axis + tangent[..., :1] * x + tangent[..., 1:] * y
     moved_there: FloatArray = there / np.linalg.norm(there, axis=-1, keepdims=True)

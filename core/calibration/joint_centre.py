@@ -52,7 +52,18 @@ class JointCentre:
 
 
 def centre_by_vectors(data: Datasets, knots_rad: FloatArray) -> JointCentre:
-    """The vector form of eq 7 under known relative orientation: best on a hinge."""
+    """The vector form of eq 7 under known relative orientation: best on a hinge.
+
+    Parameters
+    ----------
+    knots_rad : (k,)
+        Relative heading at the knots of `data`.
+
+    Returns
+    -------
+    JointCentre
+        In sensor axes. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 7.
+    """
     design = coincidence_design(data, relative_rotation(data, data.heading(knots_rad)[None]))
     first = solve_robustly(design, SCALE_M_S2).unknowns[0]
     left = design[0, 12] - np.tensordot(first, design[0, :12], 1)
@@ -67,6 +78,11 @@ def centre_by_lengths(data: Datasets, start: FloatArray) -> JointCentre:
     ----------
     start : (12,)
         From `centre_by_vectors`.
+
+    Returns
+    -------
+    JointCentre
+        In sensor axes. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eq 8.
     """
     g1, dg1, a1 = (np.ascontiguousarray(v.T) for v in (data.g1, data.dg1, data.a1))
     g2, dg2, a2 = (np.ascontiguousarray(v.T) for v in (data.g2, data.dg2, data.a2))
@@ -118,8 +134,15 @@ def centre_sd_m(
 
     Parameters
     ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
     looseness
         Of a hinge: what turns across its axis moves its sensors by that share of their lever.
+
+    Returns
+    -------
+    float
+        m, the larger of both sensors'.
     """
     worst = 0.0
     for axis, part in ((axis_1, slice(0, 3)), (axis_2, slice(3, 6))):
@@ -134,6 +157,17 @@ def centre_sd_m(
 
 
 def nearest_to_sensors(centre: JointCentre, axis_1: FloatArray, axis_2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Of all points on the axis the one nearest to both sensors (Seel et al. 2014, eq 9)."""
+    """Of all points on the axis the one nearest to both sensors (Seel et al. 2014, eq 9).
+
+    Parameters
+    ----------
+    axis_1, axis_2 : (3,)
+        Unit axes of the proximal and the distal sensor, each in its own sensor's axes.
+
+    Returns
+    -------
+    (3,) and (3,)
+        Vectors from that point to each sensor, m, in its axes.
+    """
     along = 0.5 * float(centre.proximal_m @ axis_1 + centre.distal_m @ axis_2)
     return centre.proximal_m - axis_1 * along, centre.distal_m - axis_2 * along

@@ -60,6 +60,11 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     ----------
     knots_rad : (k,)
         Relative heading, decided before.
+
+    Returns
+    -------
+    Lag
+        0 where no lag is found.
     """
     lag = smoothest_lag(data, knots_rad)
     if not lag.lag_s:
@@ -73,7 +78,18 @@ def find_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
 
 
 def smoothest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
-    """Where the accelerations of the joint coincide best below the frequencies of tissue."""
+    """Where the accelerations of the joint coincide best below the frequencies of tissue.
+
+    Parameters
+    ----------
+    knots_rad : (k,)
+        Relative heading, decided before.
+
+    Returns
+    -------
+    Lag
+        Of the distal clock, s.
+    """
     forces = joint_forces(data, SEARCH_S)
     if len(forces) < MIN_SAMPLES:
         return NO_LAG
@@ -90,6 +106,16 @@ def sharpest_lag(data: Datasets, knots_rad: FloatArray) -> Lag:
     """Where the accelerations of a hinge coincide best, in whole samples.
 
     Nothing rings there, and the sharpest changes tell most: the accelerations are taken as they are.
+
+    Parameters
+    ----------
+    knots_rad : (k,)
+        Relative heading, decided before.
+
+    Returns
+    -------
+    Lag
+        Of the distal clock, s.
     """
     step_s = data.pairs[0].step_s
     inner = _with_room(data, int(np.ceil(SEARCH_S / step_s)))

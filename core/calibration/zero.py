@@ -10,6 +10,18 @@ def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, a
     """Twist in standing, radians: arg(z(a1) conj z(a2)) of the mean specific forces (3,) of both sensors.
 
     Needs no heading and no centre, so the recording of standing may be one of its own.
+
+    Parameters
+    ----------
+    down_1, down_2 : (3,)
+        Mean specific force of the proximal and the distal sensor in standing, m/s2, in sensor axes.
+    axis_1, axis_2 : (3,)
+        Unit axes of both, each in its own sensor's axes.
+
+    Returns
+    -------
+    float
+        rad, -pi to pi.
     """
     z1, z2 = (
         complex(down @ x, down @ y)
@@ -19,14 +31,36 @@ def standing_twist(down_1: FloatArray, down_2: FloatArray, axis_1: FloatArray, a
 
 
 def within_half_a_turn(samples_rad: FloatArray, of_rad: float | None = None) -> FloatArray:
-    """Scattered samples (n,) of an angle brought within half a turn of `of_rad`, or of their mean direction."""
+    """Scattered samples (n,) of an angle brought within half a turn of `of_rad`, or of their mean direction.
+
+    Parameters
+    ----------
+    samples_rad : (n,)
+        In any order.
+
+    Returns
+    -------
+    (n,)
+        rad.
+    """
     if of_rad is None:
         of_rad = float(np.angle(np.mean(np.exp(1j * samples_rad)))) if samples_rad.size else 0.0
     return of_rad + wrap(samples_rad - of_rad)
 
 
 def wrapped_to_zero(angle_rad: FloatArray) -> FloatArray:
-    """The angle (n,) moved by whole turns so that its median lies within half a turn of zero."""
+    """The angle (n,) moved by whole turns so that its median lies within half a turn of zero.
+
+    Parameters
+    ----------
+    angle_rad : (n,)
+        NaN in gaps.
+
+    Returns
+    -------
+    (n,)
+        rad, NaN where it was.
+    """
     if not np.isfinite(angle_rad).any():
         return angle_rad
     return angle_rad - 2 * np.pi * np.round(np.nanmedian(angle_rad) / (2 * np.pi))

@@ -106,6 +106,11 @@ def leg_clocks(
         Of the legs that walked in this recording.
     lags_s
         Of each joint, as found between its two sensors.
+
+    Returns
+    -------
+    LegClocks
+        Times in seconds.
     """
     tie, residual_s = _tie(session, recording, steps)
     share, difference = _share_and_difference(steps)
@@ -129,6 +134,18 @@ def stamps_residual_s(one_s: FloatArray, other_s: FloatArray) -> float:
 
     They do where sample for sample they are irregular together, as one receiver's are; or where they begin and end
     together at rates that are their own, as stamps that were fitted to the host's clock do.
+
+    Parameters
+    ----------
+    one_s : (n,)
+        Ascending.
+    other_s : (m,)
+        Ascending.
+
+    Returns
+    -------
+    float
+        s; NaN where nothing is proved.
     """
     if min(len(one_s), len(other_s)) < MIN_SAMPLES:
         return float("nan")

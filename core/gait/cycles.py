@@ -58,6 +58,11 @@ def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s:
     time_s, angle : (n,)
         Ascending instants, and NaN where the angle is not known; missing instants are a gap as well.
     start_s, end_s : (k,)
+
+    Returns
+    -------
+    (k, 101)
+        In the unit of the angle.
     """
     share = np.linspace(0.0, 1.0, POINTS)
     at_s = start_s[:, None] + (end_s - start_s)[:, None] * share
@@ -78,7 +83,18 @@ def cycles_of(time_s: FloatArray, angle: FloatArray, start_s: FloatArray, end_s:
 
 
 def mean_cycle(cycles: FloatArray) -> MeanCycle:
-    """Over the strides of (k, 101) that are known."""
+    """Over the strides of (k, 101) that are known.
+
+    Parameters
+    ----------
+    cycles : (k, 101)
+        One row per stride, NaN throughout where it is not known.
+
+    Returns
+    -------
+    MeanCycle
+        In the unit of the cycles.
+    """
     known = cycles[np.isfinite(cycles).all(axis=1)]
     unknown = np.full(POINTS, np.nan)
     mean = known.mean(axis=0) if len(known) else unknown
@@ -90,6 +106,16 @@ def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
     """The extremum of each stride (k, 101) within the window; missing strides are NaN throughout.
 
     One at the window's edge in half of the strides or more is no peak: the angle only passes through.
+
+    Parameters
+    ----------
+    cycles : (k, 101)
+        One row per stride, NaN throughout where it is not known.
+
+    Returns
+    -------
+    Peak
+        In the unit of the cycles; when, in percent of the stride.
     """
     n = len(cycles)
     is_known = ~np.isnan(cycles[:, 0])  # cycles are whole or missing
@@ -106,5 +132,16 @@ def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
 
 
 def range_of_cycles(cycles: FloatArray) -> FloatArray:
-    """Largest less smallest angle (k,) of each stride (k, 101)."""
+    """Largest less smallest angle (k,) of each stride (k, 101).
+
+    Parameters
+    ----------
+    cycles : (k, 101)
+        One row per stride, NaN throughout where it is not known.
+
+    Returns
+    -------
+    (k,)
+        In the unit of the cycles.
+    """
     return cycles.max(axis=1) - cycles.min(axis=1)

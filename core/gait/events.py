@@ -158,8 +158,15 @@ def gait_of(foot: OrientedTrack, is_rigid: bool = False) -> FootEvents:
 
     Parameters
     ----------
+    foot
+        One stretch without gaps, in sensor axes.
     is_rigid
         The foot does not bend at its toes, as a prosthetic one: it goes on turning when its toes have left the floor.
+
+    Returns
+    -------
+    FootEvents
+        One row per swing, seconds on the track's clock.
     """
     return detect_events(follow(foot), foot.track.is_measured, is_rigid)
 
@@ -173,6 +180,11 @@ def detect_events(motion: FootMotion, is_measured: BoolArray, is_rigid: bool = F
         As `Track.is_measured`.
     is_rigid
         As `gait_of`.
+
+    Returns
+    -------
+    FootEvents
+        One row per swing, seconds on the clock of `motion`.
     """
     rate, swings, sole = motion.pitch_rate_rad_s, motion.swings, travel_of(motion)
     spans = list(zip(swings.anchor_before.tolist(), swings.fastest.tolist(), swings.anchor_after.tolist(), strict=True))
@@ -304,6 +316,11 @@ def without_stray_toe_offs(timing: Timing, fastest: IntArray, step_s: float) -> 
     """Time a toe-off that lies far from where the foot's others lie before the swing is fastest as they do; in place.
 
     A sensor that shakes on its foot shows other peaks than that of push-off.
+
+    Parameters
+    ----------
+    fastest : (k,)
+        Index of the sample in each swing at which the foot is fastest.
     """
     if len(fastest) < MIN_SWINGS_TO_AVERAGE:
         return

@@ -172,7 +172,13 @@ class LiveMotion:
 
 
 def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:
-    """Time and speed of a foot that is calm at the end: what velocity is left there has crept in evenly."""
+    """Time and speed of a foot that is calm at the end: what velocity is left there has crept in evenly.
+
+    Returns
+    -------
+    list
+        Pairs of s and m/s.
+    """
     start_s, (end_s, (ex, ey, ez)) = travelled[0][0], travelled[-1]
     lasts_s = max(end_s - start_s, 1e-9)
     return [
@@ -183,7 +189,13 @@ def speeds_of(travelled: Travelled) -> list[tuple[float, float]]:
 
 
 def way_of_m(travelled: Travelled) -> float:
-    """How far a foot went that hardly turned, and is calm at the end."""
+    """How far a foot went that hardly turned, and is calm at the end.
+
+    Returns
+    -------
+    float
+        m, over the floor.
+    """
     total = [0.0, 0.0, 0.0]
     for (a, v), (b, w) in pairwise(travelled):
         total = [s + 0.5 * (b - a) * (p + q) for s, p, q in zip(total, v, w, strict=True)]
@@ -192,6 +204,13 @@ def way_of_m(travelled: Travelled) -> float:
 
 
 def dot(a: Vector, b: Vector) -> float:
+    """Scalar product of two vectors of three plain floats.
+
+    Returns
+    -------
+    float
+        In the product of their units.
+    """
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 

@@ -38,6 +38,11 @@ def phases_at(time_s: FloatArray, stretches: Sequence[FootEvents]) -> IntArray:
         On the clock of the events.
     stretches
         One foot's events, one item per stretch without gaps.
+
+    Returns
+    -------
+    (n,)
+        Indices into PHASES.
     """
     phase = np.zeros(len(time_s), dtype=np.int64)
     for events in stretches:

@@ -27,6 +27,11 @@ def gait_of_shank(shank: OrientedTrack) -> FootEvents:
     """Initial contact and toe-off of one leg over one stretch without gaps, in any mounting; the rest is NaN.
 
     The gyroscope's bias must have been removed.
+
+    Returns
+    -------
+    FootEvents
+        One row per swing, seconds on the track's clock; heel rise and full contact NaN.
     """
     track = shank.track
     gyr, step_s = track.gyr_rad_s, track.step_s

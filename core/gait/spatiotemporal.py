@@ -33,6 +33,11 @@ def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArr
 
     A step leads from the other foot's initial contact to this foot's, which ends the stride. `clearance_m` is how high
     the foot's sensor rises over its swing, wherever it sits; the toe comes much closer to the floor.
+
+    Returns
+    -------
+    dict
+        Name to (k,), units in the names.
     """
     return {
         "stride_time_s": strides.time_s,
@@ -46,7 +51,18 @@ def parameters_of(strides: Strides, other: Strides | None) -> dict[str, FloatArr
 
 
 def mean_and_sd(values: FloatArray) -> MeanAndSd:
-    """Of the finite values among (k,)."""
+    """Mean and standard deviation of the finite values.
+
+    Parameters
+    ----------
+    values : (k,)
+        In any unit, NaN where not known.
+
+    Returns
+    -------
+    MeanAndSd
+        In that unit.
+    """
     known = values[np.isfinite(values)]
     mean = float(np.mean(known)) if len(known) else float("nan")
     sd = float(np.std(known, ddof=1)) if len(known) >= MIN_STRIDES_FOR_SD else float("nan")

@@ -54,7 +54,13 @@ class HeadingProfile:
 
 
 def profile_headings(sets: Sets, lag_s: float) -> HeadingProfile:
-    """All headings tried on all sets, with the distal sensor's lag corrected."""
+    """All headings tried on all sets, with the distal sensor's lag corrected.
+
+    Returns
+    -------
+    HeadingProfile
+        Angles in rad, axes in sensor axes.
+    """
     rate_1, rate_2 = sets.rates_in_earth(lag_s)
     to_1, to_2 = sets.earth_from_1, sets.earth_from_2 @ (np.eye(3) - lag_s * cross_matrix(sets.g2))
     scatter_1 = _scatter(to_1, rate_2, -rate_1, 1.0)

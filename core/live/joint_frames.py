@@ -18,7 +18,18 @@ from core.samples import ComplexArray, FloatArray
 
 
 def frame_map(axis: FloatArray) -> ComplexArray:
-    """Matrix (4, 2) that takes orientations (n, 4) of a sensor, as rows, to u and v of its joint frame."""
+    """Matrix (4, 2) that takes orientations (n, 4) of a sensor, as rows, to u and v of its joint frame.
+
+    Parameters
+    ----------
+    axis : (3,)
+        Unit axis in sensor axes.
+
+    Returns
+    -------
+    (4, 2)
+        Complex, without unit.
+    """
     frame = np.stack([*joint_frame(axis), axis], axis=1)
     w, x, y, z = Rotation.from_matrix(frame).as_quat(scalar_first=True)
     product = np.array([[w, x, y, z], [-x, w, -z, y], [-y, z, w, -x], [-z, -y, x, w]])  # of 1, i, j, k with it

@@ -117,5 +117,16 @@ class Pairing:
 
 
 def cubic_weights(share: FloatArray) -> FloatArray:
-    """Weights (n, 4) of the samples around a place that lies `share` (n,) after the second: `at_positions` offline."""
+    """Weights (n, 4) of the samples around a place that lies `share` (n,) after the second: `at_positions` offline.
+
+    Parameters
+    ----------
+    share : (n,)
+        0 to 1 of the interval between the second and the third sample.
+
+    Returns
+    -------
+    (n, 4)
+        Rows sum to 1.
+    """
     return share[:, None] ** POWERS @ CUBIC

@@ -58,7 +58,13 @@ _SHAPES = ((3,), (3,), (3,), (2,), (3,), (3, 3), (3, 3), (3, 3, 3), (3, 3), (3, 
 
 
 def parabola(lag_s: float) -> tuple[FloatArray, FloatArray]:
-    """Shares (3,) of the three instants in what was `lag_s` earlier, and their slopes (3,) by the lag."""
+    """Shares (3,) of the three instants in what was `lag_s` earlier, and their slopes (3,) by the lag.
+
+    Returns
+    -------
+    (3,) and (3,)
+        Without unit, and 1/s.
+    """
     at = -lag_s / NODE_S
     return (
         np.array([0.5 * at * (at - 1), 1 - at**2, 0.5 * at * (at + 1)]),

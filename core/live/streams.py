@@ -229,6 +229,22 @@ def akima(at: FloatArray, values: FloatArray, wanted: IntArray, left: IntArray) 
 
     Local and without overshoot, as offline, but without SciPy's set-up at every call (Akima 1970, doi
     10.1145/321607.321609).
+
+    Parameters
+    ----------
+    at : (n,)
+        Ascending.
+    values : (n, k)
+        In any unit.
+    wanted : (m,)
+        On the scale of `at`.
+    left : (m,)
+        Index of the sample before each.
+
+    Returns
+    -------
+    (m, k)
+        In the unit of the values.
     """
     width = np.diff(at)[:, None]
     slope = np.empty((len(at) + 3, values.shape[1]))

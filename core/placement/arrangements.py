@@ -47,6 +47,11 @@ def neighbours_in_steps(
     ----------
     standing
         Mean specific force (3,) of sensors in standing.
+
+    Returns
+    -------
+    Neighbours or None
+        What a joint between every two sensors costs, and where it would be.
     """
     names = tuple(smoothed.sensors)
     ups = [standing.get(name, one.up) for name, one in smoothed.sensors.items()]
@@ -116,6 +121,7 @@ class Arrangements:
 
 
 def joints_between(sites: tuple[Site, ...]) -> list[Joint]:
+    """The joints whose two sites are both among `sites`."""
     return [joint for joint in Joint if joint.proximal in sites and joint.distal in sites]
 
 

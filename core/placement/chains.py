@@ -107,6 +107,11 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
         Mean specific force (3,) of each sensor in standing. Without it the mean vertical of the motion serves, which
         tells less of a patient who lies.
 
+    Returns
+    -------
+    Chains or None
+        One chain per leg, in the order in which they were lifted.
+
     Raises
     ------
     ValueError
@@ -118,7 +123,18 @@ def find_chains(tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
 def chains_in_steps(
     tracks: Tracks, standing: Mapping[str, FloatArray] | None = None
 ) -> Generator[None, None, Chains | None]:
-    """As `find_chains`, in steps."""
+    """As `find_chains`, in steps.
+
+    Parameters
+    ----------
+    standing
+        Mean specific force (3,) of each sensor in standing, m/s2, in sensor axes.
+
+    Returns
+    -------
+    Chains or None
+        When the steps are over.
+    """
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")
     smoothed = yield from smoothed_in_steps(tracks)

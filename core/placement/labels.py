@@ -69,6 +69,11 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
         Of a free motion or a walk, by site; every site with a neighbour among them.
     standing
         Mean specific force (3,) in standing, by site.
+
+    Returns
+    -------
+    list of tuple of Site
+        One item per group.
     """
     return at_once(exchanged_in_steps(tracks, standing))
 
@@ -76,7 +81,18 @@ def exchanged_sites(tracks: Tracks, standing: Mapping[str, FloatArray]) -> list[
 def exchanged_in_steps(
     tracks: Tracks, standing: Mapping[str, FloatArray]
 ) -> Generator[None, None, list[tuple[Site, ...]]]:
-    """As `exchanged_sites`, in steps."""
+    """As `exchanged_sites`, in steps.
+
+    Parameters
+    ----------
+    standing
+        Mean specific force (3,) in standing, m/s2, in sensor axes, by site.
+
+    Returns
+    -------
+    list of tuple of Site
+        When the steps are over.
+    """
     smoothed = (yield from smoothed_in_steps(tracks)) if tracks else None
     neighbours = (yield from neighbours_in_steps(smoothed, standing)) if smoothed else None
     if neighbours is None:

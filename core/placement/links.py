@@ -42,6 +42,11 @@ def link(one: SmoothedTrack, two: SmoothedTrack, index: IntArray, window: IntArr
         Of the instants to be used, neither first nor last.
     window : (m,)
         Numbers the stretches of one heading each.
+
+    Returns
+    -------
+    Link or None
+        Centres in m, each in its own sensor's axes.
     """
     is_known = np.isfinite(one.terms[index, 0, 0])
     for step in LAG_STEPS:

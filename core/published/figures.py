@@ -90,6 +90,11 @@ def cost_over_sphere(rate: FloatArray, axis: FloatArray, length_rad_s: FloatArra
         The axis in use.
     length_rad_s : (n,)
         |g x j| of the other sensor about its own axis.
+
+    Returns
+    -------
+    CostOverSphere
+        Root mean square errors of eq 3 over all directions, rad/s.
     """
     latitude = np.linspace(-np.pi / 2, np.pi / 2, round(np.pi / GRID_STEP_RAD) + 1)[:, None]
     longitude = np.linspace(-np.pi, np.pi, round(2 * np.pi / GRID_STEP_RAD) + 1)[None, :]
@@ -132,7 +137,18 @@ def _lowest(
 
 
 def costs_of_both(sets: Datasets, j1: FloatArray, j2: FloatArray) -> tuple[CostOverSphere, CostOverSphere]:
-    """Fig. 3 for the proximal and for the distal sensor, from data sets of eq 2 and the axes (3,) in use."""
+    """Fig. 3 for the proximal and for the distal sensor, from data sets of eq 2 and the axes (3,) in use.
+
+    Parameters
+    ----------
+    j1, j2 : (3,)
+        Unit axes in use, each in its own sensor's axes.
+
+    Returns
+    -------
+    CostOverSphere, CostOverSphere
+        Of the proximal and of the distal sensor.
+    """
     length_1, length_2 = (np.linalg.norm(np.cross(g, j), axis=1) for g, j in ((sets.g1, j1), (sets.g2, j2)))
     return cost_over_sphere(sets.g1, j1, length_2), cost_over_sphere(sets.g2, j2, length_1)
 
@@ -141,6 +157,16 @@ def projected_rates(pairs: tuple[Pair, ...], j1: FloatArray, j2: FloatArray) -> 
     """The second that tells the pairing of the axes best among those in which the joint bends least; None without one.
 
     "Best" is the largest difference between how well both pairings fit, whichever of them fits better.
+
+    Parameters
+    ----------
+    j1, j2 : (3,)
+        Unit axes in use, each in its own sensor's axes.
+
+    Returns
+    -------
+    ProjectedRates or None
+        rad/s, in both joint planes.
     """
     found = []
     for pair in pairs:
@@ -184,6 +210,11 @@ def two_ways(
         Axes, and centres in m, of the proximal and of the distal sensor.
     tau_s
         Time constant of eq 15.
+
+    Returns
+    -------
+    TwoWays
+        Angles in rad.
     """
     parts = _without_turns([_stretch(pair, j1, j2, o1, o2, tau_s) for pair in pairs])
     drift = float("nan")

@@ -42,7 +42,13 @@ def data_sets(data: Datasets) -> Datasets:
 
 
 def identify_as_published(axis_data: Datasets, centre_data: Datasets) -> PublishedIdentification:
-    """Identify axes from one motion and centres from another: for the ankle, walks and circling."""
+    """Identify axes from one motion and centres from another: for the ankle, walks and circling.
+
+    Returns
+    -------
+    PublishedIdentification
+        In sensor axes. Seel, Raisch and Schauer 2014, doi 10.3390/s140406891, eqs 3 to 8.
+    """
     sets = data_sets(axis_data)
     j1, j2 = identify_axes(sets.g1, sets.g2)
     is_match, clarity = _vote(axis_data.pairs, j1, j2)

@@ -16,7 +16,18 @@ STARTS = tuple((a, b, c, d) for a, b in ((0.2, 0.3), (0.3, 1.9), (1.2, 0.8)) for
 
 
 def axis_from_angles(phi: float, theta: float) -> FloatArray:
-    """Unit vector (3,) of inclination phi and azimuth theta (eqs 4 and 5)."""
+    """Unit vector (3,) of inclination phi and azimuth theta (eqs 4 and 5).
+
+    Parameters
+    ----------
+    phi, theta
+        rad.
+
+    Returns
+    -------
+    (3,)
+        In sensor axes.
+    """
     return np.array([np.cos(phi) * np.cos(theta), np.cos(phi) * np.sin(theta), np.sin(phi)])
 
 
@@ -27,7 +38,20 @@ def _tangents(phi: float, theta: float) -> FloatArray:
 
 
 def constraint(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatArray) -> FloatArray:
-    """|g1 x j1| - |g2 x j2| (n,) of eq 3, rad/s."""
+    """|g1 x j1| - |g2 x j2| (n,) of eq 3, rad/s.
+
+    Parameters
+    ----------
+    g1, g2 : (n, 3)
+        Angular rates, rad/s, each in its own sensor's axes.
+    j1, j2 : (3,)
+        Unit axes, each in its own sensor's axes.
+
+    Returns
+    -------
+    (n,)
+        rad/s.
+    """
     return np.asarray(np.linalg.norm(np.cross(g1, j1), axis=1) - np.linalg.norm(np.cross(g2, j2), axis=1))
 
 
@@ -38,6 +62,11 @@ def identify_axes(g1: FloatArray, g2: FloatArray) -> tuple[FloatArray, FloatArra
     ----------
     g1, g2 : (n, 3)
         Rates of the data sets S(i) (eq 2), rad/s.
+
+    Returns
+    -------
+    (3,) and (3,)
+        Each in its own sensor's axes; eqs 3 to 6.
     """
     x, _ = min((_gauss_newton(g1, g2, np.array(start)) for start in STARTS), key=lambda found: found[1])
     return axis_from_angles(x[0], x[1]), axis_from_angles(x[2], x[3])

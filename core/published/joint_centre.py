@@ -23,6 +23,11 @@ def identify_centres(
     ----------
     a1, a2, g1, g2, dg1, dg2 : (n, 3)
         The data sets S(i) of eq 2.
+
+    Returns
+    -------
+    (3,) and (3,)
+        m, each in its own sensor's axes; eqs 7 and 8.
     """
     lever_1, lever_2 = lever_matrix(g1, dg1), lever_matrix(g2, dg2)
     x = np.full(6, START_M)
@@ -43,6 +48,19 @@ def identify_centres(
 
 
 def shifted_to_sensors(o1: FloatArray, o2: FloatArray, j1: FloatArray, j2: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """The point of the joint axis nearest to both sensors (eq 9)."""
+    """The point of the joint axis nearest to both sensors (eq 9).
+
+    Parameters
+    ----------
+    o1, o2 : (3,)
+        Vectors from a point of the joint axis to each sensor, m, in its axes.
+    j1, j2 : (3,)
+        Unit axes, each in its own sensor's axes.
+
+    Returns
+    -------
+    (3,) and (3,)
+        Vectors from the nearest point to each sensor, m, in its axes.
+    """
     along = 0.5 * float(o1 @ j1 + o2 @ j2)
     return o1 - j1 * along, o2 - j2 * along

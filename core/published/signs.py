@@ -24,6 +24,13 @@ def signs_match(g1: FloatArray, g2: FloatArray, j1: FloatArray, j2: FloatArray, 
     ----------
     g1, g2 : (n, 3)
         Consecutive rates, rad/s.
+    j1, j2 : (3,)
+        Unit axes, each in its own sensor's axes.
+
+    Returns
+    -------
+    bool and float
+        Whether they pair up, and 0 to 1.
     """
     z1, z2 = in_plane(g1, j1), in_plane(g2, j2)
     width = max(4, round(WINDOW_S / step_s))

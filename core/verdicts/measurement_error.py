@@ -239,7 +239,20 @@ class Difference:
 
 
 def mean_of_strides(values: FloatArray, clock_error: float = 0.0) -> MeanOfStrides:
-    """The mean of the finite values among (k,), in order of time, and its uncertainty."""
+    """The mean of the finite values among (k,), in order of time, and its uncertainty.
+
+    Parameters
+    ----------
+    values : (k,)
+        In any unit, NaN where not known.
+    clock_error
+        What the uncertainty of the lag makes of the mean, in that unit.
+
+    Returns
+    -------
+    MeanOfStrides
+        In that unit.
+    """
     known = values[np.isfinite(values)]
     n = len(known)
     mean = float(np.mean(known)) if n else math.nan
@@ -308,6 +321,11 @@ def compare(
         By how much the walks' speeds differ; what it alone may make of an angle or of stance is no difference.
     is_chosen_before
         The measure was chosen before the visit, as a goal is: a sentence then needs the error alone.
+
+    Returns
+    -------
+    Difference
+        In the unit of the column.
     """
     nothing = math.nan
     if any(not found.is_told for found in assessments):
@@ -338,7 +356,13 @@ def compare(
 
 
 def whisker(name: str, kind: ComparisonKind, found: MeanOfStrides) -> float:
-    """Half of the error of a difference from a mean as sure: whiskers that lie apart differ by more than the error."""
+    """Half of the error of a difference from a mean as sure: whiskers that lie apart differ by more than the error.
+
+    Returns
+    -------
+    float
+        In the unit of the column.
+    """
     sigma = sigma_of(name, kind)
     if sigma is None or found.n < MIN_STRIDES_FOR_SD:
         return math.nan

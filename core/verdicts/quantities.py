@@ -100,7 +100,13 @@ def assessment_of_both(verdicts: Verdicts, name: str) -> Assessment:
 
 
 def raw_values(gait: SideGait, name: str) -> FloatArray:
-    """One column of strides.csv (k,), angles in degrees, whatever may be said of it; NaN where not known."""
+    """One column of strides.csv (k,), angles in degrees, whatever may be said of it; NaN where not known.
+
+    Returns
+    -------
+    (k,)
+        One per stride, in the unit that the name ends with.
+    """
     values = gait.parameters.get(name.removesuffix("_deg") + "_rad" if name.endswith("_deg") else name)
     if values is None:
         return np.full(len(gait.strides), np.nan)
@@ -108,7 +114,13 @@ def raw_values(gait: SideGait, name: str) -> FloatArray:
 
 
 def values_of(recording: RecordingAnalysis, side: Side, name: str) -> FloatArray:
-    """As `raw_values`; NaN throughout where the figure is withheld."""
+    """As `raw_values`; NaN throughout where the figure is withheld.
+
+    Returns
+    -------
+    (k,)
+        One per stride, in the unit that the name ends with.
+    """
     gait = recording.gait[side]
     if not assessment_of(recording.verdicts, side, name).is_told:
         return np.full(len(gait.strides), np.nan)
@@ -122,7 +134,13 @@ def side_mean(recording: RecordingAnalysis, side: Side, name: str) -> SideMean:
 
 
 def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> FloatArray:
-    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is withheld."""
+    """When in each stride (k,) the peak of `column` comes, percent; NaN where there is none or it is withheld.
+
+    Returns
+    -------
+    (k,)
+        Percent of the stride.
+    """
     gait, joint = recording.gait[side], joint_of(column, side)
     if joint is None or joint not in gait.cycles:
         return np.full(len(gait.strides), np.nan)
@@ -133,7 +151,13 @@ def peak_percent(recording: RecordingAnalysis, side: Side, column: str) -> Float
 
 
 def used_cycles(recording: RecordingAnalysis, joint: Joint) -> FloatArray:
-    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be said of it."""
+    """The joint's angle over the strides used, (k, 101), radians: evidence, whatever may be said of it.
+
+    Returns
+    -------
+    (k, 101)
+        rad, clinical sign.
+    """
     gait = recording.gait[joint.side]
     return gait.cycles[joint][gait.strides.is_used] if joint in gait.cycles else np.empty((0, POINTS))
 

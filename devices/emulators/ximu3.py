@@ -15,7 +15,18 @@ FIRST_US = 1_000_000
 
 
 def message(letter: str, us: int, numbers: Sequence[float], is_binary: bool) -> bytes:
-    """A message of numbers as it is sent."""
+    """A message of numbers as it is sent.
+
+    Parameters
+    ----------
+    us
+        Microseconds of the sensor's clock.
+
+    Returns
+    -------
+    bytes
+        With its end, stuffed where binary.
+    """
     if is_binary:
         return stuffed(bytes([0x80 | ord(letter)]) + pack(f"<Q{len(numbers)}f", us, *numbers))
     return f"{letter},{us},{','.join(f'{number:.4f}' for number in numbers)}\r\n".encode()

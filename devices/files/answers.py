@@ -40,6 +40,7 @@ class BrokenAnswerError(Exception):
 
 
 def send(stream: IO[bytes], details: Details, arrays: Sequence[Array] = ()) -> None:
+    """Write one message: its length, what it says as JSON, then the bytes of its arrays."""
     shapes = [[array.dtype.str, list(array.shape)] for array in arrays]
     message = json.dumps({"details": details, "arrays": shapes}).encode()
     stream.write(LENGTH.pack(len(message)))
@@ -114,10 +115,12 @@ def block_from(details: Details, arrays: Sequence[Array]) -> ImuBlock:
 
 
 def details_of_findings(findings: Sequence[Finding]) -> list[Details]:
+    """Findings as what JSON can hold."""
     return [{"key": f.key, "severity": f.severity, "where": f.where, "numbers": dict(f.numbers)} for f in findings]
 
 
 def findings_from(details: list[Details]) -> tuple[Finding, ...]:
+    """What `details_of_findings` wrote, checked."""
     with _whatever_is_wrong():
         return tuple(_finding(one) for one in details)
 
@@ -135,6 +138,7 @@ def details_of_import(imported: ImportedFiles, arrays: list[Array]) -> Details:
 
 
 def import_from(details: Details, arrays: Sequence[Array]) -> ImportedFiles:
+    """What `details_of_import` wrote, checked."""
     with _whatever_is_wrong():
         return ImportedFiles(
             {Site(site): block_from(block, arrays) for site, block in details["imu"].items()},
@@ -156,6 +160,7 @@ def details_of_document(value: object) -> object:
 
 
 def document_from(details: object) -> object:
+    """What `details_of_document` wrote, checked."""
     with _whatever_is_wrong():
         match details:
             case ["table", dict(inner)]:
@@ -170,6 +175,7 @@ def document_from(details: object) -> object:
 
 
 def details_of_refusal(refusal: FileRefusedError) -> Details:
+    """A refusal as what JSON can hold."""
     return {"where": refusal.where, "what": refusal.what, "remedy": refusal.remedy, "values": refusal.values}
 
 

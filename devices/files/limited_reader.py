@@ -178,6 +178,7 @@ def start(memory_bytes: int) -> Process:
 
 
 def end(process: Process) -> None:
+    """Kill a process and wait until it is gone."""
     process.kill()
     process.wait()
     for stream in (process.stdin, process.stdout):

@@ -53,7 +53,13 @@ def limit_this_process(memory_bytes: int) -> None:
 
 
 def limit_processor_time(more_s: float) -> None:
-    """Let the system end this process once it has computed `more_s` longer than until now."""
+    """Let the system end this process once it has computed `more_s` longer than until now.
+
+    Parameters
+    ----------
+    more_s
+        Of processor time.
+    """
     if sys.platform == "win32":
         return
     import resource

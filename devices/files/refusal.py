@@ -24,6 +24,7 @@ class FileRefusedError(Exception):
 
 
 def one_line(text: str) -> str:
+    """Text without anything that breaks a line or a terminal."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())
 
 

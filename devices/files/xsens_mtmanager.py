@@ -122,6 +122,11 @@ def import_mtmanager(
     rate_hz
         Update rate where the files do not tell it.
 
+    Returns
+    -------
+    ImportedFiles
+        SI units, sensor axes; seconds since the trial's first packet.
+
     Raises
     ------
     FileRefusedError
@@ -161,6 +166,20 @@ def derive_rates(q_earth_from_sensor: FloatArray, counter: Numbers, rate_hz: flo
     order: 0.2 % low at a tenth of the sampling rate), or over one where a second is missing. Both are symmetric about
     the stamp: the rate belongs to it and not to an instant half a sample beside it. Samples at a border or gap have no
     neighbour on one side, and no rate.
+
+    Parameters
+    ----------
+    q_earth_from_sensor : (n, 4)
+        Unit quaternions, scalar first.
+    counter : (n,)
+        Ascending packet numbers.
+    rate_hz
+        Packets per second.
+
+    Returns
+    -------
+    (n, 3)
+        rad/s, in sensor axes; NaN where a neighbour is missing.
     """
     before_2, before, after, after_2 = (_turn_to(q_earth_from_sensor, counter, steps) for steps in (-2, -1, 1, 2))
     over_two = (8.0 * (after - before) - (after_2 - before_2)) * rate_hz / 12.0
