@@ -4,6 +4,8 @@ from enum import StrEnum
 
 
 class Side(StrEnum):
+    """The side of the patient."""
+
     LEFT = "left"
     RIGHT = "right"
 
@@ -13,6 +15,8 @@ class Side(StrEnum):
 
 
 class Segment(StrEnum):
+    """A segment of the leg."""
+
     THIGH = "thigh"
     SHANK = "shank"
     FOOT = "foot"

@@ -6,6 +6,8 @@ from enum import StrEnum
 
 
 class Severity(StrEnum):
+    """How much a finding matters to whoever reads results."""
+
     INFO = "info"
     WARNING = "warning"
     GRAVE = "grave"

@@ -13,6 +13,8 @@ from core.samples import RecordingKind, Session
 
 
 class Say(Protocol):
+    """Notes one finding about the joint at hand."""
+
     def __call__(self, key: str, severity: Severity, **numbers: float | int | str) -> None: ...
 
 

@@ -42,6 +42,7 @@ class JointForce:
 
     @property
     def end_s(self) -> float:
+        """When the last instant is."""
         return self.start_s + self.step_s * (len(self.heard) - 1)
 
     def at(self, time_s: FloatArray) -> FloatArray:
@@ -50,6 +51,7 @@ class JointForce:
         return found.reshape(-1, 3, 7)
 
     def is_heard_at(self, time_s: FloatArray) -> BoolArray:
+        """Whether most of what the instants nearest to `time_s` (n,) are made of was heard."""
         nearest = np.round((time_s - self.start_s) / self.step_s).astype(np.int64)
         is_inside = (nearest >= 0) & (nearest < len(self.heard))
         return is_inside & (self.heard[np.clip(nearest, 0, len(self.heard) - 1)] > MIN_HEARD)

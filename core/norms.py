@@ -53,6 +53,7 @@ class ReferenceCurves:
         return _class_of(froude_number(self.speed_m_s, self.leg_length_m))
 
     def is_near(self, speed_m_s: float) -> bool:
+        """Whether a walk is as fast as the group's, within MAX_SPEED_DIFFERENCE_M_S."""
         return abs(speed_m_s - self.speed_m_s) <= MAX_SPEED_DIFFERENCE_M_S
 
     def mean_and_sd_deg(self, kind: str) -> tuple[FloatArray, FloatArray]:
@@ -74,6 +75,7 @@ class ReferenceValues:
 
     @property
     def speed_m_s(self) -> float:
+        """The group's mean walking speed."""
         return self.values["walking_speed"].mean
 
 

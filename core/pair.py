@@ -71,10 +71,12 @@ class Pair:
 
     @property
     def duration_s(self) -> float:
+        """Seconds from the first to the last sample."""
         return float(self.time_s[-1] - self.time_s[0])
 
     @property
     def is_moving(self) -> BoolArray:
+        """Samples (n,) around which both sensors together turn faster than MOVING_RAD_S."""
         speed = np.sqrt(np.einsum("ni,ni->n", self.g1, self.g1) + np.einsum("ni,ni->n", self.g2, self.g2))
         return moving_mean(speed, max(1, round(MOVING_WINDOW_S / self.step_s))) > MOVING_RAD_S
 

@@ -14,11 +14,15 @@ from core.verdicts.model import Verdicts
 
 
 class Method(StrEnum):
+    """How joints are identified and angles computed: robustly, or as published."""
+
     ROBUST = "robust"
     PUBLISHED = "published"
 
 
 class AxisSource(StrEnum):
+    """The motion, or the further step, that a joint axis comes from."""
+
     FREE_MOTION = "free_motion"
     WALKING = "walking"
     POOLED = "pooled"
@@ -27,6 +31,8 @@ class AxisSource(StrEnum):
 
 
 class ZeroKind(StrEnum):
+    """What the zero of an angle rests on."""
+
     STANDING = "standing"
     GONIOMETER = "goniometer"
     NONE = "none"

@@ -26,6 +26,8 @@ class RateKind(StrEnum):
 
 
 class RecordingKind(StrEnum):
+    """What the patient did in a recording."""
+
     STANDING = "standing"
     FREE_MOTION = "free_motion"
     WALKING = "walking"

@@ -46,10 +46,12 @@ class Track:
 
     @property
     def time_s(self) -> FloatArray:
+        """Even stamps (n,)."""
         return self.start_s + self.step_s * np.arange(len(self))
 
     @property
     def end_s(self) -> float:
+        """Stamp of the last sample."""
         return self.start_s + self.step_s * (len(self) - 1)
 
 

@@ -53,6 +53,7 @@ class ClockFit:
     residual_s: float = 0.0
 
     def host_s(self, device_s: FloatArray) -> FloatArray:
+        """The host's seconds (n,) at the sensor's."""
         return device_s + (self.offset_s + self.skew * (device_s - self.origin_s))
 
 
@@ -236,6 +237,7 @@ class LiveClock:
 
     @property
     def residual_s(self) -> float:
+        """As `ClockFit.residual_s`, 0 before anything was fitted."""
         return self._fit.residual_s if self._fit is not None else 0.0
 
     def stamp(self, device_s: FloatArray, host_s: float) -> FloatArray:

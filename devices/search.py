@@ -58,6 +58,8 @@ class Passed:
 
 @dataclass(frozen=True, slots=True)
 class SearchResult:
+    """What one search heard: sensors, ports that were passed over and why, ports that send lines of numbers."""
+
     sensors: tuple[FoundSensor, ...] = ()
     passed: tuple[Passed, ...] = ()
     lines: tuple[LinesAt, ...] = ()

@@ -101,6 +101,8 @@ class StrappedSensors:
 
 @dataclass(frozen=True, slots=True)
 class SimulatedSession:
+    """A session as sensors would have recorded it, and what is true of it."""
+
     session: Session
     truth: SessionTruth
 

@@ -104,6 +104,8 @@ PEOPLE = Variation(
 
 @dataclass(frozen=True, slots=True)
 class Standing:
+    """Standing still for `duration_s`."""
+
     name: str = "standing"
     duration_s: float = 3.0
     is_restrapped_before: bool = False

@@ -84,6 +84,8 @@ class RecordingTruth:
 
 @dataclass(frozen=True, slots=True)
 class SessionTruth:
+    """What is true of each recording, by name, and the accelerometers' biases (3,) by site, in sensor axes."""
+
     recordings: Mapping[str, RecordingTruth]
     acc_bias_m_s2: Mapping[Site, FloatArray]
 

@@ -44,10 +44,12 @@ class JointCentre:
 
     @property
     def proximal_m(self) -> FloatArray:
+        """From the joint to the proximal sensor (3,), in its axes."""
         return self.unknowns[0:3]
 
     @property
     def distal_m(self) -> FloatArray:
+        """From the joint to the distal sensor (3,), in its axes."""
         return self.unknowns[3:6]
 
 

@@ -103,6 +103,7 @@ class FootMotion:
     is_direction_certain: bool
 
     def time_of(self, index: FloatArray) -> FloatArray:
+        """Seconds at fractional indices of samples (...,)."""
         return self.start_s + self.step_s * index
 
 

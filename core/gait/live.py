@@ -106,6 +106,8 @@ SETTINGS = LiveEventSettings()
 
 
 class FootEvent(StrEnum):
+    """The four events of one foot."""
+
     HEEL_RISE = "heel_rise"
     TOE_OFF = "toe_off"
     INITIAL_CONTACT = "initial_contact"

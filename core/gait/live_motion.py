@@ -65,6 +65,7 @@ class LiveMotion:
         self.speed_m_s = self.calm_s = self.flat_s = 0.0
 
     def add(self, now_s: float, step_s: float, gyr: Vector, acc: Vector, flat_rad_s: float) -> None:
+        """Take one sample, `step_s` after the last: rate (rad/s) and specific force (m/s2) in sensor axes."""
         x, y, z = gyr
         fx, fy, fz = acc
         turning = x * x + y * y + z * z

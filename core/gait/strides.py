@@ -61,18 +61,22 @@ class Strides:
 
     @property
     def is_used(self) -> BoolArray:
+        """Which strides (k,) have no reason to be left out."""
         return np.array([reason is Reason.USED for reason in self.reason], dtype=bool)
 
     @property
     def time_s(self) -> FloatArray:
+        """Duration of each stride (k,)."""
         return self.end_s - self.start_s
 
     @property
     def stance_percent(self) -> FloatArray:
+        """Initial contact to toe-off (k,), percent of the stride."""
         return 100.0 * (self.toe_off_s - self.start_s) / self.time_s
 
     @property
     def speed_m_s(self) -> FloatArray:
+        """Length over duration of each stride (k,)."""
         return self.length_m / self.time_s
 
     def left_out_at(self, times_s: Sequence[float]) -> "Strides":

@@ -44,6 +44,7 @@ class Integral:
 
     @property
     def sd_rad(self) -> float:
+        """Standard deviation of the angle now."""
         return self._drift.sd_rad
 
     def follow(self, rows: PairedSamples) -> FloatArray:

@@ -45,14 +45,17 @@ class OrientedSamples:
 
     @property
     def q_earth_from_sensor(self) -> FloatArray:
+        """Unit quaternions (n, 4), scalar first."""
         return self.signals[:, 0:4]
 
     @property
     def gyr_rad_s(self) -> FloatArray:
+        """Angular rates (n, 3) in sensor axes."""
         return self.signals[:, 4:7]
 
     @property
     def acc_m_s2(self) -> FloatArray:
+        """Specific forces (n, 3) in sensor axes."""
         return self.signals[:, 7:10]
 
 

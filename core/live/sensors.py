@@ -19,6 +19,7 @@ class LiveSensor:
 
     @property
     def step_s(self) -> float:
+        """Seconds between two samples."""
         return 1.0 / self.rate_hz
 
 
