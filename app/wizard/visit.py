@@ -277,7 +277,7 @@ class Visit(QObject):
 
     def live_sensors(self) -> "Mapping[str, LiveSensor]":
         """What the live estimator has to know of each sensor that is worn, by its name."""
-        from app.acquisition.works import live_sensors
+        from app.acquisition.live_sensors import live_sensors
 
         return live_sensors(self.sensors.site_of, self.rests, self.sensors.status)
 

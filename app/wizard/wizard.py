@@ -19,13 +19,13 @@ from app.wizard.keys import Action, Intent, Keys
 from app.wizard.losses import NOTHING, Message
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.sources import choices
+from app.wizard.step import Step
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.patient_step import PatientStep
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
 from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.steps.stand_still_step import StandStillStep
-from app.wizard.steps.step import Step
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import DEMO, Visit, patient_line
 from app.wording import tr

@@ -22,10 +22,10 @@ import numpy as np
 
 from app.acquisition.acquisition import Acquisition, LiveWork
 from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
+from app.acquisition.live_sensors import live_sensors
 from app.acquisition.placing_work import PlacingWork
 from app.acquisition.standing_work import StandingWork
 from app.acquisition.walking_work import WalkingWork
-from app.acquisition.works import live_sensors
 from app.storage.journal.writer import JournalWriter
 from core.analysis import analyse
 from core.body import Side, Site

@@ -23,7 +23,7 @@ from app.wizard.hints import (
 )
 from app.wizard.keys import Action, Intent
 from app.wizard.side_question import SILENT, SideQuestion, Words
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wizard.takes import Take
 from app.wizard.visit import opposite
 from app.wording import name_of, tr
@@ -282,7 +282,7 @@ class FreeMotionStep(Step):
     def _watch(self) -> None:
         """Follow the motion from now on."""
         from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
-        from app.acquisition.works import live_sensors
+        from app.acquisition.live_sensors import live_sensors
 
         visit = self._visit
         acquisition, sensors = visit.sensors.acquisition, visit.sensors

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.rail_row import StepState
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wording import name_of, tr
 from core.body import Joint
 from core.samples import Patient, RecordingKind, Session

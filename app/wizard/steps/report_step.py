@@ -21,7 +21,7 @@ from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
 from app.workers.library_desk import LibraryDesk

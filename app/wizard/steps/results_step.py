@@ -17,7 +17,7 @@ from app.widgets.rail_row import StepState
 from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Action as KeyAction
 from app.wizard.keys import Intent
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wizard.stride_choice import StrideChoice
 from app.wording import capitalised, name_of, place, tr
 from core.body import Joint

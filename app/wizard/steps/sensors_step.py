@@ -18,8 +18,8 @@ from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Action, Intent
 from app.wizard.replays import Replays
 from app.wizard.sources import SEARCH
+from app.wizard.step import Step
 from app.wizard.steps.columns_telling import ColumnsTelling
-from app.wizard.steps.step import Step
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
 from core.body import Joint, Site

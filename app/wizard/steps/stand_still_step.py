@@ -14,7 +14,7 @@ from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wizard.takes import Take
 from app.wording import tr
 from core.body import Joint

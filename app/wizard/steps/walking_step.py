@@ -15,7 +15,7 @@ from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.losses import NOTHING, Losses, Message
-from app.wizard.steps.step import Step
+from app.wizard.step import Step
 from app.wizard.walk_labels import label_after, labels_for, letters_of
 from app.wizard.walk_messages import (
     clock,

@@ -27,6 +27,7 @@ from core.body import Site
 from core.samples import Patient, Session
 from devices.replay import ReplaySource
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
+from tests.app.wizard.dressed_patient import Worn, dressed_patient
 
 PASSPHRASE = "four short words here"
 SPEED = 20.0
@@ -107,3 +108,9 @@ def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     yield step
     step.leave()
     step.deleteLater()
+
+
+@pytest.fixture(scope="session")
+def dressed() -> Worn:
+    """The simulated patient of the estimators' tests, who takes a few seconds to make."""
+    return dressed_patient()

@@ -2,9 +2,9 @@
 
 import pytest
 
-from tests.app.acquisition.works.patient import Worn, dressed_patient
+from tests.app.wizard.dressed_patient import Worn, dressed_patient
 
 
 @pytest.fixture(scope="session")
-def worn() -> Worn:
+def dressed() -> Worn:
     return dressed_patient()

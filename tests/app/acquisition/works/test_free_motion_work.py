@@ -7,7 +7,7 @@ from app.acquisition.free_motion_work import FreeMotionView, FreeMotionWork, Unp
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import ImuBlock
-from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -30,18 +30,18 @@ def assert_same(one: FreeMotionState, two: FreeMotionState) -> None:
     assert one.weakest == two.weakest
 
 
-def shortened(worn: Worn, from_s: float, to_s: float) -> dict[str, ImuBlock]:
-    return {name: between(block, from_s, to_s) for name, block in worn.free_motion.items()}
+def shortened(dressed: Worn, from_s: float, to_s: float) -> dict[str, ImuBlock]:
+    return {name: between(block, from_s, to_s) for name, block in dressed.free_motion.items()}
 
 
-def exchanged(worn: Worn, one: Site, other: Site) -> dict[str, Site]:
+def exchanged(dressed: Worn, one: Site, other: Site) -> dict[str, Site]:
     swap = {one: other, other: one}
-    return {name: swap.get(site, site) for name, site in worn.site_of.items()}
+    return {name: swap.get(site, site) for name, site in dressed.site_of.items()}
 
 
 @pytest.fixture(scope="module")
-def usual(worn: Worn) -> list[FreeMotionView]:
-    return fed(FreeMotionWork(worn.site_of, worn.live_sensors), dict(worn.free_motion), 0.03)
+def usual(dressed: Worn) -> list[FreeMotionView]:
+    return fed(FreeMotionWork(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), 0.03)
 
 
 def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[FreeMotionView]) -> None:
@@ -57,17 +57,17 @@ def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[Fr
 
 
 @pytest.mark.parametrize("block_s", [0.7, 60.0])
-def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[FreeMotionView], block_s: float) -> None:
-    other = fed(FreeMotionWork(worn.site_of, worn.live_sensors), dict(worn.free_motion), block_s)[-1]
+def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[FreeMotionView], block_s: float) -> None:
+    other = fed(FreeMotionWork(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), block_s)[-1]
     assert_same(other.motion, usual[-1].motion)
     assert (other.elapsed_s, other.exchanged) == (usual[-1].elapsed_s, usual[-1].exchanged)
 
 
-def test_one_leg_begins_anew_and_the_other_stays_as_it_is(worn: Worn) -> None:
-    work = FreeMotionWork(worn.site_of, worn.live_sensors)
-    before = fed(work, shortened(worn, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
+def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None:
+    work = FreeMotionWork(dressed.site_of, dressed.live_sensors)
+    before = fed(work, shortened(dressed, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
     work.repeat(Side.LEFT)
-    after = fed(work, shortened(worn, LEFT_MOVES_S + 8.0, LEFT_MOVES_S + 14.0))
+    after = fed(work, shortened(dressed, LEFT_MOVES_S + 8.0, LEFT_MOVES_S + 14.0))
     first, last = after[0], after[-1]
     assert first.repeated is last.repeated is Side.LEFT
     assert first.motion.joints[Joint.LEFT_KNEE].moved_s == 0.0
@@ -80,10 +80,10 @@ def test_one_leg_begins_anew_and_the_other_stays_as_it_is(worn: Worn) -> None:
 @pytest.mark.parametrize(
     ("one", "other"), [(Site.LEFT_THIGH, Site.LEFT_SHANK), (Site.LEFT_FOOT, Site.RIGHT_FOOT)], ids=["leg", "legs"]
 )
-def test_labels_that_the_motion_contradicts_are_named(worn: Worn, one: Site, other: Site) -> None:
-    standing = {name: rest.acc_m_s2 for name, rest in worn.rests.items()}
-    work = FreeMotionWork(exchanged(worn, one, other), worn.live_sensors, standing=standing)
-    told = fed(work, dict(worn.free_motion))
+def test_labels_that_the_motion_contradicts_are_named(dressed: Worn, one: Site, other: Site) -> None:
+    standing = {name: rest.acc_m_s2 for name, rest in dressed.rests.items()}
+    work = FreeMotionWork(exchanged(dressed, one, other), dressed.live_sensors, standing=standing)
+    told = fed(work, dict(dressed.free_motion))
     assert told[-1].exchanged == ((one, other),)
     if one.side is other.side:  # across the legs another group may be named until both have moved for long
         assert all(state.exchanged in ((), ((one, other),)) for state in told)
@@ -91,10 +91,10 @@ def test_labels_that_the_motion_contradicts_are_named(worn: Worn, one: Site, oth
 
 @pytest.mark.parametrize("first", [Side.LEFT, None])
 def test_sensors_without_sites_are_placed_and_made_up_for(
-    worn: Worn, usual: list[FreeMotionView], first: Side | None
+    dressed: Worn, usual: list[FreeMotionView], first: Side | None
 ) -> None:
-    work = UnplacedFreeMotionWork(worn.live_sensors, first)
-    told = fed(work, dict(worn.free_motion), 0.1)
+    work = UnplacedFreeMotionWork(dressed.live_sensors, first)
+    told = fed(work, dict(dressed.free_motion), 0.1)
     if first is None:
         assert not told[-1].site_of
         assert told[-1].chains is not None
@@ -102,67 +102,67 @@ def test_sensors_without_sites_are_placed_and_made_up_for(
         assert told[-1].is_side_open
         return
     assert not told[-1].is_side_open
-    assert all(state.site_of in ({}, worn.site_of) for state in told)
-    assert told[-1].site_of == worn.site_of
+    assert all(state.site_of in ({}, dressed.site_of) for state in told)
+    assert told[-1].site_of == dressed.site_of
     assert_same(told[-1].motion, usual[-1].motion)
     assert told[-1].elapsed_s == usual[-1].elapsed_s
 
 
-def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(worn: Worn) -> None:
-    work = UnplacedFreeMotionWork(worn.live_sensors, None)
-    left = next(name for name, site in worn.site_of.items() if site is Site.LEFT_SHANK)
+def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(dressed: Worn) -> None:
+    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
+    left = next(name for name, site in dressed.site_of.items() if site is Site.LEFT_SHANK)
     work.name_leg((left, Side.RIGHT))
-    last = fed(work, dict(worn.free_motion))[-1]
+    last = fed(work, dict(dressed.free_motion))[-1]
     assert {name: site.segment for name, site in last.site_of.items()} == {
-        name: site.segment for name, site in worn.site_of.items()
+        name: site.segment for name, site in dressed.site_of.items()
     }
-    assert all(last.site_of[name].side is not site.side for name, site in worn.site_of.items())
+    assert all(last.site_of[name].side is not site.side for name, site in dressed.site_of.items())
 
 
-def test_a_word_about_the_leg_that_moved_second_names_the_first_the_other(worn: Worn) -> None:
+def test_a_word_about_the_leg_that_moved_second_names_the_first_the_other(dressed: Worn) -> None:
     """Whoever answers looks at a sensor, not at which leg the search has put first by then."""
-    work = UnplacedFreeMotionWork(worn.live_sensors, None)
-    right = next(name for name, site in worn.site_of.items() if site is Site.RIGHT_SHANK)
+    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
+    right = next(name for name, site in dressed.site_of.items() if site is Site.RIGHT_SHANK)
     work.name_leg((right, Side.RIGHT))
-    assert fed(work, dict(worn.free_motion))[-1].site_of == worn.site_of
+    assert fed(work, dict(dressed.free_motion))[-1].site_of == dressed.site_of
 
 
-def test_a_word_that_is_undone_places_nobody(worn: Worn) -> None:
-    work = UnplacedFreeMotionWork(worn.live_sensors, None)
-    work.name_leg((next(iter(worn.site_of)), Side.RIGHT))
+def test_a_word_that_is_undone_places_nobody(dressed: Worn) -> None:
+    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
+    work.name_leg((next(iter(dressed.site_of)), Side.RIGHT))
     work.name_leg(None)
-    last = fed(work, dict(worn.free_motion))[-1]
+    last = fed(work, dict(dressed.free_motion))[-1]
     assert last.is_side_open
     assert not last.site_of
 
 
-def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(worn: Worn) -> None:
-    right = {name: worn.live_sensors[name] for name, site in worn.site_of.items() if site.side is Side.RIGHT}
+def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(dressed: Worn) -> None:
+    right = {name: dressed.live_sensors[name] for name, site in dressed.site_of.items() if site.side is Side.RIGHT}
     work = UnplacedFreeMotionWork(right, Side.LEFT)
-    streams = {name: between(worn.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
+    streams = {name: between(dressed.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
     assert fed(work, streams)[-1].is_side_open
     assert not work.state.site_of
     work.name_leg((next(iter(right)), Side.RIGHT))
-    later = {name: between(worn.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
-    assert fed(work, later)[-1].site_of == {name: worn.site_of[name] for name in right}
+    later = {name: between(dressed.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
+    assert fed(work, later)[-1].site_of == {name: dressed.site_of[name] for name in right}
 
 
 @pytest.mark.endurance
-def test_no_more_than_half_a_minute_is_held_back(worn: Worn) -> None:
-    work = UnplacedFreeMotionWork(worn.live_sensors, Side.LEFT)
+def test_no_more_than_half_a_minute_is_held_back(dressed: Worn) -> None:
+    work = UnplacedFreeMotionWork(dressed.live_sensors, Side.LEFT)
     stood = {
         name: ImuBlock(name, np.concatenate([block.time_s + 5.0 * k for k in range(8)]), *repeated(block, 8))
-        for name, block in worn.standing.items()
+        for name, block in dressed.standing.items()
     }
     for block in in_blocks(stood, 0.5):
         work.update(block)
     end_s = max(float(block.time_s[-1]) for block in stood.values())
     moved = {
         name: ImuBlock(name, block.time_s - BEGIN_S + end_s + 0.02, block.gyr_rad_s, block.acc_m_s2)
-        for name, block in worn.free_motion.items()
+        for name, block in dressed.free_motion.items()
     }
     told = fed(work, moved)
-    assert told[-1].site_of == worn.site_of
+    assert told[-1].site_of == dressed.site_of
     assert told[-1].elapsed_s == pytest.approx(62.0, abs=0.2)
     assert told[-1].motion.joints[Joint.RIGHT_KNEE].moved_s == pytest.approx(11.0, abs=1.0)
 

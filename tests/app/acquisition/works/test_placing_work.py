@@ -1,4 +1,4 @@
-"""Shaking one sensor after the other, or moving the legs, tells where each is worn."""
+"""Shaking one sensor after the other, or moving the legs, tells where each is dressed."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -9,7 +9,7 @@ import pytest
 from app.acquisition.placing_work import PlacingState, PlacingWork
 from core.body import Side
 from core.samples import ImuBlock
-from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -113,34 +113,34 @@ def test_a_sensor_that_has_fallen_silent_keeps_nobody_from_being_recognised() ->
     assert states(in_blocks(streams, 0.03))[-1].shakes == 1
 
 
-def test_the_legs_are_told_and_their_sides_by_who_moved_first(worn: Worn) -> None:
-    work, told = PlacingWork(worn.site_of), []
-    for block in in_blocks(worn.free_motion, 0.03):
+def test_the_legs_are_told_and_their_sides_by_who_moved_first(dressed: Worn) -> None:
+    work, told = PlacingWork(dressed.site_of), []
+    for block in in_blocks(dressed.free_motion, 0.03):
         work.update(block)
         told.append(work.state)
     named = [state.sites(Side.LEFT) for state in told]
-    assert all(sites in ({}, worn.site_of) for sites in named)  # never anything wrong
-    assert named[-1] == worn.site_of
+    assert all(sites in ({}, dressed.site_of) for sites in named)  # never anything wrong
+    assert named[-1] == dressed.site_of
     mirrored = {name: site.side for name, site in told[-1].sites(Side.RIGHT).items()}
-    assert all(mirrored[name] is not site.side for name, site in worn.site_of.items())
+    assert all(mirrored[name] is not site.side for name, site in dressed.site_of.items())
     assert not any(state.shaken or state.shaken_together for state in told)
 
 
-def test_standing_and_shaking_tell_no_legs(worn: Worn) -> None:
-    streams = dict(worn.standing)
+def test_standing_and_shaking_tell_no_legs(dressed: Worn) -> None:
+    streams = dict(dressed.standing)
     for number, name in enumerate(streams):
         streams[name] = shaken(streams[name], BEGIN_S + 0.8 * number, BEGIN_S + 0.8 * (number + 1))
-    work = PlacingWork(worn.site_of)
+    work = PlacingWork(dressed.site_of)
     for block in in_blocks(streams, 0.03):
         work.update(block)
         assert not work.state.is_sure
 
 
 @pytest.mark.parametrize("block_s", [0.013, 60.0])
-def test_the_size_of_the_blocks_changes_nothing(worn: Worn, block_s: float) -> None:
-    usual, other = PlacingWork(worn.site_of), PlacingWork(worn.site_of)
+def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -> None:
+    usual, other = PlacingWork(dressed.site_of), PlacingWork(dressed.site_of)
     # a look that is going on at the end tells nothing yet, unless one block brings all its steps
-    streams = {name: between(block, BEGIN_S, BEGIN_S + 21.9) for name, block in worn.free_motion.items()}
+    streams = {name: between(block, BEGIN_S, BEGIN_S + 21.9) for name, block in dressed.free_motion.items()}
     name = next(iter(streams))
     streams[name] = shaken(streams[name], BEGIN_S + 20.5, BEGIN_S + 21.9)
     for work, size_s in ((usual, 0.03), (other, block_s)):

@@ -6,36 +6,36 @@ import pytest
 
 from app.acquisition.standing_work import LIMIT_DEG_S, StandingView, StandingWork
 from core.samples import ImuBlock
-from tests.app.acquisition.works.patient import BEGIN_S, Worn, in_blocks
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
 
 
-def states(worn: Worn, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[StandingView]:
-    work, told = StandingWork(worn.site_of), []
+def states(dressed: Worn, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[StandingView]:
+    work, told = StandingWork(dressed.site_of), []
     for block in in_blocks(streams, block_s):
         work.update(block)
         told.append(work.state)
     return told
 
 
-def swayed(worn: Worn, at_s: float) -> tuple[str, dict[str, ImuBlock]]:
+def swayed(dressed: Worn, at_s: float) -> tuple[str, dict[str, ImuBlock]]:
     """One sensor turns for a moment."""
-    name = sorted(worn.standing)[2]
-    block = worn.standing[name]
+    name = sorted(dressed.standing)[2]
+    block = dressed.standing[name]
     gyr_rad_s = block.gyr_rad_s.copy()
     gyr_rad_s[(block.time_s >= at_s) & (block.time_s < at_s + 0.1), 0] += 0.4
-    return name, {**worn.standing, name: replace(block, gyr_rad_s=gyr_rad_s)}
+    return name, {**dressed.standing, name: replace(block, gyr_rad_s=gyr_rad_s)}
 
 
-def test_who_stands_still_is_done_with_every_sensor_at_rest(worn: Worn) -> None:
-    last = states(worn, dict(worn.standing))[-1]
-    assert set(last.standing.rest) == set(worn.site_of)
+def test_who_stands_still_is_done_with_every_sensor_at_rest(dressed: Worn) -> None:
+    last = states(dressed, dict(dressed.standing))[-1]
+    assert set(last.standing.rest) == set(dressed.site_of)
     assert last.standing.restarts == 0
     assert 0.0 < max(last.movement_deg_s.values()) < LIMIT_DEG_S
 
 
-def test_the_bars_pass_the_limit_just_when_the_verdict_says_so(worn: Worn) -> None:
-    name, streams = swayed(worn, BEGIN_S + 2.0)
-    told = states(worn, streams)
+def test_the_bars_pass_the_limit_just_when_the_verdict_says_so(dressed: Worn) -> None:
+    name, streams = swayed(dressed, BEGIN_S + 2.0)
+    told = states(dressed, streams)
     for state in told:
         over = tuple(one for one, deg_s in state.movement_deg_s.items() if deg_s >= LIMIT_DEG_S)
         assert over == state.standing.moved
@@ -43,23 +43,23 @@ def test_the_bars_pass_the_limit_just_when_the_verdict_says_so(worn: Worn) -> No
     assert told[-1].standing.restarts == 1
 
 
-def test_a_sensor_that_is_not_worn_is_passed_over(worn: Worn) -> None:
-    first, *others = sorted(worn.standing)
+def test_a_sensor_that_is_not_worn_is_passed_over(dressed: Worn) -> None:
+    first, *others = sorted(dressed.standing)
     work = StandingWork(others)
-    for block in in_blocks(worn.standing, 0.1):
+    for block in in_blocks(dressed.standing, 0.1):
         work.update(block)
     assert first not in work.state.movement_deg_s
     assert work.state.standing.is_done
 
 
 @pytest.mark.parametrize("block_s", [0.013, 10.0])
-def test_the_size_of_the_blocks_changes_nothing(worn: Worn, block_s: float) -> None:
-    _, streams = swayed(worn, BEGIN_S + 1.5)
-    usual, other = states(worn, streams)[-1], states(worn, streams, block_s)[-1]
+def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -> None:
+    _, streams = swayed(dressed, BEGIN_S + 1.5)
+    usual, other = states(dressed, streams)[-1], states(dressed, streams, block_s)[-1]
     assert other.movement_deg_s == usual.movement_deg_s
     assert (other.standing.still_s, other.standing.moved, other.standing.restarts) == (
         usual.standing.still_s,
         usual.standing.moved,
         usual.standing.restarts,
     )
-    assert set(other.standing.rest) == set(usual.standing.rest) == set(worn.site_of)
+    assert set(other.standing.rest) == set(usual.standing.rest) == set(dressed.site_of)

@@ -11,15 +11,15 @@ from core.body import Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource
 from core.samples import ImuBlock
-from tests.app.acquisition.works.patient import BEGIN_S, Worn, between, in_blocks, without
+from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks, without
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 ORDER = (Phase.LOADING, Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING)
 
 
-def work_of(worn: Worn) -> WalkingWork:
-    return WalkingWork(worn.site_of, worn.live_sensors, worn.calibration)
+def work_of(dressed: Worn) -> WalkingWork:
+    return WalkingWork(dressed.site_of, dressed.live_sensors, dressed.calibration)
 
 
 def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingView]:
@@ -31,14 +31,14 @@ def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) 
 
 
 @pytest.fixture(scope="module")
-def usual(worn: Worn) -> list[WalkingView]:
-    return fed(work_of(worn), dict(worn.walk))
+def usual(dressed: Worn) -> list[WalkingView]:
+    return fed(work_of(dressed), dict(dressed.walk))
 
 
-def test_curves_hold_the_last_seconds_of_every_joint(worn: Worn, usual: list[WalkingView]) -> None:
+def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[WalkingView]) -> None:
     last = usual[-1]
     assert set(last.joints) == set(Joint)
-    now_s = max(float(block.time_s[-1]) for block in worn.walk.values())
+    now_s = max(float(block.time_s[-1]) for block in dressed.walk.values())
     assert last.now_s == now_s
     for curve in last.joints.values():
         assert curve.time_s[0] == pytest.approx(now_s - KEPT_S, abs=0.02)
@@ -72,17 +72,17 @@ def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingVi
     assert usual[-1].total_strides == sum(usual[-1].strides.values())
 
 
-def test_a_walk_counts_its_own_strides(worn: Worn, usual: list[WalkingView]) -> None:
-    work = work_of(worn)
+def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingView]) -> None:
+    work = work_of(dressed)
     work.count_from(BEGIN_S + 8.0)
-    last = fed(work, dict(worn.walk))[-1]
+    last = fed(work, dict(dressed.walk))[-1]
     for side in Side:
         assert 3 < last.strides[side] < usual[-1].strides[side] - 3
 
 
 @pytest.mark.parametrize("block_s", [60.0, pytest.param(0.017, marks=pytest.mark.endurance)])
-def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[WalkingView], block_s: float) -> None:
-    one, two = usual[-1], fed(work_of(worn), dict(worn.walk), block_s)[-1]
+def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[WalkingView], block_s: float) -> None:
+    one, two = usual[-1], fed(work_of(dressed), dict(dressed.walk), block_s)[-1]
     for joint in Joint:
         np.testing.assert_array_equal(two.joints[joint].time_s, one.joints[joint].time_s)
         np.testing.assert_allclose(two.joints[joint].angle_rad, one.joints[joint].angle_rad, rtol=0, atol=1e-9)
@@ -95,9 +95,9 @@ def test_the_size_of_the_blocks_changes_nothing(worn: Worn, usual: list[WalkingV
     )
 
 
-def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(worn: Worn) -> None:
-    name, (from_s, to_s) = worn.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
-    told = fed(work_of(worn), {**worn.walk, name: without(worn.walk[name], from_s, to_s)})
+def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> None:
+    name, (from_s, to_s) = dressed.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
+    told = fed(work_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
     amid = next(state for state in told if state.now_s is not None and state.now_s > to_s - 0.2)
     assert amid.missing == (Site.RIGHT_FOOT,)
     lane = amid.lanes[Side.RIGHT]
@@ -120,13 +120,13 @@ def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(worn: Worn) -> Non
     assert np.isnan(ankle.angle_rad[in_gap]).all()
 
 
-def test_another_calibration_is_taken_at_the_next_update(worn: Worn, usual: list[WalkingView]) -> None:
+def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: list[WalkingView]) -> None:
     joint = Joint.LEFT_ANKLE
-    settled = worn.calibration[joint]
+    settled = dressed.calibration[joint]
     provisional = replace(settled, axis_source=AxisSource.FREE_MOTION, zero_rad=settled.zero_rad + 0.2)
-    work = WalkingWork(worn.site_of, worn.live_sensors, {**worn.calibration, joint: provisional})
-    early = {name: between(block, BEGIN_S, BEGIN_S + 8.0) for name, block in worn.walk.items()}
-    late = {name: between(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in worn.walk.items()}
+    work = WalkingWork(dressed.site_of, dressed.live_sensors, {**dressed.calibration, joint: provisional})
+    early = {name: between(block, BEGIN_S, BEGIN_S + 8.0) for name, block in dressed.walk.items()}
+    late = {name: between(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in dressed.walk.items()}
     assert fed(work, early)[-1].joints[joint].is_provisional
     work.recalibrate(joint, settled)
     assert work.state.joints[joint].is_provisional  # not yet
@@ -137,22 +137,22 @@ def test_another_calibration_is_taken_at_the_next_update(worn: Worn, usual: list
     assert np.max(np.abs(np.diff(last.angle_rad))) < 0.15  # no jump
 
 
-def test_a_leg_of_one_joint_has_one_curve_and_no_lane(worn: Worn) -> None:
+def test_a_leg_of_one_joint_has_one_curve_and_no_lane(dressed: Worn) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
-    streams = {name: worn.walk[name] for name, site in worn.site_of.items() if site in sites}
-    work = WalkingWork({name: worn.site_of[name] for name in streams}, worn.live_sensors, worn.calibration)
-    last = fed(work, dict(worn.walk))[-1]  # the others are heard, and not worn
+    streams = {name: dressed.walk[name] for name, site in dressed.site_of.items() if site in sites}
+    work = WalkingWork({name: dressed.site_of[name] for name in streams}, dressed.live_sensors, dressed.calibration)
+    last = fed(work, dict(dressed.walk))[-1]  # the others are heard, and not dressed
     assert set(last.joints) == {Joint.LEFT_KNEE}
     assert not last.lanes
     assert not last.strides
     assert last.cadence_steps_min is None
 
 
-def test_a_state_that_was_read_stays_as_it_was(worn: Worn) -> None:
-    work, held = work_of(worn), []
+def test_a_state_that_was_read_stays_as_it_was(dressed: Worn) -> None:
+    work, held = work_of(dressed), []
     for _ in range(4):  # past the arrays' room
         last_s = 0.0 if work.state.now_s is None else work.state.now_s - BEGIN_S + 0.01
-        later = {name: replace(block, time_s=block.time_s + last_s) for name, block in worn.walk.items()}
+        later = {name: replace(block, time_s=block.time_s + last_s) for name, block in dressed.walk.items()}
         for block in in_blocks(later, 0.25):
             work.update(block)
             curve = work.state.joints[Joint.RIGHT_KNEE]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.acquisition.heard_sensor import SensorStatus
-from app.acquisition.works import live_sensors
+from app.acquisition.live_sensors import live_sensors
 from core.calibration.rest import Rest
 from core.samples import RateKind
 from devices.live import SensorDetails
