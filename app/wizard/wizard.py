@@ -17,11 +17,11 @@ from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
 from app.wizard.keys import Action, Intent, Keys
 from app.wizard.losses import NOTHING, Message
+from app.wizard.patient.step import PatientStep
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.sources import choices
 from app.wizard.step import Step
 from app.wizard.steps.free_motion_step import FreeMotionStep
-from app.wizard.steps.patient_step import PatientStep
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
 from app.wizard.steps.sensors_step import SensorsStep

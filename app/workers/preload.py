@@ -11,7 +11,7 @@ MODULES = (
     "app.home.home",
     "app.storage.opened",
     "app.wizard.wizard",
-    "app.pages.patient_page",
+    "app.wizard.patient.page",
     "app.pages.sensors_page",
     "app.acquisition.acquisition",
     "app.acquisition.placing_work",

@@ -196,7 +196,7 @@ def _of_page(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[st
 
 
 def _of_patient(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
-    from app.pages.patient_page import PatientPage
+    from app.wizard.patient.page import PatientPage
 
     page, stored = wizard.current.page if wizard.current is not None else None, visit.patient.stored
     if not isinstance(page, PatientPage) or page._saved.text() != "saved" or stored is None:

@@ -16,8 +16,6 @@ from app.pages.home_lists import PatientLine, SessionLine
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
-from app.pages.patient_cards import LastVisit
-from app.pages.patient_page import PatientDraft, PatientPage
 from app.pages.sensor_row import SensorRow
 from app.pages.sensors_page import SensorsPage, Way
 from app.pages.settings_page import OperatorLine, SettingsPage
@@ -30,6 +28,8 @@ from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
 from app.widgets.gauge import GaugeFace, GaugeState, Measure
 from app.widgets.hint import Hint
+from app.wizard.patient.cards import LastVisit
+from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wording import tr
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity

@@ -12,7 +12,7 @@ from app.storage.opened import open_library
 from app.storage.stored import Limits, RecordingState
 from app.theme import Look
 from app.widgets.rail_row import StepState
-from app.wizard.steps.patient_step import PatientStep
+from app.wizard.patient.step import PatientStep
 from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.takes import Take
 from app.wizard.visit import Visit

@@ -15,7 +15,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.pages.patient_cards import BandCard, LastVisit, LastVisitCard, TakenCard
 from app.reports.reference_bands import reference_curves
 from app.theme import Look
 from app.widgets.card import Card
@@ -23,6 +22,7 @@ from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
 from app.wording import tr
 from core.body import Side
 from core.samples import Patient

@@ -8,12 +8,12 @@ import pytest
 from PySide6.QtWidgets import QAbstractButton, QLabel
 from pytestqt.qtbot import QtBot
 
-from app.pages.patient_page import PatientDraft
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import PlacedSensor, StoredPatient
 from app.theme import Look
 from app.widgets.rail_row import StepState
-from app.wizard.steps.patient_step import PatientStep
+from app.wizard.patient.page import PatientDraft
+from app.wizard.patient.step import PatientStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site

@@ -18,10 +18,10 @@ from core.samples import Patient, RecordingKind, Session
 if TYPE_CHECKING:
     from uuid import UUID
 
-    from app.pages.patient_cards import LastVisit
-    from app.pages.patient_page import PatientDraft, PatientPage
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient, StoredSession
+    from app.wizard.patient.cards import LastVisit
+    from app.wizard.patient.page import PatientDraft, PatientPage
     from app.wizard.visit import Visit
 
 
@@ -44,7 +44,7 @@ class PatientStep(Step):
     @property
     def page(self) -> "PatientPage":
         if self._page is None:
-            from app.pages.patient_page import PatientPage
+            from app.wizard.patient.page import PatientPage
 
             page = self._page = PatientPage(self._look)
             page.edited.connect(self._on_edited)
@@ -104,7 +104,7 @@ class PatientStep(Step):
 
     def _fill(self) -> None:
         """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
-        from app.pages.patient_page import PatientDraft
+        from app.wizard.patient.page import PatientDraft
 
         patient = self._visit.patient
         self._shown_id = patient.stored.id if patient.stored is not None else None
@@ -220,7 +220,7 @@ def _about(patient: Patient) -> str:
 
 def _last_visit(session: "StoredSession") -> "LastVisit":
     from app.home.words import date
-    from app.pages.patient_cards import LastVisit
+    from app.wizard.patient.cards import LastVisit
 
     told = session.told
     try:

@@ -8,9 +8,9 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.pages.patient_cards import LastVisit
-from app.pages.patient_page import PatientDraft, PatientPage
 from app.theme import Look
+from app.wizard.patient.cards import LastVisit
+from app.wizard.patient.page import PatientDraft, PatientPage
 from core.body import Side
 from core.samples import Patient
 

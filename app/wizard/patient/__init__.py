@@ -1,0 +1,1 @@
+"""Who is examined: the page, what joins it to the visit."""
