@@ -52,7 +52,7 @@ def lead(wanted: argparse.Namespace) -> dict[str, Any]:
     from PySide6.QtCore import QTimer
 
     from app import main_window
-    from app.wizard import sources
+    from app.wizard.sensors import sources
     from tests.app.watchdog import Watchdog
 
     sources.choices = lambda: (_source(wanted.rate, wanted.seconds),)  # before the wizard takes it from there
@@ -94,7 +94,7 @@ def lead(wanted: argparse.Namespace) -> dict[str, Any]:
 
 def _source(rate_hz: float, seconds: float) -> "SourceChoice":
     from app.acquisition.acquisition import Acquisition
-    from app.wizard.sources import DEMONSTRATION
+    from app.wizard.sensors.sources import DEMONSTRATION
     from app.wizard.worn_sensors import SourceChoice
     from devices.replay import DEMONSTRATION_SESSION, demonstration
     from devices.walker import Walk
@@ -118,7 +118,7 @@ def _session(
     yield lambda: window.home is not None and window.home.isVisible()
     yield _after(2 * PAUSE_S)
     yield lambda: window.preparing.is_idle  # who types a passphrase takes longer
-    from app.pages.sensors_page import Way
+    from app.wizard.sensors.page import Way
     from app.wizard.steps.free_motion_step import FreeMotionStep
     from app.wizard.steps.results_step import ResultsStep
 

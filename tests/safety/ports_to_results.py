@@ -33,8 +33,8 @@ from PySide6.QtWidgets import QApplication
 from app.settings import Settings
 from app.storage.journal.header import JournalHeader
 from app.theme import Look, load_fonts
-from app.wizard.sources import COLUMNS, SEARCH
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.sources import COLUMNS, SEARCH
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard

@@ -40,7 +40,7 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
-from app.wizard import sources
+from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
 from devices.replay import ReplaySource

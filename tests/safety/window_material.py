@@ -21,7 +21,7 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.theme import Look, load_fonts
-from app.wizard import sources
+from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
 

@@ -26,8 +26,8 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.theme import Look, load_fonts
-from app.wizard import sources
 from app.wizard.keys import Action, Intent
+from app.wizard.sensors import sources
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
 from app.wizard.worn_sensors import SourceChoice

@@ -18,7 +18,7 @@ from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice

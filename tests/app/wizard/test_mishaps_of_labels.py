@@ -6,7 +6,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
 from core.samples import RecordingKind

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.wizard import FREE_MOTION, RESULTS, SENSORS, STAND_STILL, WALKING, Wizard
 from core.analysis import analyse
 from core.body import Joint, Side, Site

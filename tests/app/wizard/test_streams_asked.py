@@ -6,8 +6,8 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look
-from app.wizard.sources import SEARCH, STREAMS, Sources
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.sources import SEARCH, STREAMS, Sources
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from devices.search import SearchResult
 

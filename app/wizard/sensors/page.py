@@ -15,13 +15,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.pages.columns_form import ColumnsForm
-from app.pages.sensor_list import SensorList
-from app.pages.sensor_places import PlaceShown, SensorPlaces
-from app.pages.sensor_row import SensorRow
-from app.pages.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
-from app.pages.session_chooser import SessionChooser
-from app.pages.source_pages import NoSource, Searching, SourceOption
 from app.theme import Look
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
@@ -29,6 +22,13 @@ from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.wizard.sensors.columns_form import ColumnsForm
+from app.wizard.sensors.sensor_list import SensorList
+from app.wizard.sensors.sensor_places import PlaceShown, SensorPlaces
+from app.wizard.sensors.sensor_row import SensorRow
+from app.wizard.sensors.sensor_sentences import Said, said_of_dragged, said_of_sensors, said_of_shaken_together
+from app.wizard.sensors.session_chooser import SessionChooser
+from app.wizard.sensors.source_pages import NoSource, Searching, SourceOption
 from app.wording import tr
 from core.body import Site
 from core.samples import FloatArray

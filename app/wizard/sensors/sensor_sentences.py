@@ -2,8 +2,8 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
-from app.pages.sensor_row import SensorRow
 from app.widgets.icons import Icon
+from app.wizard.sensors.sensor_row import SensorRow
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
 

@@ -10,7 +10,7 @@ from app.wording import tr
 from core.samples import FloatArray
 
 if TYPE_CHECKING:
-    from app.pages.columns_form import ColumnsForm, ColumnsTold
+    from app.wizard.sensors.columns_form import ColumnsForm, ColumnsTold
     from devices.csv_serial import Columns
     from devices.lines import LinePreview, LinesAt
 
@@ -39,7 +39,7 @@ class ColumnsTelling(QObject):
     @property
     def columns(self) -> "Columns | None":
         """What is told; None while something is missing."""
-        from app.pages.columns_form import AXES, Meaning
+        from app.wizard.sensors.columns_form import AXES, Meaning
         from devices.csv_serial import Columns
 
         told = self._form.told if self._form is not None and self._is_shown else None
@@ -122,7 +122,7 @@ class ColumnsTelling(QObject):
 
 def _told_of(columns: "Columns | None", count: int) -> "ColumnsTold":
     """As the form shows it; nothing is told of the columns of something unknown."""
-    from app.pages.columns_form import AXES, ColumnsTold, Meaning
+    from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
 
     meanings = [Meaning.UNUSED] * count
     if columns is None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from app.acquisition.chain_search import ChainSearch
-from app.acquisition.shaking import Shaking
+from app.wizard.sensors.shaking import Shaking
 from core.body import Side, Site
 from core.placement.chains import Chains
 from core.samples import FloatArray, ImuBlock

@@ -6,12 +6,12 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.pages.sensor_places import segment_name
-from app.pages.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.theme import Look
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.wizard.sensors.sensor_places import segment_name
+from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.wording import tr
 from core.body import Site
 from core.samples import FloatArray

@@ -6,8 +6,8 @@ import time
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.wizard import sources as sources_module
-from app.wizard.sources import DEMONSTRATION, SEARCH, Sources, choices
+from app.wizard.sensors import sources as sources_module
+from app.wizard.sensors.sources import DEMONSTRATION, SEARCH, Sources, choices
 from devices.live import LiveSource, SourceRefusedError
 from devices.ports import PortInfo
 from devices.replay import ReplaySource

@@ -8,10 +8,10 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app import known_columns as kept
-from app.pages.columns_form import ColumnsForm, Meaning
 from app.theme import Look
-from app.wizard.sources import COLUMNS, SEARCH
-from app.wizard.steps.sensors_step import SensorsStep
+from app.wizard.sensors.columns_form import ColumnsForm, Meaning
+from app.wizard.sensors.sources import COLUMNS, SEARCH
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.worn_sensors import SourceChoice
 from devices.emulators.csv_lines import COLUMNS as EMULATED

@@ -7,12 +7,12 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.pages.sensors_page import Way
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
+from app.wizard.sensors.page import Way
+from app.wizard.sensors.step import SensorsStep
 from app.wizard.steps.free_motion_step import FreeMotionStep
-from app.wizard.steps.sensors_step import SensorsStep
 from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit

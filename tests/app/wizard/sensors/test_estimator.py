@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.acquisition.placing_work import PlacingState, PlacingWork
+from app.wizard.sensors.estimator import PlacingState, PlacingWork
 from core.body import Side
 from core.samples import ImuBlock
 from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks

@@ -16,10 +16,10 @@ from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Action, Intent
-from app.wizard.replays import Replays
-from app.wizard.sources import SEARCH
+from app.wizard.sensors.columns_telling import ColumnsTelling
+from app.wizard.sensors.replays import Replays
+from app.wizard.sensors.sources import SEARCH
 from app.wizard.step import Step
-from app.wizard.steps.columns_telling import ColumnsTelling
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import name_of, tr, tr_n
 from core.body import Joint, Site
@@ -27,11 +27,11 @@ from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
-    from app.acquisition.placing_work import PlacingWork
     from app.pages.home_lists import PatientLine
-    from app.pages.sensor_row import SensorRow
-    from app.pages.sensors_page import SensorsPage
     from app.storage.stored import SessionLine
+    from app.wizard.sensors.estimator import PlacingWork
+    from app.wizard.sensors.page import SensorsPage
+    from app.wizard.sensors.sensor_row import SensorRow
     from app.wizard.visit import Visit
 
 REPLAY = "replay"
@@ -69,7 +69,7 @@ class SensorsStep(Step):
     @property
     def page(self) -> "SensorsPage":
         if self._page is None:
-            from app.pages.sensors_page import SensorsPage
+            from app.wizard.sensors.page import SensorsPage
 
             page = self._page = SensorsPage(self._look)
             page.assigned.connect(self._visit.sensors.assign)
@@ -232,13 +232,13 @@ class SensorsStep(Step):
         acquisition = self._visit.sensors.acquisition
         if acquisition is None or not self._is_in_sight:
             return
-        from app.acquisition.placing_work import PlacingWork
+        from app.wizard.sensors.estimator import PlacingWork
 
         self._work, self._shakes = PlacingWork(acquisition.sensors), 0
         acquisition.set_work(self._work)
 
     def _show(self) -> None:
-        from app.pages.sensors_page import Way
+        from app.wizard.sensors.page import Way
 
         self._show_sources()
         sensors, page = self._visit.sensors, self.page
@@ -259,7 +259,7 @@ class SensorsStep(Step):
 
     def _show_sources(self) -> None:
         """Offer what there is for this patient: what was found, what is simulated, and what is played at the moment."""
-        from app.pages.source_pages import SourceOption
+        from app.wizard.sensors.source_pages import SourceOption
 
         visit, sensors = self._visit, self._visit.sensors
         options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
@@ -296,7 +296,7 @@ class SensorsStep(Step):
             self.changed.emit()
 
     def _row(self, status: "SensorStatus") -> "SensorRow":
-        from app.pages.sensor_row import SensorRow
+        from app.wizard.sensors.sensor_row import SensorRow
 
         is_silent = status.silent_s >= SILENT_FROM_S
         return SensorRow(
@@ -364,7 +364,7 @@ class SensorsStep(Step):
         self.changed.emit()
 
     def _on_way_chosen(self, way: str) -> None:
-        from app.pages.sensors_page import Way
+        from app.wizard.sensors.page import Way
 
         is_left = way == Way.MOTION
         if is_left != self._visit.sensors.is_left_to_motion:

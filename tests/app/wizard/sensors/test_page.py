@@ -10,12 +10,12 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.pages.sensor_places import DRAGGED
-from app.pages.sensor_row import SensorRow
-from app.pages.sensor_trace import _lines
-from app.pages.sensors_page import SensorsPage, Way
-from app.pages.source_pages import SourceOption
 from app.theme import Look
+from app.wizard.sensors.page import SensorsPage, Way
+from app.wizard.sensors.sensor_places import DRAGGED
+from app.wizard.sensors.sensor_row import SensorRow
+from app.wizard.sensors.sensor_trace import _lines
+from app.wizard.sensors.source_pages import SourceOption
 from core.body import Side, Site
 from tests.app.room import settle
 
@@ -99,7 +99,8 @@ def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
 
 def test_the_mouse_carries_a_sensor_by_its_name(page: SensorsPage, monkeypatch: pytest.MonkeyPatch) -> None:
     carried: list[str] = []
-    monkeypatch.setattr("app.pages.sensor_row.drag_sensor", lambda _source, _look, sensor: carried.append(sensor))
+    drag = "app.wizard.sensors.sensor_row.drag_sensor"
+    monkeypatch.setattr(drag, lambda _source, _look, sensor: carried.append(sensor))
     row = page.list.rows["0A2C"]
     QTest.mousePress(row, Qt.MouseButton.LeftButton, pos=QPoint(60, 20))
     QTest.mouseMove(row, QPoint(62, 20))

@@ -17,8 +17,6 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QWidget
 
-from app.pages.sensor_places import drag_sensor, is_dragged, number_of, segment_name
-from app.pages.sensor_trace import Trace
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
@@ -27,11 +25,13 @@ from app.widgets.chip import paint_chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
+from app.wizard.sensors.sensor_places import drag_sensor, is_dragged, number_of, segment_name
+from app.wizard.sensors.sensor_trace import Trace
 from app.wording import name_of, tr
 from core.body import Site
 
 if TYPE_CHECKING:
-    from app.pages.sensor_list import SensorList
+    from app.wizard.sensors.sensor_list import SensorList
 
 ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20

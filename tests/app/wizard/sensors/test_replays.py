@@ -12,8 +12,8 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
 from app.theme import Look
-from app.wizard.replays import Replays, replay_of
-from app.wizard.steps.sensors_step import REPLAY, SensorsStep
+from app.wizard.sensors.replays import Replays, replay_of
+from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.body import Site
