@@ -21,11 +21,11 @@ from app.wizard.patient.step import PatientStep
 from app.wizard.sensors.sources import choices
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.shell import StripMode, WizardShell
+from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
 from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
-from app.wizard.steps.stand_still_step import StandStillStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import DEMO, Visit, patient_line
 from app.wording import tr

@@ -17,7 +17,6 @@ from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
-from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
 from app.pages.walk_list import WalkRow, WalkState
 from app.pages.walking_page import WalkingPage, WalkingReadout
 from app.plots.live_lanes import LiveLane, PhaseSpan
@@ -30,6 +29,7 @@ from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
+from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wording import tr
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity

@@ -13,7 +13,7 @@ from app.storage.stored import Limits, RecordingState
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.patient.step import PatientStep
-from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.standing.step import StandStillStep
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk

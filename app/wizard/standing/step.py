@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from app import sounds
-from app.pages.stand_still_page import StandPhase, StandStillPage, StandStillView
 from app.sounds import Sound
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
+from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
 from app.wizard.takes import Take
 from app.wording import tr
@@ -22,7 +22,7 @@ from core.live.standing import WANTED_S
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.acquisition.standing_work import StandingWork
+    from app.wizard.standing.estimator import StandingWork
     from app.wizard.visit import Visit
 
 SHOWN_MS = 600  # the check mark, before the next step comes by itself
@@ -195,7 +195,7 @@ class StandStillStep(Step):
 
     def _watch(self) -> None:
         """Look at the movement from now on."""
-        from app.acquisition.standing_work import StandingWork
+        from app.wizard.standing.estimator import StandingWork
 
         self._moved = ()
         acquisition = self._visit.sensors.acquisition

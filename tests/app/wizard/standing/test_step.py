@@ -7,13 +7,13 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.recorder import Recorder
-from app.pages.stand_still_page import StandPhase
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.stand_still_step import StandStillStep
+from app.wizard.standing.page import StandPhase
+from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from core.body import Joint, Site
 from core.samples import RecordingKind

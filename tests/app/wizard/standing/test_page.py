@@ -10,7 +10,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.stand_still_page import (
+from app.theme import Look, load_fonts
+from app.widgets.icons import Icon
+from app.widgets.stillness import MovementBars
+from app.wizard.standing.page import (
     StandPhase,
     StandStillPage,
     StandStillView,
@@ -19,9 +22,6 @@ from app.pages.stand_still_page import (
     verdict,
     way_round,
 )
-from app.theme import Look, load_fonts
-from app.widgets.icons import Icon
-from app.widgets.stillness import MovementBars
 from core.body import Joint, Site
 
 STILL: dict[str, float] = dict.fromkeys(Site, 0.4)

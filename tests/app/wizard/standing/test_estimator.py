@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.acquisition.standing_work import LIMIT_DEG_S, StandingView, StandingWork
+from app.wizard.standing.estimator import LIMIT_DEG_S, StandingView, StandingWork
 from core.samples import ImuBlock
 from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
 
