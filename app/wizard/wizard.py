@@ -15,6 +15,7 @@ from app.theme import Look
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
+from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent, Keys
 from app.wizard.losses import NOTHING, Message
 from app.wizard.patient.step import PatientStep
@@ -23,7 +24,6 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
-from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
 from app.wizard.steps.walking_step import WalkingStep

@@ -21,10 +21,10 @@ from pathlib import Path
 import numpy as np
 
 from app.acquisition.acquisition import Acquisition, LiveWork
-from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
 from app.acquisition.live_sensors import live_sensors
 from app.acquisition.walking_work import WalkingWork
 from app.storage.journal.writer import JournalWriter
+from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
 from app.wizard.sensors.estimator import PlacingWork
 from app.wizard.standing.estimator import StandingWork
 from core.analysis import analyse

@@ -118,8 +118,8 @@ def _session(
     yield lambda: window.home is not None and window.home.isVisible()
     yield _after(2 * PAUSE_S)
     yield lambda: window.preparing.is_idle  # who types a passphrase takes longer
+    from app.wizard.free_motion.step import FreeMotionStep
     from app.wizard.sensors.page import Way
-    from app.wizard.steps.free_motion_step import FreeMotionStep
     from app.wizard.steps.results_step import ResultsStep
 
     window._on_session_wished(window.home._patient if window.home is not None else None)

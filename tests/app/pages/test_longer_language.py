@@ -9,7 +9,6 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.pages.first_start_page import FirstStartPage
-from app.pages.free_motion_page import FreeMotionPage, FreeMotionView
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic
 from app.pages.home_lists import PatientLine, SessionLine
@@ -24,6 +23,7 @@ from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
 from app.widgets.gauge import GaugeFace, GaugeState, Measure
 from app.widgets.hint import Hint
+from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.sensors.page import SensorsPage, Way

@@ -18,8 +18,8 @@ from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import Look
 from app.wizard import takes as takes_module
 from app.wizard import wizard as wizard_module
+from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.takes import Ongoing
 from app.wizard.visit import Visit

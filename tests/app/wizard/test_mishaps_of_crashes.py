@@ -15,8 +15,8 @@ from app.storage.stored import RecordingState
 from app.theme import Look, load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
+from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.standing.step import StandStillStep
-from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import RESULTS, SENSORS, WALKING, Wizard
 from app.workers.library_desk import LibraryDesk

@@ -8,7 +8,6 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.pages.free_motion_page import FreeMotionPage
 from app.pages.sentence_page import SentencePage
 from app.theme import Look, load_fonts
 from app.widgets.action_bar import BarState, RecordingNote, Verb
@@ -18,6 +17,7 @@ from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile
 from app.widgets.step_rail import wizard_below
 from app.wizard import shell as shell_module
+from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.shell import StripMode, WizardShell
 from app.wording import tr, use_language
 from core.body import Site

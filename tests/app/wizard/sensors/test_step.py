@@ -9,11 +9,11 @@ from pytestqt.qtbot import QtBot
 from app.acquisition.acquisition import Acquisition
 from app.theme import Look
 from app.widgets.rail_row import StepState
+from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent
 from app.wizard.sensors.page import Way
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.standing.step import StandStillStep
-from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard

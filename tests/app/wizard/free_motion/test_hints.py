@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wizard.hints import (
+from app.wizard.free_motion.hints import (
     HELD_S,
     LETTERS,
     ONCE_MORE_S,

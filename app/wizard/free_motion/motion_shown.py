@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 from app.widgets.body_figure import SensorMark
 from app.widgets.gauge import GaugeFace, GaugeState, gauge_face
-from app.wizard.hints import absent_note, wanted_of
+from app.wizard.free_motion.hints import absent_note, wanted_of
 from core.body import Joint, Site
 from core.live.free_motion import FreeMotionState
 

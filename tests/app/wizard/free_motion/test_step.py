@@ -5,21 +5,21 @@ from collections.abc import Callable, Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.acquisition.free_motion_work import FreeMotionView
-from app.pages.free_motion_page import FreeMotionPage
 from app.storage.stored import Limits
 from app.theme import Look
 from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
+from app.wizard.free_motion.estimator import FreeMotionView
+from app.wizard.free_motion.page import FreeMotionPage
+from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.free_motion_step import FreeMotionStep
 from app.wizard.visit import Visit, opposite
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
-from tests.app.wizard.test_hints import motion, state
-from tests.app.wizard.test_side_question import chains
+from tests.app.wizard.free_motion.test_hints import motion, state
+from tests.app.wizard.free_motion.test_side_question import chains
 from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three

@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.wizard.side_question import SILENT, SideQuestion
+from app.wizard.free_motion.side_question import SILENT, SideQuestion
 from core.body import Side
 from core.placement.arrangements import Stature
 from core.placement.chains import Chain, Chains

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.acquisition.free_motion_work import FreeMotionView, FreeMotionWork, UnplacedFreeMotionWork
+from app.wizard.free_motion.estimator import FreeMotionView, FreeMotionWork, UnplacedFreeMotionWork
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import ImuBlock

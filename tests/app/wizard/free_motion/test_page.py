@@ -9,10 +9,10 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.free_motion_page import FreeMotionPage, FreeMotionView
 from app.theme import Look, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, Measure
 from app.widgets.hint import Hint
+from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
 from core.body import Joint, Site
 from tests.app.layout_items import item_of, items_held
 

@@ -12,7 +12,7 @@ from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
-from app.wizard.hints import (
+from app.wizard.free_motion.hints import (
     Asked,
     HintHold,
     first_hint,
@@ -21,8 +21,8 @@ from app.wizard.hints import (
     recorded_hint,
     unplaced_hint,
 )
+from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Action, Intent
-from app.wizard.side_question import SILENT, SideQuestion, Words
 from app.wizard.step import Step
 from app.wizard.takes import Take
 from app.wizard.visit import opposite
@@ -32,8 +32,8 @@ from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
-    from app.pages.free_motion_page import FreeMotionPage
+    from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
+    from app.wizard.free_motion.page import FreeMotionPage
     from app.wizard.visit import Visit
     from core.placement.chains import Chains
 
@@ -84,7 +84,7 @@ class FreeMotionStep(Step):
     @property
     def page(self) -> "FreeMotionPage":
         if self._page is None:
-            from app.pages.free_motion_page import FreeMotionPage
+            from app.wizard.free_motion.page import FreeMotionPage
 
             self._page = FreeMotionPage(self._look)
             self._page.answered.connect(self._on_answered)
@@ -281,8 +281,8 @@ class FreeMotionStep(Step):
 
     def _watch(self) -> None:
         """Follow the motion from now on."""
-        from app.acquisition.free_motion_work import FreeMotionWork, UnplacedFreeMotionWork
         from app.acquisition.live_sensors import live_sensors
+        from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
 
         visit = self._visit
         acquisition, sensors = visit.sensors.acquisition, visit.sensors
@@ -451,8 +451,8 @@ class FreeMotionStep(Step):
     def _show(self) -> None:
         if self._page is None:
             return
-        from app.pages.free_motion_page import FreeMotionView
-        from app.wizard.motion_shown import gauge_faces, sensor_marks
+        from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
+        from app.wizard.free_motion.page import FreeMotionView
 
         self._show_question()
         asked = self._asked()
