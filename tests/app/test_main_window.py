@@ -209,7 +209,8 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     slots.renew_recovery_key(slots.open("hk", PASSPHRASE))  # which nobody has typed back
     window = open_window(folder)
     assert window.entry is not None
-    log_in, shown = window.entry.log_in, []
+    log_in = window.entry.log_in
+    shown: list[QWidget] = []
     qtbot.waitUntil(lambda: log_in.operator.count() == 1, timeout=WAIT_MS)
     window.entry.shown.connect(shown.append)
     log_in.passphrase.set_text(PASSPHRASE)
