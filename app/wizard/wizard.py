@@ -26,8 +26,8 @@ from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import DEMO, Visit, patient_line
+from app.wizard.walking.step import WalkingStep
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
 from app.workers.preload import is_preloaded

@@ -22,9 +22,9 @@ MODULES = (
     "app.wizard.free_motion.page",
     "app.wizard.free_motion.estimator",
     "core.analysis",
-    "app.pages.walking_page",
-    "app.wizard.live_walk",
-    "app.acquisition.walking_work",
+    "app.wizard.walking.page",
+    "app.wizard.walking.live_walk",
+    "app.wizard.walking.estimator",
     "app.pages.result_page",
     "app.pages.help_page",
 )

@@ -22,11 +22,11 @@ import numpy as np
 
 from app.acquisition.acquisition import Acquisition, LiveWork
 from app.acquisition.live_sensors import live_sensors
-from app.acquisition.walking_work import WalkingWork
 from app.storage.journal.writer import JournalWriter
 from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
 from app.wizard.sensors.estimator import PlacingWork
 from app.wizard.standing.estimator import StandingWork
+from app.wizard.walking.estimator import WalkingWork
 from core.analysis import analyse
 from core.body import Side, Site
 from core.live.sensors import LiveSensor

@@ -202,7 +202,7 @@ class _Watch:
         """Hear of every curve that is painted from now on; before any is, since Qt asks Python only once."""
         from PySide6.QtCore import QTimer
 
-        from app.plots.live_strip import _HistoryItem
+        from app.wizard.walking.live_strip import _HistoryItem
 
         paint = _HistoryItem.paint
 
@@ -267,7 +267,7 @@ def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-    from app.plots.live_strip import LiveStrip, LiveTrace
+    from app.wizard.walking.live_strip import LiveStrip, LiveTrace
     from core.body import Side
 
     acquisition = wizard.visit.sensors.acquisition if wizard.visit is not None else None

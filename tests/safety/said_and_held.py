@@ -210,7 +210,7 @@ def _of_patient(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
 
 
 def _of_walks(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
-    from app.pages.walking_page import WalkingPage
+    from app.wizard.walking.page import WalkingPage
 
     page = wizard.current.page if wizard.current is not None else None
     if not isinstance(page, WalkingPage) or visit.session is None:

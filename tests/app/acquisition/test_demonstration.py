@@ -6,8 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.acquisition.walking_work import WalkingWork
 from app.wizard.evaluation import calibration_of
+from app.wizard.walking.estimator import WalkingWork
 from core.analysis import analyse
 from core.body import Joint, Site
 from core.calibration.rest import rest_of

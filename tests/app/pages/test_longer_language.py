@@ -16,10 +16,6 @@ from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
-from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import WalkingPage, WalkingReadout
-from app.plots.live_lanes import LiveLane, PhaseSpan
-from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
 from app.widgets.gauge import GaugeFace, GaugeState, Measure
 from app.widgets.hint import Hint
@@ -30,6 +26,10 @@ from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
+from app.wizard.walking.live_lanes import LiveLane, PhaseSpan
+from app.wizard.walking.live_strip import LiveTrace
+from app.wizard.walking.page import WalkingPage, WalkingReadout
+from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity

@@ -24,8 +24,8 @@ from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.steps.report_step import ReportStep
 from app.wizard.steps.results_step import ResultsStep
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site

@@ -20,9 +20,9 @@ from app.wizard import takes as takes_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.takes import Ongoing
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk

@@ -17,9 +17,9 @@ from app.settings import Settings
 from app.storage.stored import RecordingState
 from app.theme import Look, load_fonts
 from app.wizard import wizard as wizard_module
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.takes import Take
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.library_desk import LibraryDesk

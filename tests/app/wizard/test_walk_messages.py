@@ -5,9 +5,9 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look
 from app.wizard.losses import NOTHING
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import clock, few_strides_message, no_angles_message, no_foot_message
+from app.wizard.walking.step import WalkingStep
 from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record

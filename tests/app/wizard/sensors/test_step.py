@@ -14,8 +14,8 @@ from app.wizard.keys import Action, Intent
 from app.wizard.sensors.page import Way
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.standing.step import StandStillStep
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Site

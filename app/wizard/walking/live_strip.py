@@ -16,10 +16,10 @@ from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
 
 from app.plots.angle_chart import AngleAxis
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
-from app.plots.scrolling_picture import ScrollingPicture
 from app.theme import Look
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
+from app.wizard.walking.scrolling_picture import ScrollingPicture
 from app.wording import tr
 from core.body import Side
 from core.samples import FloatArray

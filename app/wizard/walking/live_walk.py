@@ -3,10 +3,10 @@
 import math
 from collections.abc import Mapping
 
-from app.acquisition.walking_work import WalkingView
-from app.pages.walking_page import WalkingReadout
-from app.plots.live_lanes import LiveLane, PhaseSpan
-from app.plots.live_strip import LiveTrace
+from app.wizard.walking.estimator import WalkingView
+from app.wizard.walking.live_lanes import LiveLane, PhaseSpan
+from app.wizard.walking.live_strip import LiveTrace
+from app.wizard.walking.page import WalkingReadout
 from core.body import Side
 
 

@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.acquisition.walking_work import KEPT_S, WalkingView, WalkingWork
+from app.wizard.walking.estimator import KEPT_S, WalkingView, WalkingWork
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource

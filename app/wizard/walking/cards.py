@@ -6,14 +6,14 @@ from collections.abc import Mapping
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.pages.label_chooser import LabelChooser
-from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_charts import Hairline
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wizard.walking.charts import Hairline
+from app.wizard.walking.label_chooser import LabelChooser
+from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr, tr_n
 from core.body import Side
 

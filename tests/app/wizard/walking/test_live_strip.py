@@ -8,8 +8,8 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
-from app.plots.live_strip import LiveStrip, LiveTrace, _Trace
 from app.theme import Look, load_fonts
+from app.wizard.walking.live_strip import LiveStrip, LiveTrace, _Trace
 from core.body import Side
 from core.samples import FloatArray, IntArray
 

@@ -16,7 +16,6 @@ from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.step import Step
-from app.wizard.walk_labels import label_after, labels_for, letters_of
 from app.wizard.walk_messages import (
     clock,
     few_strides_message,
@@ -25,16 +24,17 @@ from app.wizard.walk_messages import (
     recovered_message,
     slip_message,
 )
+from app.wizard.walking.walk_labels import label_after, labels_for, letters_of
 from app.wording import tr
 from core.body import Joint, Side
 from core.live.walking import STRIDES_FOR_ANKLE
 from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
-    from app.acquisition.walking_work import WalkingView, WalkingWork
-    from app.pages.walking_page import WalkingPage
     from app.wizard.takes import Take
     from app.wizard.visit import Visit
+    from app.wizard.walking.estimator import WalkingView, WalkingWork
+    from app.wizard.walking.page import WalkingPage
 
 STAND_STILL = 2  # the step that sensors strapped anew begin with
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
@@ -66,7 +66,7 @@ class WalkingStep(Step):
     @property
     def page(self) -> "WalkingPage":
         if self._page is None:
-            from app.pages.walking_page import WalkingPage
+            from app.wizard.walking.page import WalkingPage
 
             page = self._page = WalkingPage(self._look)
             page.label_chosen.connect(self._on_label_chosen)
@@ -154,7 +154,7 @@ class WalkingStep(Step):
         view = self._work.state
         if view is self._shown or view.now_s is None:
             return
-        from app.wizard.live_walk import live_walk
+        from app.wizard.walking.live_walk import live_walk
 
         self._shown = view
         strides = self._strides(view)
@@ -277,7 +277,7 @@ class WalkingStep(Step):
 
     def _begin_work(self) -> None:
         """Let the estimator work on this step, with the calibration as it is now."""
-        from app.acquisition.walking_work import WalkingWork
+        from app.wizard.walking.estimator import WalkingWork
 
         acquisition = self._visit.sensors.acquisition
         if acquisition is None:
@@ -416,7 +416,7 @@ class WalkingStep(Step):
         if self._page is None or not self._is_in_sight:
             self.changed.emit()
             return
-        from app.pages.walk_list import WalkRow, WalkState
+        from app.wizard.walking.walk_list import WalkRow, WalkState
 
         takes, asked = self._visit.takes, self._asked
         ongoing = takes.ongoing if takes.ongoing and takes.ongoing.told.kind is RecordingKind.WALKING else None

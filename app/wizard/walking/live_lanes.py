@@ -13,12 +13,12 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.plots.live_strip import SHOWN_S
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.plots.scrolling_picture import ScrollingPicture
 from app.theme import CHIP_RADIUS, Look
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
+from app.wizard.walking.live_strip import SHOWN_S
+from app.wizard.walking.scrolling_picture import ScrollingPicture
 from app.wording import tr
 from core.body import Side
 from core.gait.phases import Phase

@@ -16,16 +16,16 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.pages.walk_list import WalkList, WalkRow, WalkState
-from app.pages.walking_cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
-from app.pages.walking_charts import WalkingCharts, last_angles_in_words
-from app.plots.live_lanes import LiveLane
-from app.plots.live_strip import LiveTrace
 from app.theme import Look
 from app.widgets.focus_ring import NO_RING
 from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
+from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
+from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
+from app.wizard.walking.live_lanes import LiveLane
+from app.wizard.walking.live_strip import LiveTrace
+from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
 from app.wording import tr
 from core.body import Side
 

@@ -9,8 +9,8 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.plots.live_lanes import LiveLane, LiveLanes, PhaseSpan
 from app.theme import Look, load_fonts
+from app.wizard.walking.live_lanes import LiveLane, LiveLanes, PhaseSpan
 from core.body import Side
 from core.gait.phases import Phase
 

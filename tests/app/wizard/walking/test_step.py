@@ -7,12 +7,12 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.walk_list import WalkState
 from app.theme import Look, load_fonts
 from app.wizard.keys import Action, Intent
 from app.wizard.steps.results_step import ResultsStep
-from app.wizard.steps.walking_step import WalkingStep
 from app.wizard.visit import Visit
+from app.wizard.walking.step import WalkingStep
+from app.wizard.walking.walk_list import WalkState
 from core.body import Joint, Site
 from core.samples import Patient, RecordingKind
 from devices.replay import ReplaySource

@@ -8,13 +8,13 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
-from app.plots.live_lanes import LiveLane, LiveLanes
-from app.plots.live_strip import LiveStrip, LiveTrace
 from app.plots.phase_lanes import Swatch
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.wizard.walking.live_lanes import LiveLane, LiveLanes
+from app.wizard.walking.live_strip import LiveStrip, LiveTrace
 from app.wording import tr
 from core.body import Side
 from core.gait.phases import Phase

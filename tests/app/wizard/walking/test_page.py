@@ -11,11 +11,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.pages.walk_list import WalkRow, WalkState
-from app.pages.walking_page import WalkingPage, WalkingReadout
-from app.plots.live_lanes import LiveLane, PhaseSpan
-from app.plots.live_strip import LiveTrace
 from app.theme import Look, load_fonts
+from app.wizard.walking.live_lanes import LiveLane, PhaseSpan
+from app.wizard.walking.live_strip import LiveTrace
+from app.wizard.walking.page import WalkingPage, WalkingReadout
+from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.body import Side
 from core.gait.phases import Phase
 from tests.app.room import words_cut

@@ -1,6 +1,6 @@
 """Labels of walks: the usual ones with their digits, one's own kept, letters in the order of walking."""
 
-from app.wizard.walk_labels import MOST, label_after, labels_for, letters_of
+from app.wizard.walking.walk_labels import MOST, label_after, labels_for, letters_of
 from core.samples import Patient
 
 ANYBODY, PROSTHETIC = Patient(), Patient(prosthetic_side="left")

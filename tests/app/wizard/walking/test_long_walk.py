@@ -2,7 +2,7 @@
 
 import pytest
 
-from app.acquisition.walking_work import KEPT_S, _Foot
+from app.wizard.walking.estimator import KEPT_S, _Foot
 from core.gait.live import FootEvent, LiveEvent, PhaseChange
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
