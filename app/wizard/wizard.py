@@ -19,13 +19,13 @@ from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Action, Intent, Keys
 from app.wizard.losses import NOTHING, Message
 from app.wizard.patient.step import PatientStep
+from app.wizard.report.step import ReportStep
+from app.wizard.results.step import ResultsStep
 from app.wizard.sensors.sources import choices
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
-from app.wizard.steps.report_step import ReportStep
-from app.wizard.steps.results_step import ResultsStep
 from app.wizard.visit import DEMO, Visit, patient_line
 from app.wizard.walking.step import WalkingStep
 from app.wording import tr

@@ -119,8 +119,8 @@ def _session(
     yield _after(2 * PAUSE_S)
     yield lambda: window.preparing.is_idle  # who types a passphrase takes longer
     from app.wizard.free_motion.step import FreeMotionStep
+    from app.wizard.results.step import ResultsStep
     from app.wizard.sensors.page import Way
-    from app.wizard.steps.results_step import ResultsStep
 
     window._on_session_wished(window.home._patient if window.home is not None else None)
     wizard = window._wizard

@@ -27,9 +27,9 @@ from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.theme import Look, load_fonts
 from app.wizard.keys import Action, Intent
+from app.wizard.report.step import ReportStep
+from app.wizard.results.step import ResultsStep
 from app.wizard.sensors import sources
-from app.wizard.steps.report_step import ReportStep
-from app.wizard.steps.results_step import ResultsStep
 from app.wizard.worn_sensors import SourceChoice
 from core.body import Joint, Side, Site
 from core.samples import RecordingKind

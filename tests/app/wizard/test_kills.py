@@ -22,8 +22,8 @@ from app.storage.stored import RecordingState
 from app.theme import Look, load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
-from app.wizard.steps.report_step import ReportStep
-from app.wizard.steps.results_step import ResultsStep
+from app.wizard.report.step import ReportStep
+from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard

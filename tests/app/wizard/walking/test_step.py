@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.results_step import ResultsStep
+from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.walking.walk_list import WalkState

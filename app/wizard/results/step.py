@@ -17,8 +17,8 @@ from app.widgets.rail_row import StepState
 from app.widgets.start_pages import WorkingPage
 from app.wizard.keys import Action as KeyAction
 from app.wizard.keys import Intent
+from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.step import Step
-from app.wizard.stride_choice import StrideChoice
 from app.wording import capitalised, name_of, place, tr
 from core.body import Joint
 from core.samples import RecordingKind

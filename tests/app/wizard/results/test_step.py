@@ -20,7 +20,7 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.results_step import ResultsStep
+from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side

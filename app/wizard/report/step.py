@@ -14,13 +14,13 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
 from app.logs import version_of
-from app.pages.report_page import ReportPage
 from app.pages.sentence_page import SentencePage
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
+from app.wizard.report.page import ReportPage
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
@@ -29,12 +29,12 @@ from core.samples import RecordingKind
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
-    from app.pages.leaving_dialog import Rows
     from app.reports.patient_report.document import Preview
     from app.reports.patient_report.request import ReportRequest
     from app.reports.patient_report.request import Visit as ReportVisit
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionLine
+    from app.wizard.report.leaving_dialog import Rows
     from app.wizard.visit import Visit
 
 _log = logging.getLogger(__name__)
@@ -121,7 +121,7 @@ class ReportStep(Step):
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody says where to."""
-        from app.pages.leaving_dialog import LeavingDialog
+        from app.wizard.report.leaving_dialog import LeavingDialog
 
         dialog = LeavingDialog(self._look, previews, self.page)
         dialog.confirmed.connect(self._on_leaving_confirmed)

@@ -10,13 +10,13 @@ import pypdf
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.pages.leaving_dialog import LeavingDialog
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Action, Intent
-from app.wizard.steps.report_step import ReportStep
+from app.wizard.report.leaving_dialog import LeavingDialog
+from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.analysis import analyse

@@ -5,8 +5,8 @@ from PySide6.QtCore import QBuffer, QByteArray
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.pages.report_page import PAPER_INCH, REBUILT_AFTER_MS, ReportPage
 from app.theme import Look
+from app.wizard.report.page import PAPER_INCH, REBUILT_AFTER_MS, ReportPage
 
 
 @pytest.fixture

@@ -1,0 +1,1 @@
+"""The report is made and the session left: page, dialog and step."""
