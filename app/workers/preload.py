@@ -23,7 +23,6 @@ MODULES = (
     "app.wizard.free_motion.estimator",
     "core.analysis",
     "app.wizard.walking.page",
-    "app.wizard.walking.live_walk",
     "app.wizard.walking.estimator",
     "app.pages.result_page",
     "app.pages.help_page",

@@ -1,7 +1,6 @@
 """The live curves of both legs above their gait phases, on one time that ends now."""
 
 import math
-from collections.abc import Mapping
 
 from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
@@ -13,8 +12,9 @@ from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
-from app.wizard.walking.live_lanes import LiveLane, LiveLanes
-from app.wizard.walking.live_strip import LiveStrip, LiveTrace
+from app.wizard.walking.live_lanes import LiveLanes
+from app.wizard.walking.live_strip import LiveStrip
+from app.wizard.walking.readout import WalkingReadout
 from app.wording import tr
 from core.body import Side
 from core.gait.phases import Phase
@@ -62,17 +62,12 @@ class WalkingCharts(Card):
         for chart in (self.knee, self.ankle, self.lanes):
             chart.set_seconds(seconds)
 
-    def show_live(
-        self,
-        now_s: float,
-        knees: Mapping[Side, LiveTrace],
-        ankles: Mapping[Side, LiveTrace],
-        lanes: Mapping[Side, LiveLane],
-    ) -> None:
-        """Draw up to `now_s`; a side that is left out has no curve or lane."""
-        self.knee.show_traces(now_s, knees)
-        self.ankle.show_traces(now_s, ankles)
-        self.lanes.show_lanes(now_s, lanes)
+    def show_live(self, live: WalkingReadout) -> None:
+        """Draw up to now; a side that is left out has no curve or lane."""
+        knees, ankles = live.knees, live.ankles
+        self.knee.show_traces(live.now_s, knees)
+        self.ankle.show_traces(live.now_s, ankles)
+        self.lanes.show_lanes(live.now_s, live.lanes)
         for side, key in self._keys.items():
             key.setVisible(side in knees or side in ankles)
         self._say_provisional([side for side in Side if side in ankles and ankles[side].is_provisional])
@@ -167,7 +162,7 @@ class Hairline(QWidget):
         painter.fillRect(line, QColor(self._look.theme.colours.line))
 
 
-def last_angles_in_words(knees: Mapping[Side, LiveTrace], ankles: Mapping[Side, LiveTrace]) -> str:
+def last_angles_in_words(live: WalkingReadout) -> str:
     """Say each joint's newest angle, for who cannot see the curves."""
     words = {
         (Side.LEFT, True): tr("Left knee {angle}."),
@@ -176,7 +171,7 @@ def last_angles_in_words(knees: Mapping[Side, LiveTrace], ankles: Mapping[Side, 
         (Side.RIGHT, False): tr("Right ankle {angle}."),
     }
     said = []
-    for traces, is_knee in ((knees, True), (ankles, False)):
+    for traces, is_knee in ((live.knees, True), (live.ankles, False)):
         for side in Side:
             if side in traces:
                 angles = traces[side].angle_rad

@@ -1,14 +1,15 @@
 """What does the walking patient do now, and did in the last seconds? Curves, phases, steps: what the screen draws."""
 
+import math
 from bisect import bisect_left
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
 
-from core.body import Joint, Segment, Side, Site
+from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
+from core.body import Joint, Segment, Site
 from core.gait.live import PHASE_AFTER, FootEvent, LiveEvent, PhaseChange
 from core.gait.phases import Phase
 from core.gait.strides import MAX_STRIDE_S
@@ -17,67 +18,9 @@ from core.live.sensors import LiveSensor
 from core.live.walking import LiveFoot, LiveWalk
 from core.results import JointCalibration
 from core.samples import FloatArray, ImuBlock
-from core.strap import Slip
 
 KEPT_S = 15.0
 SILENT_S = 0.5
-
-
-@dataclass(frozen=True, slots=True)
-class JointCurve:
-    """One joint's last seconds, both (n,) and read-only; NaN in gaps, one of them between two stretches."""
-
-    time_s: FloatArray
-    angle_rad: FloatArray
-    is_provisional: bool
-
-
-@dataclass(frozen=True, slots=True)
-class PhaseSpan:
-    """A foot's phase; `end_s` None: it still lasts."""
-
-    phase: Phase
-    start_s: float
-    end_s: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class FootLane:
-    """One foot's last seconds: its known phases in order, and when it was silent, from and to; None: it still is."""
-
-    spans: tuple[PhaseSpan, ...] = ()
-    silent_s: tuple[tuple[float, float | None], ...] = ()
-
-
-@dataclass(frozen=True, slots=True)
-class WalkingView:
-    """All times on the acquisition's clock, as the thighs' sensors have it.
-
-    Attributes
-    ----------
-    now_s
-        The newest sample of any sensor. When all are silent, it stands still.
-    joints
-        Of every joint with a calibration whose two sensors are worn.
-    lanes, strides
-        Of every side with a foot sensor; strides since `count_from`.
-    cadence_steps_min
-        Of both feet; None while nobody walks.
-    missing
-        Sites not heard for SILENT_S.
-    """
-
-    now_s: float | None = None
-    joints: Mapping[Joint, JointCurve] = field(default_factory=dict)
-    lanes: Mapping[Side, FootLane] = field(default_factory=dict)
-    strides: Mapping[Side, int] = field(default_factory=dict)
-    cadence_steps_min: float | None = None
-    slips: tuple[Slip, ...] = ()
-    missing: tuple[Site, ...] = ()
-
-    @property
-    def total_strides(self) -> int:
-        return sum(self.strides.values())
 
 
 class WalkingWork:
@@ -106,7 +49,7 @@ class WalkingWork:
         self._now_s = -np.inf
         self._count_from_s = -np.inf  # set by the screen
         self._wishes: deque[tuple[Joint, JointCalibration]] = deque()  # put in by the screen, taken by the estimator
-        self.state = WalkingView()
+        self.state = WalkingReadout()
 
     def recalibrate(self, joint: Joint, calibration: JointCalibration) -> None:
         """Go over to another calibration without a jump, from the next update on; not of a joint that had none.
@@ -144,12 +87,12 @@ class WalkingWork:
             cadence = told.feet[side].cadence_steps_min
             if np.isfinite(cadence) and site not in missing:
                 cadences.append(cadence)
-        self.state = WalkingView(
+        self.state = WalkingReadout(
             now_s=self._now_s,
             joints=joints,
             lanes=lanes,
             strides={side: foot.strides_since(self._count_from_s, kept_from_s) for side, foot in self._feet.items()},
-            cadence_steps_min=float(np.mean(cadences)) if cadences else None,
+            cadence_steps_min=float(np.mean(cadences)) if cadences else math.nan,
             slips=told.slips,
             missing=missing,
         )
@@ -196,10 +139,10 @@ class _Curve:
         self._time_s[self._end : end], self._angle_rad[self._end : end] = time_s, angle_rad
         self._end = end
 
-    def since(self, time_s: float, is_provisional: bool) -> JointCurve:
+    def since(self, time_s: float, is_provisional: bool) -> LiveTrace:
         self._begin += int(np.searchsorted(self._time_s[self._begin : self._end], time_s))
         part = slice(self._begin, self._end)
-        return JointCurve(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), is_provisional)
+        return LiveTrace(_read_only(self._time_s[part]), _read_only(self._angle_rad[part]), is_provisional)
 
     def _move(self, coming: int) -> int:
         """Go over to new arrays with what is still needed; returns where the coming samples end there."""
@@ -251,7 +194,7 @@ class _Foot:
         self._contacts_s = self._contacts_s[max(bisect_left(self._contacts_s, kept_from_s) - 1, 0) :]
         return count
 
-    def lane(self, from_s: float, is_silent: bool) -> FootLane:
+    def lane(self, from_s: float, is_silent: bool) -> LiveLane:
         """What is still of interest; the rest is forgotten."""
         while len(self._phases) > 1 and self._phases[1][1] < from_s:
             del self._phases[0]
@@ -265,7 +208,7 @@ class _Foot:
         silent: tuple[tuple[float, float | None], ...] = tuple(self._silent_s)
         if is_silent and self._heard_s is not None:
             silent = (*silent, (self._heard_s, None))
-        return FootLane(spans, silent)
+        return LiveLane(spans, silent)
 
     def _begin(self, phase: Phase, at_s: float) -> None:
         """An event told since when the foot is in a phase: what was shown after that instant was premature."""

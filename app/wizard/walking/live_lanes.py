@@ -5,7 +5,7 @@ foot did may be told a moment late, so the end of a lane is drawn anew as far ba
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
@@ -18,32 +18,15 @@ from app.theme import CHIP_RADIUS, Look
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
 from app.wizard.walking.live_strip import SHOWN_S
+from app.wizard.walking.readout import LiveLane, PhaseSpan
 from app.wizard.walking.scrolling_picture import ScrollingPicture
 from app.wording import tr
 from core.body import Side
-from core.gait.phases import Phase
 
 AXIS_HEIGHT, TICK = 24, 4
 BETWEEN_COMPACT, AXIS_HEIGHT_COMPACT = 4, 20
 TICK_S = 2.0
 LEAST_WIDTH = 320
-
-
-@dataclass(frozen=True, slots=True)
-class PhaseSpan:
-    """A foot's phase between two instants of the screen's clock; `end_s` None: it still lasts."""
-
-    phase: Phase
-    start_s: float
-    end_s: float | None
-
-
-@dataclass(frozen=True, slots=True)
-class LiveLane:
-    """The last seconds of one foot, in order, and when its sensor was silent, from and to; None: it still is."""
-
-    spans: tuple[PhaseSpan, ...] = ()
-    silent_s: tuple[tuple[float, float | None], ...] = ()
 
 
 class LiveLanes(QWidget):

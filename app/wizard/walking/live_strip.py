@@ -19,6 +19,7 @@ from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.theme import Look
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
+from app.wizard.walking.readout import LiveTrace
 from app.wizard.walking.scrolling_picture import ScrollingPicture
 from app.wording import tr
 from core.body import Side
@@ -35,18 +36,6 @@ BREAK_S = 0.1  # without a sample for longer, the line ends; a radio's bursts li
 MISSING_S = 0.5  # without a sample for longer, it is said in words
 FIRST_ANGLE_S = 5.0  # the filters may look for the vertical for so long before they tell a first angle
 LEAST_BETWEEN_TICKS = 18  # figures of 12 px
-
-
-@dataclass(frozen=True, slots=True)
-class LiveTrace:
-    """The last seconds of one joint, both (n,): ascending times on the screen's clock, radians, NaN where missing.
-
-    `is_provisional`: the newest samples of an ankle whose axis comes from free motion alone.
-    """
-
-    time_s: FloatArray
-    angle_rad: FloatArray
-    is_provisional: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,8 +1,6 @@
 """How does the patient walk now, and what becomes of each walk? Live curves and steps, and the next walk's label."""
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QResizeEvent
@@ -23,11 +21,9 @@ from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
-from app.wizard.walking.live_lanes import LiveLane
-from app.wizard.walking.live_strip import LiveTrace
+from app.wizard.walking.readout import WalkingReadout
 from app.wizard.walking.walk_list import WalkList, WalkRow, WalkState
 from app.wording import tr
-from core.body import Side
 
 MARGIN, BETWEEN = 24, 12
 MARGIN_COMPACT, BETWEEN_COMPACT = 8, 8
@@ -40,20 +36,6 @@ MOST_WIDTH = 1600
 SECONDS, SECONDS_WIDE = 8.0, 12.0
 DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
-
-
-@dataclass(frozen=True, slots=True)
-class WalkingReadout:
-    """What the patient does right now: the last seconds on the screen's clock up to `now_s`; a side without sensors
-    is left out. `cadence_steps_min` is NaN while nobody walks.
-    """
-
-    now_s: float
-    knees: Mapping[Side, LiveTrace] = field(default_factory=dict)
-    ankles: Mapping[Side, LiveTrace] = field(default_factory=dict)
-    lanes: Mapping[Side, LiveLane] = field(default_factory=dict)
-    strides: Mapping[Side, int] = field(default_factory=dict)
-    cadence_steps_min: float = math.nan
 
 
 class WalkingPage(QWidget):
@@ -83,7 +65,7 @@ class WalkingPage(QWidget):
         self._is_compact = False
         self._rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
-        self._live = WalkingReadout(0.0)
+        self._live = WalkingReadout()
         self._described_s = -math.inf
         self.notice = Notice(look, size=16)
         self._has_message = False
@@ -122,11 +104,11 @@ class WalkingPage(QWidget):
     def show_view(self, live: WalkingReadout) -> None:
         """Draw the present, up to thirty times a second."""
         self._live = live
-        self.charts.show_live(live.now_s, live.knees, live.ankles, live.lanes)
+        self.charts.show_live(live)
         self.figures.show_figures(live.strides, live.cadence_steps_min)
         if not 0.0 <= live.now_s - self._described_s < DESCRIBED_EVERY_S:
             self._described_s = live.now_s
-            said = [self.figures.in_words, last_angles_in_words(live.knees, live.ankles)]
+            said = [self.figures.in_words, last_angles_in_words(live)]
             self.charts.setAccessibleDescription(" ".join(filter(None, said)))
 
     def show_walks(self, rows: tuple[WalkRow, ...], facts: str = "") -> None:

@@ -1,6 +1,7 @@
 """Walks under one condition after the other: Space starts and stops, K and D say whether a walk counts."""
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 from uuid import UUID
 
@@ -33,8 +34,9 @@ from core.samples import Recording, RecordingKind
 if TYPE_CHECKING:
     from app.wizard.takes import Take
     from app.wizard.visit import Visit
-    from app.wizard.walking.estimator import WalkingView, WalkingWork
+    from app.wizard.walking.estimator import WalkingWork
     from app.wizard.walking.page import WalkingPage
+    from app.wizard.walking.readout import WalkingReadout
 
 STAND_STILL = 2  # the step that sensors strapped anew begin with
 WATCH_TICKS = 3  # of 30 a second: sensors are looked at ten times a second
@@ -46,8 +48,8 @@ class WalkingStep(Step):
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
         self._work: WalkingWork | None = None
-        self._shown: WalkingView | None = None
-        self._at_stop: WalkingView | None = None
+        self._shown: WalkingReadout | None = None
+        self._at_stop: WalkingReadout | None = None
         self._counted_before: dict[Side, int] = {}
         self._label = ""
         self._is_in_sight = self._is_ankle_asked = False
@@ -152,13 +154,11 @@ class WalkingStep(Step):
         if self._work is None or not self._visit.takes.is_recording:
             return
         view = self._work.state
-        if view is self._shown or view.now_s is None:
+        if view is self._shown or math.isnan(view.now_s):
             return
-        from app.wizard.walking.live_walk import live_walk
-
         self._shown = view
         strides = self._strides(view)
-        self.page.show_view(live_walk(view, strides))
+        self.page.show_view(replace(view, strides=strides))
         self._ask_for_ankles(strides)
 
     def bar(self) -> BarState:
@@ -288,7 +288,7 @@ class WalkingStep(Step):
             self._work.count_from(self._visit.takes.ongoing.began_s)
         acquisition.set_work(self._work)
 
-    def _strides(self, view: "WalkingView") -> dict[Side, int]:
+    def _strides(self, view: "WalkingReadout") -> dict[Side, int]:
         """Those of this walk, also where another work began amid it."""
         return {side: count + self._counted_before.get(side, 0) for side, count in view.strides.items()}
 
@@ -444,8 +444,8 @@ class WalkingStep(Step):
         if strides:
             counts = ", ".join(f"{letter} {strides[side]}" for side, letter in _LETTERS.items() if side in strides)
             said.append(tr("Strides: {counts}").format(counts=counts))
-        cadence = self._at_stop.cadence_steps_min if self._at_stop is not None and not take.is_decided else None
-        if cadence is not None and math.isfinite(cadence):
+        cadence = self._at_stop.cadence_steps_min if self._at_stop is not None and not take.is_decided else math.nan
+        if math.isfinite(cadence):
             said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
         said.append(clock(_length_s(take)))
         return " · ".join(said)

@@ -5,6 +5,7 @@ from uuid import UUID
 
 import numpy as np
 import pytest
+from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
@@ -26,9 +27,7 @@ from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
-from app.wizard.walking.live_lanes import LiveLane, PhaseSpan
-from app.wizard.walking.live_strip import LiveTrace
-from app.wizard.walking.page import WalkingPage, WalkingReadout
+from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side, Site
@@ -192,8 +191,9 @@ def walking(*rows: WalkRow) -> Callable[[Look], QWidget]:
         time_s = np.arange(500) / 100
         trace = LiveTrace(time_s, np.full(500, 0.4), is_provisional=True)
         lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
-        both = dict.fromkeys(Side, trace)
-        page.show_view(WalkingReadout(5.0, both, both, dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4))
+        page.show_view(
+            WalkingReadout(5.0, dict.fromkeys(Joint, trace), dict.fromkeys(Side, lane), dict.fromkeys(Side, 14), 101.4)
+        )
         return page
 
     return make

@@ -1,12 +1,14 @@
 """The walking patient as the screen draws him: curves, lanes, strides, cadence, what is missing."""
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 import pytest
+from app.wizard.walking.readout import WalkingReadout
 
-from app.wizard.walking.estimator import KEPT_S, WalkingView, WalkingWork
+from app.wizard.walking.estimator import KEPT_S, WalkingWork
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource
@@ -22,7 +24,7 @@ def work_of(dressed: Worn) -> WalkingWork:
     return WalkingWork(dressed.site_of, dressed.live_sensors, dressed.calibration)
 
 
-def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingView]:
+def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingReadout]:
     told = []
     for block in in_blocks(streams, block_s):
         work.update(block)
@@ -31,11 +33,11 @@ def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) 
 
 
 @pytest.fixture(scope="module")
-def usual(dressed: Worn) -> list[WalkingView]:
+def usual(dressed: Worn) -> list[WalkingReadout]:
     return fed(work_of(dressed), dict(dressed.walk))
 
 
-def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[WalkingView]) -> None:
+def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[WalkingReadout]) -> None:
     last = usual[-1]
     assert set(last.joints) == set(Joint)
     now_s = max(float(block.time_s[-1]) for block in dressed.walk.values())
@@ -49,9 +51,8 @@ def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[
     assert 50.0 < knee.max() < 75.0
 
 
-def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: list[WalkingView]) -> None:
+def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: list[WalkingReadout]) -> None:
     walking = usual[len(usual) * 2 // 3]
-    assert walking.now_s is not None
     for side in Side:
         spans = walking.lanes[side].spans
         assert len(spans) > 12
@@ -64,15 +65,14 @@ def test_lanes_hold_whole_phases_in_their_order_and_the_last_one_lasts(usual: li
     assert [span.phase for span in usual[-1].lanes[Side.LEFT].spans][-1] is Phase.FOOT_FLAT  # stands again
 
 
-def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingView]) -> None:
-    assert usual[5].cadence_steps_min is None
+def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingReadout]) -> None:
+    assert math.isnan(usual[5].cadence_steps_min)
     assert usual[len(usual) // 2].cadence_steps_min == pytest.approx(112.0, abs=8.0)
-    assert usual[-1].cadence_steps_min is None
+    assert math.isnan(usual[-1].cadence_steps_min)
     assert all(count >= 12 for count in usual[-1].strides.values())
-    assert usual[-1].total_strides == sum(usual[-1].strides.values())
 
 
-def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingView]) -> None:
+def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingReadout]) -> None:
     work = work_of(dressed)
     work.count_from(BEGIN_S + 8.0)
     last = fed(work, dict(dressed.walk))[-1]
@@ -81,24 +81,20 @@ def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingView]) 
 
 
 @pytest.mark.parametrize("block_s", [60.0, pytest.param(0.017, marks=pytest.mark.endurance)])
-def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[WalkingView], block_s: float) -> None:
+def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[WalkingReadout], block_s: float) -> None:
     one, two = usual[-1], fed(work_of(dressed), dict(dressed.walk), block_s)[-1]
     for joint in Joint:
         np.testing.assert_array_equal(two.joints[joint].time_s, one.joints[joint].time_s)
         np.testing.assert_allclose(two.joints[joint].angle_rad, one.joints[joint].angle_rad, rtol=0, atol=1e-9)
     assert two.lanes == one.lanes
-    assert (two.strides, two.cadence_steps_min, two.missing, two.slips) == (
-        one.strides,
-        one.cadence_steps_min,
-        one.missing,
-        one.slips,
-    )
+    assert (two.strides, two.missing, two.slips) == (one.strides, one.missing, one.slips)
+    np.testing.assert_equal(two.cadence_steps_min, one.cadence_steps_min)
 
 
 def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> None:
     name, (from_s, to_s) = dressed.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
     told = fed(work_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
-    amid = next(state for state in told if state.now_s is not None and state.now_s > to_s - 0.2)
+    amid = next(state for state in told if state.now_s > to_s - 0.2)
     assert amid.missing == (Site.RIGHT_FOOT,)
     lane = amid.lanes[Side.RIGHT]
     ((silent_from_s, silent_to_s),) = lane.silent_s
@@ -107,7 +103,7 @@ def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> 
     assert lane.spans[-1].end_s == pytest.approx(from_s, abs=0.02)
     assert amid.joints[Joint.RIGHT_ANKLE].time_s[-1] < from_s
     assert amid.joints[Joint.RIGHT_KNEE].time_s[-1] > to_s - 0.4
-    assert amid.cadence_steps_min is not None  # the other foot tells
+    assert math.isfinite(amid.cadence_steps_min)  # the other foot tells
     last = told[-1]
     assert last.missing == ()
     ((then_from_s, then_to_s),) = last.lanes[Side.RIGHT].silent_s
@@ -120,7 +116,7 @@ def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> 
     assert np.isnan(ankle.angle_rad[in_gap]).all()
 
 
-def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: list[WalkingView]) -> None:
+def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: list[WalkingReadout]) -> None:
     joint = Joint.LEFT_ANKLE
     settled = dressed.calibration[joint]
     provisional = replace(settled, axis_source=AxisSource.FREE_MOTION, zero_rad=settled.zero_rad + 0.2)
@@ -145,13 +141,13 @@ def test_a_leg_of_one_joint_has_one_curve_and_no_lane(dressed: Worn) -> None:
     assert set(last.joints) == {Joint.LEFT_KNEE}
     assert not last.lanes
     assert not last.strides
-    assert last.cadence_steps_min is None
+    assert math.isnan(last.cadence_steps_min)
 
 
 def test_a_state_that_was_read_stays_as_it_was(dressed: Worn) -> None:
     work, held = work_of(dressed), []
     for _ in range(4):  # past the arrays' room
-        last_s = 0.0 if work.state.now_s is None else work.state.now_s - BEGIN_S + 0.01
+        last_s = 0.0 if math.isnan(work.state.now_s) else work.state.now_s - BEGIN_S + 0.01
         later = {name: replace(block, time_s=block.time_s + last_s) for name, block in dressed.walk.items()}
         for block in in_blocks(later, 0.25):
             work.update(block)

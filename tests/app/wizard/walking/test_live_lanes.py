@@ -4,13 +4,14 @@ from collections.abc import Iterator
 
 import numpy as np
 import pytest
+from app.wizard.walking.readout import LiveLane, PhaseSpan
 from PySide6.QtCore import QPoint
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
-from app.wizard.walking.live_lanes import LiveLane, LiveLanes, PhaseSpan
+from app.wizard.walking.live_lanes import LiveLanes
 from core.body import Side
 from core.gait.phases import Phase
 

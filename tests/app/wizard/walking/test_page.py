@@ -6,17 +6,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
-from app.wizard.walking.live_lanes import LiveLane, PhaseSpan
-from app.wizard.walking.live_strip import LiveTrace
-from app.wizard.walking.page import WalkingPage, WalkingReadout
+from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.walk_list import WalkRow, WalkState
-from core.body import Side
+from core.body import Joint, Side
 from core.gait.phases import Phase
 from tests.app.room import words_cut
 
@@ -56,8 +55,11 @@ def live(now_s: float = 5.0, knee_deg: float = 30.4, is_provisional: bool = Fals
     lane = LiveLane((PhaseSpan(Phase.SWING, 1.0, None),))
     return WalkingReadout(
         now_s,
-        {Side.LEFT: knee, Side.RIGHT: LiveTrace(time_s, np.full(len(time_s), np.nan))},
-        {Side.LEFT: ankle},
+        {
+            Joint.LEFT_KNEE: knee,
+            Joint.RIGHT_KNEE: LiveTrace(time_s, np.full(len(time_s), np.nan)),
+            Joint.LEFT_ANKLE: ankle,
+        },
         {Side.LEFT: lane},
         {Side.LEFT: 14, Side.RIGHT: 13},
         101.4,

@@ -1,0 +1,74 @@
+"""A walk as seen live: the last seconds of angles, phases and steps. The estimator makes it, the page draws it."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from core.body import Joint, Side, Site
+from core.gait.phases import Phase
+from core.samples import FloatArray
+from core.strap import Slip
+
+
+@dataclass(frozen=True, slots=True)
+class LiveTrace:
+    """The last seconds of one joint, both (n,): ascending times on the acquisition's clock, radians, NaN where missing.
+
+    `is_provisional`: the newest samples of an ankle whose axis comes from free motion alone.
+    """
+
+    time_s: FloatArray
+    angle_rad: FloatArray
+    is_provisional: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PhaseSpan:
+    """A foot's phase; `end_s` None: it still lasts."""
+
+    phase: Phase
+    start_s: float
+    end_s: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LiveLane:
+    """One foot's last seconds: its known phases in order, and when it was silent, from and to; None: it still is."""
+
+    spans: tuple[PhaseSpan, ...] = ()
+    silent_s: tuple[tuple[float, float | None], ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class WalkingReadout:
+    """All times on the acquisition's clock, as the thighs' sensors have it.
+
+    Attributes
+    ----------
+    now_s
+        The newest sample of any sensor, NaN before the first. When all are silent, it stands still.
+    joints
+        Of every joint with a calibration whose two sensors are worn.
+    lanes, strides
+        Of every side with a foot sensor; strides since the walk began.
+    cadence_steps_min
+        Of both feet; NaN while nobody walks.
+    missing
+        Sites that are silent.
+    """
+
+    now_s: float = math.nan
+    joints: Mapping[Joint, LiveTrace] = field(default_factory=dict)
+    lanes: Mapping[Side, LiveLane] = field(default_factory=dict)
+    strides: Mapping[Side, int] = field(default_factory=dict)
+    cadence_steps_min: float = math.nan
+    slips: tuple[Slip, ...] = ()
+    missing: tuple[Site, ...] = ()
+
+    @property
+    def knees(self) -> dict[Side, LiveTrace]:
+        return {joint.side: trace for joint, trace in self.joints.items() if joint.is_knee}
+
+    @property
+    def ankles(self) -> dict[Side, LiveTrace]:
+        return {joint.side: trace for joint, trace in self.joints.items() if not joint.is_knee}
