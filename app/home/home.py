@@ -14,10 +14,10 @@ from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
 from app.home.recovering import Recovering
 from app.home.settings_desk import SettingsDesk
-from app.home.words import patient_line, person, session_line
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
+from app.patient_words import patient_line, person, session_line
 from app.settings import Scheme, Settings
 from app.theme import Look
 from app.widgets.action_bar import ActionBar, BarState, Verb

@@ -11,7 +11,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
-from app.home.words import length
+from app.patient_words import length
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.walk_messages import recovery_costs

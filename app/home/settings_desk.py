@@ -11,8 +11,8 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
 from app.home.entry import ADMINISTRATOR, SHORTEST
-from app.home.words import person, when
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
+from app.patient_words import person, when
 from app.settings import Scheme, Settings
 from app.theme import Look
 from app.widgets.folder_dialog import ask_for_folder

@@ -25,7 +25,7 @@ from app.wording import tr
 from app.workers.background import Background, Report
 from app.workers.library_desk import LibraryDesk
 from core.body import Joint, Side, Site
-from core.samples import Patient, Recording, RecordingKind, Session
+from core.samples import Recording, RecordingKind, Session
 
 if TYPE_CHECKING:
     from concurrent.futures import Future
@@ -455,16 +455,3 @@ def _now() -> str:
 
 def _day(moment: str) -> str:
     return moment[:10]
-
-
-def patient_line(patient: Patient) -> str:
-    """What the clinic typed of a patient, in one line beside the code."""
-    sexes = {"female": tr("female"), "male": tr("male")}
-    person = ", ".join(filter(None, [str(patient.birth_year or ""), sexes.get(patient.sex, patient.sex)]))
-    sides = {"left": tr("left"), "right": tr("right"), "both": tr("both sides")}
-    about = ""
-    if patient.prosthetic_side in sides:
-        about = tr("{side} prosthetic").format(side=sides[patient.prosthetic_side])
-    elif patient.affected_side in sides:
-        about = tr("{side} affected").format(side=sides[patient.affected_side])
-    return " · ".join(filter(None, [person, about, patient.device]))

@@ -10,6 +10,7 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from app import sounds
+from app.patient_words import about_and_device
 from app.settings import Settings
 from app.theme import Look
 from app.widgets.action_bar import BarState
@@ -26,7 +27,7 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.shell import StripMode, WizardShell
 from app.wizard.standing.step import StandStillStep
 from app.wizard.step import Step
-from app.wizard.visit import DEMO, Visit, patient_line
+from app.wizard.visit import DEMO, Visit
 from app.wizard.walking.step import WalkingStep
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
@@ -231,7 +232,7 @@ class Wizard(QWidget):
         self._keys.set_running(self.is_recording)
         patient = self._visit.patient.told
         self.shell.header.show_session(
-            patient.code or tr("New session"), patient_line(patient), self._visit.is_simulated
+            patient.code or tr("New session"), about_and_device(patient), self._visit.is_simulated
         )
         self._show_slow()
 

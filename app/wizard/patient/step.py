@@ -219,7 +219,7 @@ def _about(patient: Patient) -> str:
 
 
 def _last_visit(session: "StoredSession") -> "LastVisit":
-    from app.home.words import date
+    from app.patient_words import date
     from app.wizard.patient.cards import LastVisit
 
     told = session.told

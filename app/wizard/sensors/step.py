@@ -491,8 +491,8 @@ class SensorsStep(Step):
 
 
 def _stored_line(line: "SessionLine", now: datetime.datetime) -> "PatientLine":
-    from app.home.words import when
     from app.pages.home_lists import PatientLine
+    from app.patient_words import when
 
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
     conditions = ", ".join(line.conditions)

@@ -54,6 +54,11 @@ def person(patient: "Patient") -> str:
     return " · ".join(filter(None, [born, side]))
 
 
+def about_and_device(patient: "Patient") -> str:
+    """What the clinic typed of a patient, in one line beside the code."""
+    return " · ".join(filter(None, [person(patient), patient.device]))
+
+
 def when(started: str, now: datetime.datetime) -> str:
     """Say a time as a file holds it: "today 09:20", "yesterday", "24 Oct 2026"; what is no time stays as it is."""
     if not started:
