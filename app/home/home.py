@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QKeySequence, QPainter, QPaintEvent, QResizeEvent, QShortcut
 from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QStackedWidget, QVBoxLayout, QWidget
 
+from app.foreign_files import read_foreign_session
 from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
 from app.home.recovering import Recovering
@@ -19,6 +20,7 @@ from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
 from app.patient_words import patient_line, person, session_line
 from app.settings import Scheme, Settings
+from app.storage.exchange import import_session
 from app.theme import Look
 from app.widgets.action_bar import ActionBar, BarState, Verb
 from app.widgets.banner import Banner
@@ -439,8 +441,6 @@ class Home(QWidget):
         """Read a session folder, to be imported once it is said whose it is."""
 
         def read(_opened: "OpenedLibrary", report: Report) -> "Session":
-            from app.foreign_files import read_foreign_session
-
             report(0.0, folder.name)
             return read_foreign_session(folder, lambda: report(0.0, folder.name))
 
@@ -466,8 +466,6 @@ class Home(QWidget):
             return
 
         def work(opened: "OpenedLibrary", report: Report) -> "Imported":
-            from app.storage.exchange import import_session
-
             return import_session(opened, session, report, code)
 
         self._work(tr("Importing {folder}").format(folder=self._folder.name))

@@ -12,12 +12,17 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from app.patient_words import length
+from app.storage.exchange import export_orphan, was_exported
+from app.storage.journal.header import JournalRefusedError
+from app.storage.recovery import adopt_home, find_interrupted, recover
+from app.storage.stored import LibraryError, LibraryFaultError, RecordingState
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.walk_messages import recovery_costs
 from app.wording import capitalised, tr, tr_n
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk, OpenedState
+from devices.decoders import DECODERS
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -79,8 +84,6 @@ class Recovering(QObject):
         """Bring back what came home only now, because the library was gone; `recovered` follows."""
 
         def work(opened: "OpenedLibrary", report: Report) -> _Outcome:
-            from app.storage.recovery import find_interrupted
-
             return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
 
         self._desk.run_long(work, self._on_come_home, self._on_refused, None, self)
@@ -90,9 +93,6 @@ class Recovering(QObject):
         lost = tuple(self._lost)
 
         def work(opened: "OpenedLibrary", report: Report) -> str:
-            from app.storage.exchange import export_orphan
-            from devices.decoders import DECODERS
-
             for number, one in enumerate(lost, 1):
                 began = f" {one.began_at.astimezone():%Y-%m-%d %H-%M}" if one.began_at else ""
                 export_orphan(opened, one, folder / f"{number}{began}", DECODERS, report)
@@ -152,8 +152,6 @@ class Recovering(QObject):
 
     def _is_home_and_whole(self, one: "Recovered") -> bool:
         """Whether it was stopped, and only recorded elsewhere because the library was gone."""
-        from app.storage.stored import RecordingState
-
         return one.stored.id in self._brought_home and one.stored.state is RecordingState.CLOSED
 
     def _on_exported(self, folder: str) -> None:
@@ -166,11 +164,6 @@ class Recovering(QObject):
 
 
 def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", report: Report) -> _Outcome:
-    from app.storage.exchange import was_exported
-    from app.storage.journal.header import JournalRefusedError
-    from app.storage.recovery import adopt_home, recover
-    from app.storage.stored import LibraryError, LibraryFaultError
-
     outcome = _Outcome([], [], [], [], [])
     undecided = opened.library.recordings.undecided()  # before others join them
     for one in interrupted:

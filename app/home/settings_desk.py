@@ -11,9 +11,15 @@ from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
 from app.home.entry import ADMINISTRATOR, SHORTEST
+from app.home.key_sheet import KeySheet
 from app.pages.settings_page import DeletedLine, OperatorLine, SettingsPage
 from app.patient_words import person, when
 from app.settings import Scheme, Settings
+from app.storage.backup import back_up
+from app.storage.keys import KeyRefusedError, KeySlots
+from app.storage.layout import KEYS
+from app.storage.operators import CLINIC
+from app.storage.stored import Operator, Role
 from app.theme import Look
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
@@ -22,13 +28,9 @@ from app.workers.library_desk import LibraryDesk, OpenedState
 from app.workers.library_opening import BACKUP_FOLDER
 
 if TYPE_CHECKING:
-    from app.home.key_sheet import KeySheet
     from app.storage.backup import Backup
     from app.storage.key_change import ChangedKey
-    from app.storage.keys import KeySlots
     from app.storage.opened import OpenedLibrary
-    from app.storage.stored import Operator
-
 HASH_LETTERS = 16  # of an entry's hash: as much as anybody compares
 VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 
@@ -160,10 +162,8 @@ class SettingsDesk(QObject):
     def _on_save_wished(self, key: str) -> None:
         self._key_sheet().save(key)
 
-    def _key_sheet(self) -> "KeySheet":
+    def _key_sheet(self) -> KeySheet:
         if self._sheet is None:
-            from app.home.key_sheet import KeySheet  # seldom needed, and printing takes long to import
-
             self._sheet = KeySheet(self.page)
             self._sheet.told.connect(self.told)
         return self._sheet
@@ -191,8 +191,6 @@ class SettingsDesk(QObject):
         into = Path(self._backup_folder)
 
         def work(opened: "OpenedLibrary", report: Report) -> "Backup":
-            from app.storage.backup import back_up
-
             return back_up(opened, into, report)
 
         self.page.show_backup(tr("Backing up"), self._backup_folder, is_running=True)
@@ -231,8 +229,6 @@ class SettingsDesk(QObject):
 
     def _on_clinic_named(self, name: str) -> None:
         def put(opened: "OpenedLibrary") -> None:
-            from app.storage.operators import CLINIC
-
             if opened.library.settings.get(CLINIC, "") != name:
                 opened.library.settings.put(CLINIC, name)
 
@@ -241,7 +237,7 @@ class SettingsDesk(QObject):
     def _read_operators(self) -> None:
         self._desk.run(_operators_of, self._on_operators, self._on_refused, self)
 
-    def _on_operators(self, found: "tuple[tuple[Operator, ...], tuple[str, ...]]") -> None:
+    def _on_operators(self, found: tuple[tuple[Operator, ...], tuple[str, ...]]) -> None:
         operators, codes = found
         if self._state is None:
             return
@@ -257,9 +253,6 @@ class SettingsDesk(QObject):
 
     def _on_operator_added(self, code: str, name: str, role: str, passphrase: str) -> None:
         def add(opened: "OpenedLibrary") -> None:
-            from app.storage.keys import KeyRefusedError
-            from app.storage.stored import Operator, Role
-
             assert opened.data_key is not None  # hidden in the demonstration
             slots = _slots(opened)
             # the slot first: without one an operator could not log in
@@ -315,14 +308,12 @@ class SettingsDesk(QObject):
         self.told.emit(what, remedy)
 
 
-def _operators_of(opened: "OpenedLibrary") -> "tuple[tuple[Operator, ...], tuple[str, ...]]":
+def _operators_of(opened: "OpenedLibrary") -> tuple[tuple[Operator, ...], tuple[str, ...]]:
     """Who is known here, and who has a key."""
     return opened.library.operators.list(), _slots(opened).codes
 
 
 def _clinic_of(opened: "OpenedLibrary") -> str:
-    from app.storage.operators import CLINIC
-
     return str(opened.library.settings.get(CLINIC, ""))
 
 
@@ -340,10 +331,7 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
     )
 
 
-def _slots(opened: "OpenedLibrary") -> "KeySlots":
-    from app.storage.keys import KeySlots
-    from app.storage.layout import KEYS
-
+def _slots(opened: "OpenedLibrary") -> KeySlots:
     opened.refuse_gone()  # another library's keys may be in its place
     return KeySlots(opened.folder / KEYS)
 

@@ -6,8 +6,12 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.storage.kept_analyses import bare, is_same_question
+from app.wording import tr
 from app.workers.background import Background, Report, Work
+from core.analysis import analyse
 from core.body import Joint, Side
+from core.chosen_strides import leave_out
 
 if TYPE_CHECKING:
     from core.results import Analysis, JointCalibration
@@ -65,8 +69,6 @@ class Evaluation(QObject):
 
     def ask(self, session: "Session") -> None:
         """Find out what `session` tells; `done` follows, at once where only words or chosen strides have changed."""
-        from app.storage.kept_analyses import is_same_question
-
         if self._found is not None and self.session is not None and is_same_question(self.session, session):
             self.take_over(session, self._found)
             return
@@ -88,8 +90,6 @@ class Evaluation(QObject):
         self._settle(found)
 
     def _settle(self, found: "Analysis") -> None:
-        from core.chosen_strides import leave_out
-
         assert self._asked is not None  # what was found was asked for
         self._found, self.session = found, self._asked
         self.analysis = leave_out(found, self._asked.recordings)
@@ -97,8 +97,6 @@ class Evaluation(QObject):
 
     def _on_failed(self, error: Exception) -> None:
         _log.error("an analysis ended early", exc_info=error)
-        from app.wording import tr
-
         self.refused.emit(
             tr("The analysis ended before it was done."), tr("The recordings are kept; the log holds the details.")
         )
@@ -111,9 +109,6 @@ def calibration_of(analysis: "Analysis") -> "Mapping[Joint, JointCalibration]":
 
 def _analysing(session: "Session") -> Work:
     def work(report: Report) -> object:
-        from app.storage.kept_analyses import bare
-        from core.analysis import analyse
-
         return analyse(bare(session), progress=report)
 
     return work

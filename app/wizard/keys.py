@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from shiboken6 import isValid
 
 
-class Action(Enum):
+class KeyAction(Enum):
     RUN = auto()  # Space: start, stop, again: the thing that runs
     PRIMARY = auto()  # Enter
     KEEP = auto()
@@ -59,33 +59,33 @@ class Action(Enum):
 class Intent:
     """What a key asks for. `number` is that of the step or label, from 1; 0 where there is none."""
 
-    action: Action
+    action: KeyAction
     number: int = 0
 
 
 _Key = Qt.Key
-_PLAIN: dict[int, Action] = {
-    _Key.Key_Space: Action.RUN,
-    _Key.Key_K: Action.KEEP,
-    _Key.Key_D: Action.DISCARD,
-    _Key.Key_L: Action.LEFT_LEG,
-    _Key.Key_R: Action.RIGHT_LEG,
-    _Key.Key_I: Action.IDENTIFY,
-    _Key.Key_S: Action.STRIDES,
-    _Key.Key_F: Action.FILL,
-    _Key.Key_B: Action.BAND,
+_PLAIN: dict[int, KeyAction] = {
+    _Key.Key_Space: KeyAction.RUN,
+    _Key.Key_K: KeyAction.KEEP,
+    _Key.Key_D: KeyAction.DISCARD,
+    _Key.Key_L: KeyAction.LEFT_LEG,
+    _Key.Key_R: KeyAction.RIGHT_LEG,
+    _Key.Key_I: KeyAction.IDENTIFY,
+    _Key.Key_S: KeyAction.STRIDES,
+    _Key.Key_F: KeyAction.FILL,
+    _Key.Key_B: KeyAction.BAND,
 }
-_BRACKETS = {"[": Action.EARLIER, "]": Action.LATER}  # by what is written: many keyboards have them on AltGr
-_WITH_CTRL: dict[int, Action] = {
-    _Key.Key_Plus: Action.LARGER,
-    _Key.Key_Equal: Action.LARGER,  # the same key, where plus needs Shift
-    _Key.Key_Minus: Action.SMALLER,
-    _Key.Key_0: Action.USUAL_SIZE,
-    _Key.Key_F: Action.SEARCH,
-    _Key.Key_N: Action.NEW_PATIENT,
-    _Key.Key_S: Action.SAVE,
-    _Key.Key_P: Action.PRINT,
-    _Key.Key_Z: Action.UNDO,
+_BRACKETS = {"[": KeyAction.EARLIER, "]": KeyAction.LATER}  # by what is written: many keyboards have them on AltGr
+_WITH_CTRL: dict[int, KeyAction] = {
+    _Key.Key_Plus: KeyAction.LARGER,
+    _Key.Key_Equal: KeyAction.LARGER,  # the same key, where plus needs Shift
+    _Key.Key_Minus: KeyAction.SMALLER,
+    _Key.Key_0: KeyAction.USUAL_SIZE,
+    _Key.Key_F: KeyAction.SEARCH,
+    _Key.Key_N: KeyAction.NEW_PATIENT,
+    _Key.Key_S: KeyAction.SAVE,
+    _Key.Key_P: KeyAction.PRINT,
+    _Key.Key_Z: KeyAction.UNDO,
 }
 _STEPS: dict[int, int] = {
     _Key.Key_1: 1,
@@ -96,7 +96,7 @@ _STEPS: dict[int, int] = {
     _Key.Key_6: 6,
     _Key.Key_7: 7,
 }
-_REPEATED_WHILE_HELD = {Action.EARLIER, Action.LATER, Action.LARGER, Action.SMALLER}
+_REPEATED_WHILE_HELD = {KeyAction.EARLIER, KeyAction.LATER, KeyAction.LARGER, KeyAction.SMALLER}
 _ENTER = (_Key.Key_Return, _Key.Key_Enter)
 _NO_LETTERS = Qt.KeyboardModifier.ControlModifier | Qt.KeyboardModifier.AltModifier | Qt.KeyboardModifier.MetaModifier
 
@@ -132,7 +132,7 @@ class Keys(QObject):
         ):
             return False
         if event.key() in _ENTER:  # what nobody on its way up from the focus wanted is for the primary verb
-            return watched is self._root.window() and self._emit(Intent(Action.PRIMARY), event)
+            return watched is self._root.window() and self._emit(Intent(KeyAction.PRIMARY), event)
         focused = watched.window().focusWidget() or watched.window()
         if watched is not focused:
             return False
@@ -157,10 +157,10 @@ class Keys(QObject):
         plain = _plain_intent(event)
         if plain is None:
             intent = _modified_intent(event)
-            return None if is_text and intent == Intent(Action.UNDO) else intent
-        if is_text and not (plain.action is Action.RUN and _takes_figures_only(focused)):
+            return None if is_text and intent == Intent(KeyAction.UNDO) else intent
+        if is_text and not (plain.action is KeyAction.RUN and _takes_figures_only(focused)):
             return None
-        if plain.action is Action.RUN and not self._is_running and isinstance(focused, _PRESSED_BY_SPACE):
+        if plain.action is KeyAction.RUN and not self._is_running and isinstance(focused, _PRESSED_BY_SPACE):
             return None
         return plain
 
@@ -191,9 +191,9 @@ def _plain_intent(event: QKeyEvent) -> Intent | None:
     if event.modifiers() & _NO_LETTERS:
         return None
     if len(event.text()) == 1 and event.text() in "123456789":
-        return Intent(Action.LABEL, int(event.text()))
+        return Intent(KeyAction.LABEL, int(event.text()))
     if event.key() == _Key.Key_Escape:
-        return Intent(Action.UNFILL)
+        return Intent(KeyAction.UNFILL)
     action = _PLAIN.get(event.key())
     return Intent(action) if action is not None else None
 
@@ -205,15 +205,15 @@ def _modified_intent(event: QKeyEvent) -> Intent | None:
     has_shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
     if held == Qt.KeyboardModifier.NoModifier:
         if key == _Key.Key_F6:
-            return Intent(Action.PREVIOUS_REGION if has_shift else Action.NEXT_REGION)
-        return Intent(Action.HELP) if key == _Key.Key_F1 else None
+            return Intent(KeyAction.PREVIOUS_REGION if has_shift else KeyAction.NEXT_REGION)
+        return Intent(KeyAction.HELP) if key == _Key.Key_F1 else None
     if held == Qt.KeyboardModifier.AltModifier:
-        return Intent(Action.BACK) if key == _Key.Key_Left else None
+        return Intent(KeyAction.BACK) if key == _Key.Key_Left else None
     if held != Qt.KeyboardModifier.ControlModifier:
         return None
     if key in _STEPS and not has_shift:
-        return Intent(Action.STEP, _STEPS[key])
+        return Intent(KeyAction.STEP, _STEPS[key])
     action = _WITH_CTRL.get(key)
-    if action is None or (has_shift and action is not Action.LARGER):
+    if action is None or (has_shift and action is not KeyAction.LARGER):
         return None
     return Intent(action)

@@ -5,12 +5,18 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
+from app.storage.exchange import recording_with_samples
+from app.storage.kept_analyses import bare, find_analysis, keep_analysis
 from app.storage.stored import Limits, RecordingState, StoredPatient, StoredSession
 from app.wizard.takes import Take, counted
 from app.workers.background import Report
+from core.analysis import analyse
 from core.body import Joint
+from core.calibration.rest import rest_of
+from core.chosen_strides import leave_out
 from core.findings import Finding, Severity
 from core.samples import RecordingKind, Session
+from devices.decoders import DECODERS
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -29,8 +35,6 @@ class Resumed(NamedTuple):
 
 def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
     """Read a session that somebody opens; raises as `exchange.session_with_samples`."""
-    from app.storage.kept_analyses import find_analysis
-
     session = opened.library.sessions.view(session_id)
     takes = read_takes(opened, session)
     known = find_analysis(opened.library.results, session_id, evaluated(session, takes))
@@ -42,10 +46,6 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
 
     Strides left out by hand are left out.
     """
-    from app.storage.kept_analyses import bare, find_analysis, keep_analysis
-    from core.analysis import analyse
-    from core.chosen_strides import leave_out
-
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
     told = evaluated(stored, read_takes(opened, stored))
     known = find_analysis(results, session_id, told)
@@ -70,9 +70,6 @@ def with_limits(told: Session, limits: Limits) -> Session:
 
 def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
     """All recordings of a session that can be read, with their samples."""
-    from app.storage.exchange import recording_with_samples
-    from devices.decoders import DECODERS
-
     usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     return tuple(
         Take(
@@ -87,8 +84,6 @@ def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, .
 
 def rests_of(takes: Sequence[Take]) -> "dict[str, Rest]":
     """What each sensor reads at rest, by its name, as the latest standing tells."""
-    from core.calibration.rest import rest_of
-
     rests: dict[str, Rest] = {}
     for take in takes:
         if take.told.kind is RecordingKind.STANDING and take.recording and take.stored.placement and take.told.is_kept:

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.review.viewer import Viewer, ViewerRefusedError, default_root, viewer_program, why_not
 from app.wording import tr
 from app.workers.background import Background, Report
 
 if TYPE_CHECKING:
-    from app.review.viewer import Viewer
     from core.results import Analysis
     from core.samples import Session
 
@@ -34,8 +34,6 @@ class Reviewing(QObject):
 
     def show(self, session: "Session", analysis: "Analysis") -> None:
         """Open a window on the session; one at a time is made ready."""
-        from app.review.viewer import Viewer, default_root, viewer_program, why_not
-
         program = viewer_program()
         if why := why_not(program):
             self.refused.emit(why, "")
@@ -56,8 +54,6 @@ class Reviewing(QObject):
             self._viewer.close()
 
     def _on_failed(self, error: Exception) -> None:
-        from app.review.viewer import ViewerRefusedError
-
         if isinstance(error, ViewerRefusedError):
             self.refused.emit(str(error), "")
             return

@@ -9,8 +9,17 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, QTimer, Signal, Slot
 
-from app.storage.journal.disk import Trouble
+from app.acquisition.recorder import Recorder
+from app.storage.journal.disk import TOLD, Trouble
 from app.storage.stored import RecordingState, StoredRecording, StoredSession
+from app.wizard.journal_words import (
+    ENDS,
+    is_written,
+    no_row_message,
+    standstill_message,
+    trouble_message,
+    unread_message,
+)
 from app.wizard.losses import NOTHING, Message
 from app.wording import tr
 from app.workers.library_desk import LibraryDesk
@@ -19,7 +28,6 @@ from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition
-    from app.acquisition.recorder import Recorder
     from app.storage.opened import OpenedLibrary
 
 
@@ -60,7 +68,7 @@ class Take:
 class _Unread(NamedTuple):
     """What was stopped and is not read back yet; `strides` as in `Take`. Not kept: it was broken off."""
 
-    recorder: "Recorder"
+    recorder: Recorder
     name: str
     strides: Mapping[Side, int] | None
     is_kept: bool
@@ -208,11 +216,9 @@ class Takes(QObject):
         self._latest, self._trouble, self._is_without_row = None, None, False
         self._acquisition, self._lost_before = acquisition, acquisition.lost()
         session_id = self.session.id
-        begun = self._beginning = Future["Recorder"]()
+        begun = self._beginning = Future[Recorder]()
 
-        def start(opened: "OpenedLibrary", turn: "Future[None]") -> "Recorder":
-            from app.acquisition.recorder import Recorder
-
+        def start(opened: "OpenedLibrary", turn: "Future[None]") -> Recorder:
             try:
                 begun.set_result(Recorder.begin(opened, acquisition, session_id, told, self._on_trouble, turn))
             except BaseException as error:
@@ -259,8 +265,6 @@ class Takes(QObject):
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
-        from app.wizard.journal_words import no_row_message, trouble_message
-
         if self._latest is None:
             return NOTHING
         if self._trouble is Trouble.MOVED or (self._trouble is None and self._latest.is_away):
@@ -273,8 +277,6 @@ class Takes(QObject):
 
     def standstill_message(self, worn: Collection[str]) -> Message:
         """What it cost that the process stood still amid what is recorded, of the sensors that are worn."""
-        from app.wizard.journal_words import standstill_message
-
         acquisition, ongoing = self._acquisition, self.ongoing
         if acquisition is None or ongoing is None or not acquisition.standstills:
             return NOTHING
@@ -299,8 +301,6 @@ class Takes(QObject):
     @property
     def is_written(self) -> bool:
         """Whether the journal takes all that comes in, and nothing of it waits for long or was dropped."""
-        from app.wizard.journal_words import is_written
-
         return self._recorder is not None and is_written(self._recorder.status)
 
     def mark(self, text: str) -> None:
@@ -383,8 +383,6 @@ class Takes(QObject):
 
     @Slot(str)
     def _on_met(self, met: str) -> None:
-        from app.wizard.journal_words import ENDS
-
         self._trouble = Trouble(met)
         if self._latest is not None:
             self.troubled.emit(*self.trouble_message())
@@ -399,7 +397,7 @@ class Takes(QObject):
         """What was recorded, if anything was, is found at the next start."""
         self._on_not_started(what, remedy)
 
-    def _on_started(self, recorder: "Recorder") -> None:
+    def _on_started(self, recorder: Recorder) -> None:
         if self._is_closed:
             return
         self._recorder = self._latest = recorder
@@ -413,8 +411,6 @@ class Takes(QObject):
 
     def _moved(self) -> Message:
         """Say where the recording is kept while its library is gone, or cannot be written."""
-        from app.storage.journal.disk import TOLD
-
         what, remedy = TOLD[Trouble.MOVED]
         shelter = self._desk.state.library.shelter if self._desk.state is not None else None
         place = shelter.folder if shelter is not None else ""
@@ -474,8 +470,6 @@ class Takes(QObject):
 
     def _where(self, *, is_tried_again: bool) -> str:
         """Where the oldest is that has not been read back."""
-        from app.wizard.journal_words import unread_message
-
         return unread_message(self._unread[0].recorder.status, is_tried_again=is_tried_again)
 
 

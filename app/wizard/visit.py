@@ -13,7 +13,9 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
+from app.acquisition.live_sensors import live_sensors
 from app.logs import version_of
+from app.storage.kept_analyses import keep_analysis
 from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
@@ -277,8 +279,6 @@ class Visit(QObject):
 
     def live_sensors(self) -> "Mapping[str, LiveSensor]":
         """What the live estimator has to know of each sensor that is worn, by its name."""
-        from app.acquisition.live_sensors import live_sensors
-
         return live_sensors(self.sensors.site_of, self.rests, self.sensors.status)
 
     def evaluate(self, with_walk: Recording | None = None) -> None:
@@ -377,8 +377,6 @@ class Visit(QObject):
         session_id = self.session.id
 
         def keep(opened: "OpenedLibrary") -> None:
-            from app.storage.kept_analyses import keep_analysis
-
             keep_analysis(opened.library.results, session_id, session, analysis)
 
         self._desk.run(keep, None, self._on_not_kept, self)

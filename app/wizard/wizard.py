@@ -17,7 +17,7 @@ from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
 from app.wizard.free_motion.step import FreeMotionStep
-from app.wizard.keys import Action, Intent, Keys
+from app.wizard.keys import Intent, KeyAction, Keys
 from app.wizard.losses import NOTHING, Message
 from app.wizard.patient.step import PatientStep
 from app.wizard.report.step import ReportStep
@@ -291,31 +291,31 @@ class Wizard(QWidget):
             del self._to_prepare[0]
 
     def _on_intent(self, intent: Intent) -> None:
-        if not self._steps or (intent.action in (Action.RUN, Action.PRIMARY) and self._has_just_turned()):
+        if not self._steps or (intent.action in (KeyAction.RUN, KeyAction.PRIMARY) and self._has_just_turned()):
             return
         step = self._steps[self._current]
         if step.on_intent(intent):
             return
         match intent.action:
-            case Action.STEP:
+            case KeyAction.STEP:
                 self.go_to(intent.number - 1)
-            case Action.PRIMARY:
+            case KeyAction.PRIMARY:
                 self._on_primary()
-            case Action.BACK:
+            case KeyAction.BACK:
                 self._on_back()
-            case Action.NEXT_REGION:
+            case KeyAction.NEXT_REGION:
                 self.shell.focus_next_region(1)
-            case Action.PREVIOUS_REGION:
+            case KeyAction.PREVIOUS_REGION:
                 self.shell.focus_next_region(-1)
-            case Action.UNDO:
+            case KeyAction.UNDO:
                 self._on_undo()
-            case Action.HELP:
+            case KeyAction.HELP:
                 self.help_wanted.emit(step.topic)
-            case Action.LARGER:
+            case KeyAction.LARGER:
                 self._look.grow(1)
-            case Action.SMALLER:
+            case KeyAction.SMALLER:
                 self._look.grow(-1)
-            case Action.USUAL_SIZE:
+            case KeyAction.USUAL_SIZE:
                 self._look.grow(0)
 
     def _has_just_turned(self) -> bool:

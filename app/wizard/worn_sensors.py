@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, Signal
 
+from app.storage.stored import PlacedSensor
 from app.wording import filled, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint, Site
+from core.samples import SensorInfo
 from devices.live import SourceRefusedError
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import Acquisition, SensorStatus
-    from app.storage.stored import PlacedSensor
     from devices.lines import LinesAt
 
 _log = logging.getLogger(__name__)
@@ -132,11 +133,8 @@ class WornSensors(QObject):
             self.site_of = {}
         self.changed.emit()
 
-    def placed(self) -> "dict[Site, PlacedSensor]":
+    def placed(self) -> dict[Site, PlacedSensor]:
         """What the library is told of the sensors that are worn."""
-        from app.storage.stored import PlacedSensor
-        from core.samples import SensorInfo
-
         status = self.status
         placed = {}
         for sensor, site in self.site_of.items():

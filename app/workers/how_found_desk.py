@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
 from app.reports.how_found import write_how_found
+from app.storage.audit import about
+from app.storage.stored import Action, LibraryError
 from app.wording import tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint
@@ -132,9 +134,6 @@ def saved_from_library(opened: "OpenedLibrary", session_id: UUID, folder: Path, 
     LibraryError
         It cannot be noted, or the folder cannot be written.
     """
-    from app.storage.audit import about
-    from app.storage.stored import Action, LibraryError
-
     opened.library.audit.note(Action.EXPORT, about("session", session_id), format="how-found")
     try:
         write()

@@ -26,7 +26,7 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
 from app.theme import Look, load_fonts
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
 from app.wizard.sensors import sources
@@ -84,18 +84,18 @@ class Guide:
 
     def walk(self) -> None:
         """Record a walk, and answer nothing."""
-        self.wizard._on_intent(Intent(Action.RUN))
+        self.wizard._on_intent(Intent(KeyAction.RUN))
         self._wait(lambda: self.visit.takes.has_begun)
         self._began_s = self.acquisition.now_s
         linger(self._application, WALKED_S / SPEED)
 
     def stop(self) -> None:
         count = len(self.visit.takes.walks)
-        self.wizard._on_intent(Intent(Action.RUN))
+        self.wizard._on_intent(Intent(KeyAction.RUN))
         self._wait(lambda: len(self.visit.takes.walks) > count and self.visit.takes.is_idle)
 
     def keep(self) -> None:
-        self.wizard._on_intent(Intent(Action.KEEP))
+        self.wizard._on_intent(Intent(KeyAction.KEEP))
         self._wait(lambda: self.visit.takes.walks[-1].stored.is_decided)
 
     def correct(self) -> None:

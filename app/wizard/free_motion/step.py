@@ -6,12 +6,14 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from app import sounds
+from app.acquisition.live_sensors import live_sensors
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
+from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
 from app.wizard.free_motion.hints import (
     Asked,
     HintHold,
@@ -21,8 +23,10 @@ from app.wizard.free_motion.hints import (
     recorded_hint,
     unplaced_hint,
 )
+from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
+from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
 from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.step import Step
 from app.wizard.takes import Take
 from app.wizard.visit import opposite
@@ -32,8 +36,6 @@ from core.live.free_motion import FreeMotionState
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
-    from app.wizard.free_motion.page import FreeMotionPage
     from app.wizard.visit import Visit
     from core.placement.chains import Chains
 
@@ -82,10 +84,8 @@ class FreeMotionStep(Step):
         visit.takes.refused.connect(self._on_refused)
 
     @property
-    def page(self) -> "FreeMotionPage":
+    def page(self) -> FreeMotionPage:
         if self._page is None:
-            from app.wizard.free_motion.page import FreeMotionPage
-
             self._page = FreeMotionPage(self._look)
             self._page.answered.connect(self._on_answered)
         return self._page
@@ -200,14 +200,14 @@ class FreeMotionStep(Step):
             self._on_answered(1)
 
     def on_intent(self, intent: Intent) -> bool:
-        if intent.action is Action.RUN:
+        if intent.action is KeyAction.RUN:
             if self._is_recording:
                 self._stop()
             else:
                 self._begin()
             return True
-        if intent.action in (Action.LEFT_LEG, Action.RIGHT_LEG):
-            self._repeat(Side.LEFT if intent.action is Action.LEFT_LEG else Side.RIGHT)
+        if intent.action in (KeyAction.LEFT_LEG, KeyAction.RIGHT_LEG):
+            self._repeat(Side.LEFT if intent.action is KeyAction.LEFT_LEG else Side.RIGHT)
             return True
         return False
 
@@ -281,9 +281,6 @@ class FreeMotionStep(Step):
 
     def _watch(self) -> None:
         """Follow the motion from now on."""
-        from app.acquisition.live_sensors import live_sensors
-        from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
-
         visit = self._visit
         acquisition, sensors = visit.sensors.acquisition, visit.sensors
         if acquisition is None:
@@ -451,9 +448,6 @@ class FreeMotionStep(Step):
     def _show(self) -> None:
         if self._page is None:
             return
-        from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
-        from app.wizard.free_motion.page import FreeMotionView
-
         self._show_question()
         asked = self._asked()
         self._page.show_state(

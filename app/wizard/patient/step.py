@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject
 
+from app.patient_words import date
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.rail_row import StepState
+from app.wizard.patient.cards import LastVisit
+from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.step import Step
 from app.wording import name_of, tr
 from core.body import Joint
@@ -20,8 +23,6 @@ if TYPE_CHECKING:
 
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import StoredPatient, StoredSession
-    from app.wizard.patient.cards import LastVisit
-    from app.wizard.patient.page import PatientDraft, PatientPage
     from app.wizard.visit import Visit
 
 
@@ -42,10 +43,8 @@ class PatientStep(Step):
         visit.patient.refused.connect(self._on_refused)
 
     @property
-    def page(self) -> "PatientPage":
+    def page(self) -> PatientPage:
         if self._page is None:
-            from app.wizard.patient.page import PatientPage
-
             page = self._page = PatientPage(self._look)
             page.edited.connect(self._on_edited)
             page.code_committed.connect(self._on_code_committed)
@@ -104,8 +103,6 @@ class PatientStep(Step):
 
     def _fill(self) -> None:
         """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
-        from app.wizard.patient.page import PatientDraft
-
         patient = self._visit.patient
         self._shown_id = patient.stored.id if patient.stored is not None else None
         self.page.show_draft(PatientDraft(patient.told, self._visit.without_ankle))
@@ -138,7 +135,7 @@ class PatientStep(Step):
         if self._page is not None:
             self._page.show_last_visit(None if session is None else _last_visit(session))
 
-    def _on_edited(self, draft: "PatientDraft") -> None:
+    def _on_edited(self, draft: PatientDraft) -> None:
         self._visit.set_limits(replace(self._visit.limits, without_ankle=draft.without_ankle))
         self._visit.patient.edit(draft.patient)
         if self._visit.patient.told.code != self._taken_code:
@@ -218,10 +215,7 @@ def _about(patient: Patient) -> str:
     return words[patient.affected_side][0] if patient.affected_side in words else ""
 
 
-def _last_visit(session: "StoredSession") -> "LastVisit":
-    from app.patient_words import date
-    from app.wizard.patient.cards import LastVisit
-
+def _last_visit(session: "StoredSession") -> LastVisit:
     told = session.told
     try:
         day = date(datetime.datetime.fromisoformat(told.started).date())

@@ -15,12 +15,21 @@ from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
+from app.reports.patient_report.dates import day
+from app.reports.patient_report.request import ReportRequest, default_walks
+from app.reports.patient_report.request import Visit as ReportVisit
+from app.storage.audit import about
+from app.storage.operators import CLINIC
+from app.storage.pseudonyms import Typed
+from app.storage.stored import Action, LibraryError
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
+from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
+from app.wizard.resuming import read_analysed
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
@@ -30,8 +39,6 @@ from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
     from app.reports.patient_report.document import Preview
-    from app.reports.patient_report.request import ReportRequest
-    from app.reports.patient_report.request import Visit as ReportVisit
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionLine
     from app.wizard.report.leaving_dialog import Rows
@@ -121,8 +128,6 @@ class ReportStep(Step):
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody says where to."""
-        from app.wizard.report.leaving_dialog import LeavingDialog
-
         dialog = LeavingDialog(self._look, previews, self.page)
         dialog.confirmed.connect(self._on_leaving_confirmed)
         dialog.open()
@@ -145,7 +150,7 @@ class ReportStep(Step):
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._saved)))
 
     def on_intent(self, intent: Intent) -> bool:
-        if intent.action is Action.SAVE:
+        if intent.action is KeyAction.SAVE:
             self.on_primary()
             return True
         return False
@@ -171,13 +176,11 @@ class ReportStep(Step):
             self._frame.setCurrentWidget(self._frame.sentence)
         self.changed.emit()
 
-    def _request(self) -> "ReportRequest | None":
-        from app.reports.patient_report.request import ReportRequest, Visit, default_walks
-
+    def _request(self) -> ReportRequest | None:
         evaluation = self._visit.evaluation
         if evaluation.session is None or evaluation.analysis is None:
             return None
-        visit = Visit(evaluation.session, evaluation.analysis)
+        visit = ReportVisit(evaluation.session, evaluation.analysis)
         walks = default_walks(visit)
         if not walks:
             return None
@@ -199,7 +202,7 @@ class ReportStep(Step):
         if request is not None:
             self._visit.preview.start(self._previewing(request, self.page.report.pages_ppi))
 
-    def _previewing(self, request: "ReportRequest", ppi: float) -> Work:
+    def _previewing(self, request: ReportRequest, ppi: float) -> Work:
         def work(_report: Report) -> object:
             from app.reports.patient_report.document import Preview
 
@@ -246,8 +249,6 @@ class ReportStep(Step):
         current = session
 
         def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionLine]]":
-            from app.storage.operators import CLINIC
-
             lines = opened.library.sessions.list(current.patient_id)  # latest first
             before = [line for line in lines if line.id != current.id and line.started < current.told.started]
             return str(opened.library.settings.get(CLINIC, "")), before
@@ -261,7 +262,7 @@ class ReportStep(Step):
             self._clinic = clinic
             self._show()
 
-    def _earlier_chosen(self) -> "ReportVisit | None":
+    def _earlier_chosen(self) -> ReportVisit | None:
         """The earlier visit to compare with, once it is read."""
         chosen = self.page.report.chosen_visit
         return self._earlier[1] if self._earlier is not None and self._earlier[0] == chosen else None
@@ -269,16 +270,13 @@ class ReportStep(Step):
     def _read_earlier(self, session_id: UUID) -> None:
         self._reading = session_id
 
-        def read(opened: "OpenedLibrary", report: Report) -> "tuple[UUID, ReportVisit]":
-            from app.reports.patient_report.request import Visit as ReportVisit
-            from app.wizard.resuming import read_analysed
-
+        def read(opened: "OpenedLibrary", report: Report) -> tuple[UUID, ReportVisit]:
             return session_id, ReportVisit(*read_analysed(opened, session_id, report))
 
         self._desk.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
         self.changed.emit()
 
-    def _on_earlier_read(self, found: "tuple[UUID, ReportVisit]") -> None:
+    def _on_earlier_read(self, found: tuple[UUID, ReportVisit]) -> None:
         self._reading = None
         self._earlier = found
         self._on_options_changed()  # another one may have been chosen meanwhile
@@ -303,10 +301,6 @@ class ReportStep(Step):
             from app.reports.patient_report.document import make_report
             from app.reports.patient_report.report_file import write_visits
             from app.reports.result_folder import REPORT, check_place, write_results, written_beside
-            from app.storage.audit import about
-            from app.storage.pseudonyms import Typed
-            from app.storage.stored import Action, LibraryError
-            from devices.decoders import DECODERS
 
             typed = [Typed(one) for one in sorted(kept)]
             report(0.0, tr("writing"))
@@ -355,7 +349,6 @@ class ReportStep(Step):
 def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str], Rows]":
     """For each choice of what was typed freely all that then leaves without the name, beside the figures."""
     from app.exports.exports import preview_from_library
-    from app.storage.pseudonyms import Typed
 
     choices = [chosen for count in range(len(Typed) + 1) for chosen in combinations(Typed, count)]
     return {
@@ -368,8 +361,6 @@ def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str]
 
 def _words_of(line: "SessionLine") -> str:
     """A visit in a list: its day, and under which conditions the patient walked."""
-    from app.reports.patient_report.dates import day
-
     return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
 
 

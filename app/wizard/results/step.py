@@ -8,15 +8,18 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
+from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
+from app.reports.reference_bands import NOBODY, age_and_height
+from app.reports.visits import conditions_in_words, visits_by_condition
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
 from app.widgets.start_pages import WorkingPage
-from app.wizard.keys import Action as KeyAction
 from app.wizard.keys import Intent
+from app.wizard.keys import KeyAction as KeyAction
 from app.wizard.results.stride_choice import StrideChoice
 from app.wizard.step import Step
 from app.wording import capitalised, name_of, place, tr
@@ -26,7 +29,6 @@ from core.samples import RecordingKind
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from app.pages.correct_page import CorrectPage
     from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage, ResultParts
     from app.wizard.takes import Take
@@ -177,8 +179,6 @@ class ResultsStep(Step):
         session = self._visit.evaluation.session
         if self._held is not None and self._held[0] is session and self._held[1] is analysis:
             return
-        from app.reports.reference_bands import NOBODY, age_and_height
-
         self._held = session, analysis  # of other words for a walk the same analysis may come
         results.show_analysis(
             analysis,
@@ -236,8 +236,6 @@ class ResultsStep(Step):
     # what is put right
 
     def _show_corrections(self) -> None:
-        from app.pages.correct_page import JointLine, WalkLine
-
         page = self._correct_page()
         visit = self._visit
         walks = []
@@ -260,7 +258,7 @@ class ResultsStep(Step):
         page.show_sides(tr("While sensors are heard, sides are swapped on the page Sensors.") if is_live else "")
         self.page.setCurrentWidget(page)
 
-    def _correct_page(self) -> "CorrectPage":
+    def _correct_page(self) -> CorrectPage:
         page, is_new = self.page.correct(), not self.page.has_correct
         if is_new:
             self.page.has_correct = True
@@ -330,8 +328,6 @@ class ResultsStep(Step):
         session = self._visit.evaluation.session
         if self._shown is None or self._frame is None or session is None:
             return
-        from app.reports.visits import conditions_in_words, visits_by_condition
-
         visits = [*found, (session, self._shown)]
         named = [(told.started[:10], analysis, told.recordings) for told, analysis in visits]
         self.page.results().compare.show_visits(visits_by_condition(named), conditions_in_words(named))
@@ -426,10 +422,8 @@ class _ResultsFrame(PageStack):
             self.addWidget(self._results)
         return self._results
 
-    def correct(self) -> "CorrectPage":
+    def correct(self) -> CorrectPage:
         if self._correct is None:
-            from app.pages.correct_page import CorrectPage
-
             self._correct = CorrectPage(self._look)
             self._correct.set_room(*self._room)
             self.addWidget(self._correct)

@@ -6,13 +6,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
+from app.known_columns import keep_columns
+from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
 from app.wording import tr
 from core.samples import FloatArray
+from devices.csv_serial import FORCE_UNITS, RATE_UNITS, Columns
+from devices.lines import STILL, G, LinePreview, guessed, table_of
+from devices.ports import SerialPort
 
 if TYPE_CHECKING:
-    from app.wizard.sensors.columns_form import ColumnsForm, ColumnsTold
-    from devices.csv_serial import Columns
-    from devices.lines import LinePreview, LinesAt
+    from app.wizard.sensors.columns_form import ColumnsForm
+    from devices.lines import LinesAt
 
 TICKS_HZ = {"s": 1.0, "ms": 1e3, "us": 1e6}
 SLOWEST_HZ, FASTEST_HZ = 20.0, 2000.0
@@ -37,11 +41,8 @@ class ColumnsTelling(QObject):
         return self._preview is not None
 
     @property
-    def columns(self) -> "Columns | None":
+    def columns(self) -> Columns | None:
         """What is told; None while something is missing."""
-        from app.wizard.sensors.columns_form import AXES, Meaning
-        from devices.csv_serial import Columns
-
         told = self._form.told if self._form is not None and self._is_shown else None
         if told is None or not told.is_whole:
             return None
@@ -62,9 +63,6 @@ class ColumnsTelling(QObject):
 
     def begin(self, form: "ColumnsForm", lines: "Sequence[LinesAt]") -> None:
         """Listen to the first of these ports, and ask what it sends."""
-        from devices.lines import LinePreview
-        from devices.ports import SerialPort
-
         self.end()
         if self._form is None:
             self._form = form
@@ -79,8 +77,6 @@ class ColumnsTelling(QObject):
 
     def tick(self) -> None:
         """Show what comes, and whether it can be what it is said to be."""
-        from devices.lines import guessed, table_of
-
         if self._preview is None or self._form is None:
             return
         lines = self._preview.lines
@@ -106,8 +102,6 @@ class ColumnsTelling(QObject):
         OSError
             It cannot be written.
         """
-        from app.known_columns import keep_columns
-
         columns = self.columns
         if columns is not None:
             keep_columns([one.port.key for one in self._lines], columns)
@@ -120,10 +114,8 @@ class ColumnsTelling(QObject):
             preview.close()
 
 
-def _told_of(columns: "Columns | None", count: int) -> "ColumnsTold":
+def _told_of(columns: Columns | None, count: int) -> ColumnsTold:
     """As the form shows it; nothing is told of the columns of something unknown."""
-    from app.wizard.sensors.columns_form import AXES, ColumnsTold, Meaning
-
     meanings = [Meaning.UNUSED] * count
     if columns is None:
         return ColumnsTold(tuple(meanings))
@@ -140,11 +132,8 @@ def _missing() -> tuple[str, str, bool]:
     return what, tr("Set columns that are something else to “not needed”."), False
 
 
-def _said_of(columns: "Columns", table: FloatArray) -> tuple[str, str, bool]:
+def _said_of(columns: Columns, table: FloatArray) -> tuple[str, str, bool]:
     """Whether numbers (n, columns) can be what they are said to be, by their size."""
-    from devices.csv_serial import FORCE_UNITS, RATE_UNITS
-    from devices.lines import STILL, G
-
     step_s = float(np.median(np.diff(table[:, columns.time]))) / columns.tick_hz if len(table) > 1 else 0.0
     rate_hz = 1.0 / step_s if step_s > 0 else 0.0
     rates = table[:, columns.rate] * RATE_UNITS[columns.rate_unit]

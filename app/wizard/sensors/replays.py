@@ -11,14 +11,18 @@ from uuid import UUID
 
 from PySide6.QtCore import QObject, Signal
 
+from app.acquisition.acquisition import Acquisition
+from app.foreign_files import read_foreign_session
+from app.storage.exchange import session_with_samples
 from app.storage.stored import LibraryError, SessionLine
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import tr
 from app.workers.background import Report
 from app.workers.library_desk import LibraryDesk
+from devices.decoders import DECODERS
+from devices.replay import ReplaySource, names_of
 
 if TYPE_CHECKING:
-    from app.acquisition.acquisition import Acquisition
     from app.storage.opened import OpenedLibrary
     from core.samples import Session
 
@@ -33,8 +37,6 @@ def replay_of(session: "Session", name: str) -> SourceChoice:
     LibraryError
         Nothing of it can be played.
     """
-    from devices.replay import names_of
-
     recordings = tuple(
         recording
         for recording in session.recordings
@@ -45,10 +47,7 @@ def replay_of(session: "Session", name: str) -> SourceChoice:
         raise LibraryError(what, tr("Choose another one"))
     played = replace(session, recordings=recordings)
 
-    def make() -> "Acquisition":
-        from app.acquisition.acquisition import Acquisition
-        from devices.replay import ReplaySource
-
+    def make() -> Acquisition:
         return Acquisition([ReplaySource(played, name=name)])
 
     return SourceChoice(
@@ -95,9 +94,6 @@ class Replays(QObject):
         """Read a session of the library; `read` or `refused` follows."""
 
         def reading(opened: "OpenedLibrary", report: Report) -> SourceChoice:
-            from app.storage.exchange import session_with_samples
-            from devices.decoders import DECODERS
-
             stored = opened.library.sessions.view(session_id)
             return replay_of(session_with_samples(opened, stored, DECODERS, report), name)
 
@@ -107,8 +103,6 @@ class Replays(QObject):
         """Read a session folder; `read` or `refused` follows."""
 
         def reading(_opened: "OpenedLibrary", report: Report) -> SourceChoice:
-            from app.foreign_files import read_foreign_session
-
             report(0.0, folder.name)
             return replay_of(read_foreign_session(folder, lambda: report(0.0, folder.name)), folder.name)
 

@@ -11,11 +11,18 @@ from functools import partial
 from importlib.util import find_spec
 from typing import TYPE_CHECKING, overload
 
+from app.acquisition.acquisition import Acquisition
+from app.known_columns import known_columns
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import later, tr, tr_n
+from devices.catalogue import DRIVERS
+from devices.live import SourceRefusedError
+from devices.lsl import GROUP, PORT
+from devices.networks import THIS_COMPUTER, own_addresses
+from devices.replay import demonstration
+from devices.search import search, search_streams
 
 if TYPE_CHECKING:
-    from app.acquisition.acquisition import Acquisition
     from devices.search import FoundSensor, SearchResult
 
 DEMONSTRATION = "demonstration"
@@ -89,8 +96,6 @@ class Sources(Sequence[SourceChoice]):
         found = self._found
         if found is None or not found.sensors:
             return []
-        from devices.catalogue import DRIVERS
-
         by_driver = {driver: found.of(driver.key) for driver in DRIVERS}
         return [self._choice(driver.key, tr(driver.name), sensors) for driver, sensors in by_driver.items() if sensors]
 
@@ -103,17 +108,15 @@ class Sources(Sequence[SourceChoice]):
         count = sum(sensor.count for sensor in sensors)
         words = tr_n("{name}, {count} sensor", "{name}, {count} sensors", count)
 
-        def make() -> "Acquisition":
+        def make() -> Acquisition:
             self.wait()  # a search that goes on holds the ports
             return _opening(sensors)
 
         is_simulated = all(sensor.is_simulated for sensor in sensors)
         return SourceChoice(key, words.format(name=name, count=count), make, is_simulated)
 
-    def _open_all(self) -> "Acquisition":
+    def _open_all(self) -> Acquisition:
         """Search anew, and take all sensors that are heard."""
-        from devices.live import SourceRefusedError
-
         self._found = found = self._looked()
         if found.sensors:
             return _opening(found.sensors)
@@ -128,25 +131,17 @@ class Sources(Sequence[SourceChoice]):
         )
 
 
-def _demonstration() -> "Acquisition":
-    from app.acquisition.acquisition import Acquisition
-    from devices.replay import demonstration
-
+def _demonstration() -> Acquisition:
     return Acquisition([demonstration()])
 
 
 def _networks() -> Sequence[str]:
     """By which of its addresses this computer can ask for streams; none where their library is not installed."""
-    from devices.networks import THIS_COMPUTER, own_addresses
-
     return (THIS_COMPUTER, *own_addresses()) if find_spec("pylsl") is not None else ()
 
 
 def _of_streams(address: str) -> SourceChoice:
     """The streams where this computer has this address. Whom that asks is told before."""
-    from devices.lsl import GROUP, PORT
-    from devices.networks import THIS_COMPUTER
-
     make = partial(_open_streams, address)
     if address == THIS_COMPUTER:
         return SourceChoice(STREAMS + address, tr("Streams of this computer's programs"), make)
@@ -158,11 +153,8 @@ def _of_streams(address: str) -> SourceChoice:
     return SourceChoice(STREAMS + address, name, make, asks=(what, tr("Choose it once more to ask.")))
 
 
-def _open_streams(address: str) -> "Acquisition":
+def _open_streams(address: str) -> Acquisition:
     """Ask there, and take all sensors that are streamed."""
-    from devices.live import SourceRefusedError
-    from devices.search import search_streams
-
     found = search_streams(address)
     if found.sensors:
         return _opening(found.sensors)
@@ -173,14 +165,9 @@ def _open_streams(address: str) -> "Acquisition":
     )
 
 
-def _opening(sensors: "Sequence[FoundSensor]") -> "Acquisition":
-    from app.acquisition.acquisition import Acquisition
-
+def _opening(sensors: "Sequence[FoundSensor]") -> Acquisition:
     return Acquisition([sensor.make() for sensor in sensors])
 
 
 def _search() -> "SearchResult":
-    from app.known_columns import known_columns
-    from devices.search import search
-
     return search(columns=known_columns())

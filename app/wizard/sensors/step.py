@@ -9,15 +9,21 @@ import numpy as np
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QFileDialog
 
+from app.pages.home_lists import PatientLine
+from app.patient_words import when
 from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
+from app.wizard.sensors.estimator import PlacingWork
+from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
+from app.wizard.sensors.sensor_row import SensorRow
+from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.sensors.sources import SEARCH
 from app.wizard.step import Step
 from app.wizard.worn_sensors import SourceChoice
@@ -27,11 +33,7 @@ from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
-    from app.pages.home_lists import PatientLine
     from app.storage.stored import SessionLine
-    from app.wizard.sensors.estimator import PlacingWork
-    from app.wizard.sensors.page import SensorsPage
-    from app.wizard.sensors.sensor_row import SensorRow
     from app.wizard.visit import Visit
 
 REPLAY = "replay"
@@ -67,10 +69,8 @@ class SensorsStep(Step):
         visit.sensors.opened.connect(self._on_opened)
 
     @property
-    def page(self) -> "SensorsPage":
+    def page(self) -> SensorsPage:
         if self._page is None:
-            from app.wizard.sensors.page import SensorsPage
-
             page = self._page = SensorsPage(self._look)
             page.assigned.connect(self._visit.sensors.assign)
             page.way_chosen.connect(self._on_way_chosen)
@@ -215,9 +215,9 @@ class SensorsStep(Step):
             self.done.emit()
 
     def on_intent(self, intent: Intent) -> bool:
-        if intent.action is Action.LABEL:
+        if intent.action is KeyAction.LABEL:
             return self.page.place_selected(intent.number)
-        if intent.action is Action.IDENTIFY:
+        if intent.action is KeyAction.IDENTIFY:
             return self.page.identify_selected()
         return False
 
@@ -232,14 +232,10 @@ class SensorsStep(Step):
         acquisition = self._visit.sensors.acquisition
         if acquisition is None or not self._is_in_sight:
             return
-        from app.wizard.sensors.estimator import PlacingWork
-
         self._work, self._shakes = PlacingWork(acquisition.sensors), 0
         acquisition.set_work(self._work)
 
     def _show(self) -> None:
-        from app.wizard.sensors.page import Way
-
         self._show_sources()
         sensors, page = self._visit.sensors, self.page
         if self._replays.reading:
@@ -259,8 +255,6 @@ class SensorsStep(Step):
 
     def _show_sources(self) -> None:
         """Offer what there is for this patient: what was found, what is simulated, and what is played at the moment."""
-        from app.wizard.sensors.source_pages import SourceOption
-
         visit, sensors = self._visit, self._visit.sensors
         options = [SourceOption(choice.key, choice.name) for choice in visit.choices]
         if visit.may_simulate:
@@ -295,9 +289,7 @@ class SensorsStep(Step):
             self._silent_site = silent
             self.changed.emit()
 
-    def _row(self, status: "SensorStatus") -> "SensorRow":
-        from app.wizard.sensors.sensor_row import SensorRow
-
+    def _row(self, status: "SensorStatus") -> SensorRow:
         is_silent = status.silent_s >= SILENT_FROM_S
         return SensorRow(
             name=status.sensor,
@@ -364,8 +356,6 @@ class SensorsStep(Step):
         self.changed.emit()
 
     def _on_way_chosen(self, way: str) -> None:
-        from app.wizard.sensors.page import Way
-
         is_left = way == Way.MOTION
         if is_left != self._visit.sensors.is_left_to_motion:
             self._visit.sensors.leave_to_motion(is_left)
@@ -490,10 +480,7 @@ class SensorsStep(Step):
         self._reconnect()
 
 
-def _stored_line(line: "SessionLine", now: datetime.datetime) -> "PatientLine":
-    from app.pages.home_lists import PatientLine
-    from app.patient_words import when
-
+def _stored_line(line: "SessionLine", now: datetime.datetime) -> PatientLine:
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
     conditions = ", ".join(line.conditions)
     return PatientLine(line.id, line.patient_code, conditions, when(line.started, now), amount, searched="")

@@ -12,7 +12,8 @@ from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
+from app.wizard.standing.estimator import StandingWork
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
 from app.wizard.takes import Take
@@ -22,7 +23,6 @@ from core.live.standing import WANTED_S
 from core.samples import RecordingKind
 
 if TYPE_CHECKING:
-    from app.wizard.standing.estimator import StandingWork
     from app.wizard.visit import Visit
 
 SHOWN_MS = 600  # the check mark, before the next step comes by itself
@@ -142,7 +142,7 @@ class StandStillStep(Step):
         self._start()
 
     def on_intent(self, intent: Intent) -> bool:
-        if intent.action is not Action.RUN or self._phase is StandPhase.SKIPPED:
+        if intent.action is not KeyAction.RUN or self._phase is StandPhase.SKIPPED:
             return False
         self._start()
         return True
@@ -195,8 +195,6 @@ class StandStillStep(Step):
 
     def _watch(self) -> None:
         """Look at the movement from now on."""
-        from app.wizard.standing.estimator import StandingWork
-
         self._moved = ()
         acquisition = self._visit.sensors.acquisition
         if acquisition is not None:

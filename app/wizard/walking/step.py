@@ -14,7 +14,7 @@ from app.theme import Look
 from app.widgets.action_bar import BarState, RecordingNote, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.losses import NOTHING, Losses, Message
 from app.wizard.step import Step
 from app.wizard.walk_messages import (
@@ -25,7 +25,9 @@ from app.wizard.walk_messages import (
     recovered_message,
     slip_message,
 )
+from app.wizard.walking.estimator import WalkingWork
 from app.wizard.walking.walk_labels import label_after, labels_for, letters_of
+from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side
 from core.live.walking import STRIDES_FOR_ANKLE
@@ -34,7 +36,6 @@ from core.samples import Recording, RecordingKind
 if TYPE_CHECKING:
     from app.wizard.takes import Take
     from app.wizard.visit import Visit
-    from app.wizard.walking.estimator import WalkingWork
     from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout
 
@@ -211,13 +212,13 @@ class WalkingStep(Step):
 
     def on_intent(self, intent: Intent) -> bool:
         match intent.action:
-            case Action.RUN:
+            case KeyAction.RUN:
                 self._run()
-            case Action.KEEP if self._asked is not None:
+            case KeyAction.KEEP if self._asked is not None:
                 self._keep(self._asked, is_kept=True)
-            case Action.DISCARD if self._asked is not None:
+            case KeyAction.DISCARD if self._asked is not None:
                 self._keep(self._asked, is_kept=False)
-            case Action.LABEL:
+            case KeyAction.LABEL:
                 self.page.choose_digit(intent.number)
             case _:
                 return False
@@ -277,8 +278,6 @@ class WalkingStep(Step):
 
     def _begin_work(self) -> None:
         """Let the estimator work on this step, with the calibration as it is now."""
-        from app.wizard.walking.estimator import WalkingWork
-
         acquisition = self._visit.sensors.acquisition
         if acquisition is None:
             return
@@ -416,8 +415,6 @@ class WalkingStep(Step):
         if self._page is None or not self._is_in_sight:
             self.changed.emit()
             return
-        from app.wizard.walking.walk_list import WalkRow, WalkState
-
         takes, asked = self._visit.takes, self._asked
         ongoing = takes.ongoing if takes.ongoing and takes.ongoing.told.kind is RecordingKind.WALKING else None
         conditions = [*self._used, *([ongoing.told.condition] if ongoing is not None else [])]

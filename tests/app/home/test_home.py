@@ -242,7 +242,7 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
         assert go_on.wait(WAIT_MS / 1000)
         return import_session(opened, session, (lambda _share, _what: None) if is_done else report, code)
 
-    monkeypatch.setattr("app.storage.exchange.import_session", held)
+    monkeypatch.setattr("app.home.home.import_session", held)
     home.read_folder(tmp_path / "visit")
     qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
     home._import()

@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look
 from app.widgets.button import Button
-from app.wizard.keys import Action, Intent, Keys
+from app.wizard.keys import Intent, KeyAction, Keys
 
 Key, Held = Qt.Key, Qt.KeyboardModifier
 
@@ -48,37 +48,37 @@ def window(qtbot: QtBot) -> Window:
 
 
 MEANINGS = [
-    (Key.Key_Space, Held.NoModifier, Intent(Action.RUN)),
-    (Key.Key_Return, Held.NoModifier, Intent(Action.PRIMARY)),
-    (Key.Key_Enter, Held.KeypadModifier, Intent(Action.PRIMARY)),
-    (Key.Key_K, Held.NoModifier, Intent(Action.KEEP)),
-    (Key.Key_D, Held.NoModifier, Intent(Action.DISCARD)),
-    (Key.Key_L, Held.NoModifier, Intent(Action.LEFT_LEG)),
-    (Key.Key_R, Held.ShiftModifier, Intent(Action.RIGHT_LEG)),
-    (Key.Key_1, Held.NoModifier, Intent(Action.LABEL, 1)),
-    (Key.Key_9, Held.KeypadModifier, Intent(Action.LABEL, 9)),
-    (Key.Key_I, Held.NoModifier, Intent(Action.IDENTIFY)),
-    (Key.Key_S, Held.NoModifier, Intent(Action.STRIDES)),
-    (Key.Key_BracketLeft, Held.NoModifier, Intent(Action.EARLIER)),
-    (Key.Key_BracketRight, Held.NoModifier, Intent(Action.LATER)),
-    (Key.Key_F, Held.NoModifier, Intent(Action.FILL)),
-    (Key.Key_Escape, Held.NoModifier, Intent(Action.UNFILL)),
-    (Key.Key_B, Held.NoModifier, Intent(Action.BAND)),
-    (Key.Key_1, Held.ControlModifier, Intent(Action.STEP, 1)),
-    (Key.Key_7, Held.ControlModifier, Intent(Action.STEP, 7)),
-    (Key.Key_Left, Held.AltModifier, Intent(Action.BACK)),
-    (Key.Key_F1, Held.NoModifier, Intent(Action.HELP)),
-    (Key.Key_F6, Held.NoModifier, Intent(Action.NEXT_REGION)),
-    (Key.Key_F6, Held.ShiftModifier, Intent(Action.PREVIOUS_REGION)),
-    (Key.Key_Plus, Held.ControlModifier | Held.ShiftModifier, Intent(Action.LARGER)),
-    (Key.Key_Equal, Held.ControlModifier, Intent(Action.LARGER)),
-    (Key.Key_Minus, Held.ControlModifier | Held.KeypadModifier, Intent(Action.SMALLER)),
-    (Key.Key_0, Held.ControlModifier, Intent(Action.USUAL_SIZE)),
-    (Key.Key_F, Held.ControlModifier, Intent(Action.SEARCH)),
-    (Key.Key_N, Held.ControlModifier, Intent(Action.NEW_PATIENT)),
-    (Key.Key_S, Held.ControlModifier, Intent(Action.SAVE)),
-    (Key.Key_P, Held.ControlModifier, Intent(Action.PRINT)),
-    (Key.Key_Z, Held.ControlModifier, Intent(Action.UNDO)),
+    (Key.Key_Space, Held.NoModifier, Intent(KeyAction.RUN)),
+    (Key.Key_Return, Held.NoModifier, Intent(KeyAction.PRIMARY)),
+    (Key.Key_Enter, Held.KeypadModifier, Intent(KeyAction.PRIMARY)),
+    (Key.Key_K, Held.NoModifier, Intent(KeyAction.KEEP)),
+    (Key.Key_D, Held.NoModifier, Intent(KeyAction.DISCARD)),
+    (Key.Key_L, Held.NoModifier, Intent(KeyAction.LEFT_LEG)),
+    (Key.Key_R, Held.ShiftModifier, Intent(KeyAction.RIGHT_LEG)),
+    (Key.Key_1, Held.NoModifier, Intent(KeyAction.LABEL, 1)),
+    (Key.Key_9, Held.KeypadModifier, Intent(KeyAction.LABEL, 9)),
+    (Key.Key_I, Held.NoModifier, Intent(KeyAction.IDENTIFY)),
+    (Key.Key_S, Held.NoModifier, Intent(KeyAction.STRIDES)),
+    (Key.Key_BracketLeft, Held.NoModifier, Intent(KeyAction.EARLIER)),
+    (Key.Key_BracketRight, Held.NoModifier, Intent(KeyAction.LATER)),
+    (Key.Key_F, Held.NoModifier, Intent(KeyAction.FILL)),
+    (Key.Key_Escape, Held.NoModifier, Intent(KeyAction.UNFILL)),
+    (Key.Key_B, Held.NoModifier, Intent(KeyAction.BAND)),
+    (Key.Key_1, Held.ControlModifier, Intent(KeyAction.STEP, 1)),
+    (Key.Key_7, Held.ControlModifier, Intent(KeyAction.STEP, 7)),
+    (Key.Key_Left, Held.AltModifier, Intent(KeyAction.BACK)),
+    (Key.Key_F1, Held.NoModifier, Intent(KeyAction.HELP)),
+    (Key.Key_F6, Held.NoModifier, Intent(KeyAction.NEXT_REGION)),
+    (Key.Key_F6, Held.ShiftModifier, Intent(KeyAction.PREVIOUS_REGION)),
+    (Key.Key_Plus, Held.ControlModifier | Held.ShiftModifier, Intent(KeyAction.LARGER)),
+    (Key.Key_Equal, Held.ControlModifier, Intent(KeyAction.LARGER)),
+    (Key.Key_Minus, Held.ControlModifier | Held.KeypadModifier, Intent(KeyAction.SMALLER)),
+    (Key.Key_0, Held.ControlModifier, Intent(KeyAction.USUAL_SIZE)),
+    (Key.Key_F, Held.ControlModifier, Intent(KeyAction.SEARCH)),
+    (Key.Key_N, Held.ControlModifier, Intent(KeyAction.NEW_PATIENT)),
+    (Key.Key_S, Held.ControlModifier, Intent(KeyAction.SAVE)),
+    (Key.Key_P, Held.ControlModifier, Intent(KeyAction.PRINT)),
+    (Key.Key_Z, Held.ControlModifier, Intent(KeyAction.UNDO)),
 ]
 
 
@@ -107,7 +107,9 @@ def test_other_keys_mean_nothing(window: Window, key: Qt.Key, held: Qt.KeyboardM
 
 def test_a_text_field_takes_what_can_be_written(window: Window) -> None:
     window.field.setFocus()
-    written = [key for key, held, intent in MEANINGS if held in (Held.NoModifier,) and intent.action is not Action.HELP]
+    written = [
+        key for key, held, intent in MEANINGS if held in (Held.NoModifier,) and intent.action is not KeyAction.HELP
+    ]
     for key in written:
         if key not in (Key.Key_Return, Key.Key_Escape, Key.Key_F6):
             assert window.press(key) == [], key
@@ -124,7 +126,7 @@ def test_space_is_written_in_a_text_field_even_while_something_runs(window: Wind
 def test_a_field_of_numbers_lets_space_through_and_keeps_the_rest(window: Window) -> None:
     window.field.setInputMethodHints(Qt.InputMethodHint.ImhFormattedNumbersOnly)
     window.field.setFocus()
-    assert window.press(Key.Key_Space) == [Intent(Action.RUN)]
+    assert window.press(Key.Key_Space) == [Intent(KeyAction.RUN)]
     assert window.press(Key.Key_1) == []
     assert window.press(Key.Key_K) == []
     assert window.field.text() == "1k"
@@ -133,7 +135,7 @@ def test_a_field_of_numbers_lets_space_through_and_keeps_the_rest(window: Window
 def test_a_field_that_is_only_read_takes_no_letters(window: Window) -> None:
     window.field.setReadOnly(True)
     window.field.setFocus()
-    assert window.press(Key.Key_K) == [Intent(Action.KEEP)]
+    assert window.press(Key.Key_K) == [Intent(KeyAction.KEEP)]
 
 
 def test_what_is_written_is_undone_before_what_was_done(window: Window) -> None:
@@ -145,15 +147,15 @@ def test_what_is_written_is_undone_before_what_was_done(window: Window) -> None:
 
 def test_other_keys_with_ctrl_mean_the_same_in_a_text_field(window: Window) -> None:
     window.field.setFocus()
-    assert window.press(Key.Key_2, Held.ControlModifier) == [Intent(Action.STEP, 2)]
-    assert window.press(Key.Key_F6) == [Intent(Action.NEXT_REGION)]
+    assert window.press(Key.Key_2, Held.ControlModifier) == [Intent(KeyAction.STEP, 2)]
+    assert window.press(Key.Key_F6) == [Intent(KeyAction.NEXT_REGION)]
 
 
 def test_enter_in_a_field_of_one_line_is_the_primary_verb_after_the_field_has_heard_it(window: Window) -> None:
     heard: list[int] = []
     window.field.setFocus()
     window.field.returnPressed.connect(lambda: heard.append(len(window.intents)))
-    assert window.press(Key.Key_Return) == [Intent(Action.PRIMARY)]
+    assert window.press(Key.Key_Return) == [Intent(KeyAction.PRIMARY)]
     assert heard == [0]
 
 
@@ -173,7 +175,7 @@ def test_a_button_that_has_the_focus_is_pressed(window: Window, key: Qt.Key) -> 
 def test_space_stops_what_runs_even_where_a_button_has_the_focus(window: Window) -> None:
     window.keys.set_running(True)
     window.button.setFocus()
-    assert window.press(Key.Key_Space) == [Intent(Action.RUN)]
+    assert window.press(Key.Key_Space) == [Intent(KeyAction.RUN)]
     assert window.clicks == 0
 
 
@@ -197,5 +199,5 @@ def test_a_dialog_has_its_keys_for_itself(window: Window, qtbot: QtBot) -> None:
 
 def test_a_window_without_a_focus_hears_keys_too(window: Window) -> None:
     window.plain.clearFocus()
-    assert window.press(Key.Key_Space) == [Intent(Action.RUN)]
-    assert window.press(Key.Key_Return) == [Intent(Action.PRIMARY)]
+    assert window.press(Key.Key_Space) == [Intent(KeyAction.RUN)]
+    assert window.press(Key.Key_Return) == [Intent(KeyAction.PRIMARY)]

@@ -19,7 +19,7 @@ from app.theme import Look
 from app.wizard import takes as takes_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.takes import Ongoing
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -224,7 +224,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     assert primary is not None
     assert primary.text == "Begin the free motion"
     with qtbot.waitSignal(looked_at.takes.begun, timeout=WAIT_MS):
-        step.on_intent(Intent(Action.RUN))
+        step.on_intent(Intent(KeyAction.RUN))
     with qtbot.waitSignal(looked_at.takes.ended, timeout=WAIT_MS):
         step.leave()
 
@@ -412,10 +412,10 @@ def test_a_key_that_was_meant_for_the_page_before_does_nothing(
     wizard._go_to(FREE_MOTION)
     wizard._steps[FREE_MOTION].done.emit()
     assert wizard._current == WALKING
-    wizard._on_intent(Intent(Action.RUN))
+    wizard._on_intent(Intent(KeyAction.RUN))
     assert heard == []
-    wizard._on_intent(Intent(Action.UNDO))
-    assert heard == [Intent(Action.UNDO)]
+    wizard._on_intent(Intent(KeyAction.UNDO))
+    assert heard == [Intent(KeyAction.UNDO)]
     qtbot.wait(round(1000 * DEAF_S) + 20)
-    wizard._on_intent(Intent(Action.RUN))
-    assert heard[1:] == [Intent(Action.RUN)]
+    wizard._on_intent(Intent(KeyAction.RUN))
+    assert heard[1:] == [Intent(KeyAction.RUN)]

@@ -23,7 +23,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
         addresses.append(address)
         return SearchResult()
 
-    monkeypatch.setattr("devices.search.search_streams", search_streams)
+    monkeypatch.setattr("app.wizard.sensors.sources.search_streams", search_streams)
     return addresses
 
 

@@ -12,7 +12,7 @@ from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionView
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.free_motion.step import FreeMotionStep
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.visit import Visit, opposite
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
@@ -24,7 +24,7 @@ from tests.app.wizard.test_visit import begin, record
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
-SPACE = Intent(Action.RUN)
+SPACE = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
@@ -148,7 +148,7 @@ def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_cou
 def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMotionStep) -> None:
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
-    assert step.on_intent(Intent(Action.RIGHT_LEG))
+    assert step.on_intent(Intent(KeyAction.RIGHT_LEG))
     ticks(qtbot, step, lambda: step._work is not None and step._work.state.repeated is Side.RIGHT)
     ticks(qtbot, step, lambda: True)
     left, right = (step.page.gauges[joint].face for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE))

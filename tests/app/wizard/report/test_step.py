@@ -14,7 +14,7 @@ from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
 from app.theme import Look
 from app.widgets.rail_row import StepState
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
@@ -202,6 +202,6 @@ def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: p
     assert primary.key == "Ctrl S"
     pressed = []
     monkeypatch.setattr(step, "on_primary", lambda: pressed.append("save"))
-    assert step.on_intent(Intent(Action.SAVE))
+    assert step.on_intent(Intent(KeyAction.SAVE))
     assert pressed == ["save"]
-    assert not step.on_intent(Intent(Action.RUN))
+    assert not step.on_intent(Intent(KeyAction.RUN))

@@ -15,11 +15,11 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import STRIDES
 from app.reports.comparison import Kind
-from app.review import viewer
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
-from app.wizard.keys import Action, Intent
+from app.wizard import reviewing
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
@@ -187,7 +187,7 @@ def test_an_earlier_visit_is_compared_as_worn_anew(qtbot: QtBot, visit: Visit, s
 def test_rerun_that_is_missing_is_told(
     qtbot: QtBot, visit: Visit, step: ResultsStep, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(viewer, "viewer_program", lambda: None)
+    monkeypatch.setattr(reviewing, "viewer_program", lambda: None)
     with qtbot.waitSignal(visit.refused) as told:
         step.on_quiet(1)
     assert told.args is not None
@@ -215,10 +215,10 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     assert any(one.name.startswith("simulated_right_ankle") for one in (tmp_path / "how").iterdir())
     exports = asked(qtbot, desk, lambda opened: [entry.details for entry in opened.library.audit.entries()])
     assert any("how-found" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
-    assert not step.on_intent(Intent(Action.PRIMARY))
-    assert step.on_intent(Intent(Action.BACK))
+    assert not step.on_intent(Intent(KeyAction.PRIMARY))
+    assert step.on_intent(Intent(KeyAction.BACK))
     assert step.page.currentWidget() is step.page.results()
-    assert not step.on_intent(Intent(Action.BACK))
+    assert not step.on_intent(Intent(KeyAction.BACK))
 
 
 def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:

@@ -120,7 +120,7 @@ def test_streams_are_asked_for_by_a_choice_only_that_says_whom(monkeypatch: pyte
         asked.append(address)
         return SearchResult((sensor("A", "lsl"),)) if address == "192.0.2.9" else SearchResult()
 
-    monkeypatch.setattr("devices.search.search_streams", search_streams)
+    monkeypatch.setattr("app.wizard.sensors.sources.search_streams", search_streams)
     sources = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
     sources.look()
     sources.wait()

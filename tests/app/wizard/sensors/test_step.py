@@ -10,7 +10,7 @@ from app.acquisition.acquisition import Acquisition
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.page import Way
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.standing.step import StandStillStep
@@ -64,7 +64,7 @@ def test_sensors_are_placed_by_keys_and_told_to_the_library(
     assert not verb.is_enabled
     for sensor, site in worn.items():
         page.list.select(sensor)
-        assert step.on_intent(Intent(Action.LABEL, list(Site).index(site) + 1))
+        assert step.on_intent(Intent(KeyAction.LABEL, list(Site).index(site) + 1))
     assert visit.sensors.site_of == worn
     assert step.note == "6 of 6 worn"
     assert step.state is StepState.DONE

@@ -11,7 +11,7 @@ from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
 from app.theme import Look
 from app.widgets.rail_row import StepState
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.standing.page import StandPhase
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
@@ -20,7 +20,7 @@ from core.samples import RecordingKind
 from devices.replay import ReplaySource
 from tests.app.wizard.test_visit import begin
 
-SPACE = Intent(Action.RUN)
+SPACE = Intent(KeyAction.RUN)
 
 
 @pytest.fixture

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
-from app.wizard.keys import Action, Intent
+from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
@@ -21,7 +21,7 @@ from tests.app.wizard.conftest import SPEED
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
 TICK_MS = 10
-RUN = Intent(Action.RUN)
+RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
@@ -131,7 +131,7 @@ def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: 
 def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     walk(qtbot, step, visit, 4.0)
     with qtbot.waitSignal(step.offered) as offered:
-        step.on_intent(Intent(Action.DISCARD))
+        step.on_intent(Intent(KeyAction.DISCARD))
     assert offered.args == ["Alignment A discarded."]
     qtbot.waitUntil(lambda: not visit.takes.walks[0].told.is_kept)
     assert [state for _, _, state in states(step)] == [WalkState.DISCARDED]
@@ -143,7 +143,7 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
 
 
 def test_digits_choose_what_the_next_walk_is_called(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
-    assert step.on_intent(Intent(Action.LABEL, 4))
+    assert step.on_intent(Intent(KeyAction.LABEL, 4))
     walk(qtbot, step, visit, 2.0)
     assert visit.takes.walks[0].told.condition == "Barefoot"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
@@ -170,7 +170,7 @@ def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingSt
     assert jumped.args == [2]
     assert visit.takes.is_restrapped
     assert step.cannot_enter
-    assert not step.on_intent(Intent(Action.KEEP))
+    assert not step.on_intent(Intent(KeyAction.KEEP))
 
 
 def test_without_sensors_it_cannot_be_entered(look: Look, visit: Visit) -> None:
