@@ -1,6 +1,7 @@
 """The legs are moved freely until every joint is known well enough. It ends by itself; one leg can be repeated."""
 
 from dataclasses import replace
+from enum import Enum, auto
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QTimer
@@ -45,6 +46,15 @@ TICKS = 3  # of 30 Hz: ten looks a second
 KIND = RecordingKind.FREE_MOTION
 
 
+class AfterRecording(Enum):
+    """What follows the recording that goes on or has ended."""
+
+    ITSELF = auto()  # the next begins by itself while none is in force
+    NEXT_STEP = auto()  # it was stopped at its end: once it is read back, the wizard goes on
+    ANOTHER = auto()  # it was given up for another, which begins once it is closed
+    WORD = auto()  # it was refused: the next begins by a word, not by the clock
+
+
 class FreeMotionStep(Step):
     """Recorded from the moment the step is entered, unless a free motion is in force already.
 
@@ -69,8 +79,8 @@ class FreeMotionStep(Step):
         self._left = "", ""  # what is to be said of one that was left before its end
         self._plays_s: float | None = None  # for how long a replayed patient moves
         self._plays_to_s = 0.0
-        self._is_in_sight = self._goes_on = self._begins_again = self._must_correct = False
-        self._is_refused = False
+        self._then = AfterRecording.ITSELF
+        self._is_in_sight = self._must_correct = False
         self._side = SideQuestion()
         self._sides_told: dict[str, Side] = {}  # in this visit, by the sensor's name
         self._asked_words = SILENT
@@ -129,7 +139,9 @@ class FreeMotionStep(Step):
         return "free-motion"
 
     def enter(self) -> None:
-        self._is_in_sight, self._is_refused = True, False
+        self._is_in_sight = True
+        if self._then is AfterRecording.WORD:
+            self._then = AfterRecording.ITSELF
         self._hold = HintHold(self._visit.prosthetic_sides)
         if not self._has_moved and not self._is_recording:
             self._begin()
@@ -138,9 +150,13 @@ class FreeMotionStep(Step):
     def leave(self) -> None:
         self._is_in_sight = False
         self._settled.stop()
-        if self._is_recording and not (self._goes_on or self._begins_again):  # not to its end
+        if self._is_recording and self._then not in (
+            AfterRecording.NEXT_STEP,
+            AfterRecording.ANOTHER,
+        ):  # not to its end
             self._break_off()
-        self._begins_again = False
+        if self._then is AfterRecording.ANOTHER:
+            self._then = AfterRecording.ITSELF
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_work(None)
         self._work = None
@@ -188,7 +204,7 @@ class FreeMotionStep(Step):
         if not self._is_recording:
             self._begin()
             return
-        self._begins_again, self._again_side = True, self._repeated
+        self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
         self._motion = self._replaced or FreeMotionState()
         self._visit.takes.stop(is_kept=False)
 
@@ -251,9 +267,9 @@ class FreeMotionStep(Step):
     def _may_begin(self) -> bool:
         """Whether it is time to record by itself: none is in force, or the one before was given up for another."""
         takes = self._visit.takes
-        if self._begins_again:
+        if self._then is AfterRecording.ANOTHER:
             return takes.is_idle and not takes.every[-1].told.is_kept
-        return not (self._has_moved or takes.is_recording or self._is_refused)
+        return self._then is AfterRecording.ITSELF and not (self._has_moved or takes.is_recording)
 
     def _begin(self, side: Side | None = None) -> None:
         """Record; one leg alone takes only that leg's sensors, so that what the other's motion told stays in force."""
@@ -263,8 +279,7 @@ class FreeMotionStep(Step):
         self._replaced = self._motion if self._has_moved else None
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
         self._repeated, self._motion, self._elapsed_s = side, self._before, None
-        self._goes_on = self._begins_again = self._is_refused = False
-        self._again_side = None
+        self._then, self._again_side = AfterRecording.ITSELF, None
         self._side, self._doubted = SideQuestion(), ()
         self._ready = frozenset(joint for joint, state in self._motion.joints.items() if state.is_closed)
         if side is not None:
@@ -349,7 +364,7 @@ class FreeMotionStep(Step):
 
     def _stop(self) -> None:
         self._settled.stop()
-        self._goes_on = True
+        self._then = AfterRecording.NEXT_STEP
         joints = self._motion.joints
         is_kept = not joints or any(state.moved_s > 0 for state in joints.values())
         if not is_kept and self._replaced is not None:
@@ -479,8 +494,8 @@ class FreeMotionStep(Step):
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
         if self._is_in_sight and not self._visit.takes.is_recording:
-            self._is_refused = not self._has_moved  # it is begun again by a word, not by the clock
-            self._begins_again = False
+            if self._then is not AfterRecording.NEXT_STEP:
+                self._then = AfterRecording.ITSELF if self._has_moved else AfterRecording.WORD
             self.changed.emit()
 
     def _on_settled(self) -> None:
@@ -497,8 +512,8 @@ class FreeMotionStep(Step):
             self._must_correct = False
             self._visit.correct_placement()
         self.changed.emit()
-        if self._goes_on and self._is_in_sight:
-            self._goes_on = False
+        if self._then is AfterRecording.NEXT_STEP and self._is_in_sight:
+            self._then = AfterRecording.ITSELF
             self.done.emit()
         if self._left[0]:  # over the step that came next
             self.told.emit(*self._left)

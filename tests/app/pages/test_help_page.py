@@ -17,7 +17,7 @@ from app.theme import Look, load_fonts
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
-STEPS = Path(__file__).parents[3] / "app" / "wizard" / "steps"
+WIZARD = Path(__file__).parents[3] / "app" / "wizard"
 PICTURE = "pictures/walking.png"
 FORBIDDEN = re.compile(
     r"\b(errors?|fail(s|ed|ure)?|invalid|please|disconnected|heel strikes?|you|your)\b|!", re.IGNORECASE
@@ -62,7 +62,7 @@ def test_every_topic_is_written_and_nothing_else_lies_there() -> None:
 
 def test_every_step_of_the_wizard_has_its_topic() -> None:
     found = re.compile(r"def topic\(self\) -> str:\n        return \"([\w-]+)\"")
-    told = [found.findall(file.read_text(encoding="utf-8")) for file in STEPS.glob("*_step.py")]
+    told = [found.findall(file.read_text(encoding="utf-8")) for file in WIZARD.glob("*/step.py")]
     assert len(told) == 7
     assert {topic for (topic,) in told} <= set(Topic)
 
