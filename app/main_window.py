@@ -34,7 +34,8 @@ from app.theme import Look, load_fonts
 from app.widgets.focus_ring import FocusRing
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
-from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import OpenedState
 from app.workers.preload import preload
 
 if TYPE_CHECKING:  # needed when a library is open; the window must not wait for them

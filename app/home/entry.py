@@ -15,8 +15,8 @@ from app.storage.layout import KEYS
 from app.theme import Look
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
-from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
-from app.workers.library_opening import slots_of
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import LibraryPlace, OpenedState
 
 if TYPE_CHECKING:
     from app.home.key_sheet import KeySheet
@@ -240,6 +240,8 @@ class Entry(QObject):
     def _on_renew_wished(self) -> None:
         def renew(opened: "OpenedLibrary") -> str:
             assert opened.data_key is not None  # the demonstration's is not asked for
+            from app.storage.opened import slots_of
+
             return slots_of(opened.folder).renew_recovery_key(opened.data_key)
 
         self._desk.run(renew, self._on_renewed, self._on_confirm_failed, self)
@@ -275,6 +277,8 @@ def _confirming(typed: str) -> "Callable[[OpenedLibrary], None]":
     """What keeps that the recovery key was typed back; then nobody is asked for it any more."""
 
     def confirm(opened: "OpenedLibrary") -> None:
+        from app.storage.opened import slots_of
+
         slots_of(opened.folder).confirm_recovery_key(typed)
 
     return confirm

@@ -32,7 +32,8 @@ from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
 from app.wording import place, tr
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
     from app.storage import stored

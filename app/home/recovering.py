@@ -21,7 +21,8 @@ from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.walk_messages import recovery_costs
 from app.wording import capitalised, tr, tr_n
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import OpenedState
 from devices.decoders import DECODERS
 
 if TYPE_CHECKING:

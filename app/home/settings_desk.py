@@ -24,8 +24,9 @@ from app.theme import Look
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk
 from app.workers.library_opening import BACKUP_FOLDER
+from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
     from app.storage.backup import Backup

@@ -6,27 +6,23 @@ from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.storage.backup import remove_old_backups
+from app.storage.keyring_slot import remember
+from app.storage.keys import KeyRefusedError
+from app.storage.library import DEMONSTRATOR, Library
+from app.storage.opened import OpenedLibrary, slots_of
+from app.storage.retention import destroy_overdue
+from app.storage.stored import Role
+
 if TYPE_CHECKING:
     from app.storage.data_key import DataKey
-    from app.storage.keys import KeySlots
-    from app.storage.opened import OpenedLibrary
-
 BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
 DEMONSTRATION_CODE = "DEMO-1"
 
 _log = logging.getLogger(__name__)
 
 
-def slots_of(folder: Path) -> "KeySlots":
-    from app.storage import opened
-
-    return opened.slots_of(folder)
-
-
-def logged_in(folder: Path, data_key: "DataKey", code: str) -> "OpenedLibrary":
-    from app.storage.library import Library
-    from app.storage.opened import OpenedLibrary
-
+def logged_in(folder: Path, data_key: "DataKey", code: str) -> OpenedLibrary:
     library = Library.open(folder, data_key)
     try:
         library.log_in(code)
@@ -36,11 +32,8 @@ def logged_in(folder: Path, data_key: "DataKey", code: str) -> "OpenedLibrary":
     return OpenedLibrary(library, folder, data_key)
 
 
-def let_keyring_remember(library: "OpenedLibrary") -> None:
+def let_keyring_remember(library: OpenedLibrary) -> None:
     """Let the keyring open the library next time; where it does not take the key, the passphrase goes on doing so."""
-    from app.storage.keyring_slot import remember
-    from app.storage.keys import KeyRefusedError
-
     operator = library.library.operator
     if library.data_key is None or operator is None:
         return
@@ -50,10 +43,9 @@ def let_keyring_remember(library: "OpenedLibrary") -> None:
         _log.warning("the keyring takes no key", exc_info=refusal)
 
 
-def demonstration(folder: Path) -> "OpenedLibrary":
+def demonstration(folder: Path) -> OpenedLibrary:
+    # scipy takes a second that no log in is to wait for
     from app.storage.exchange import import_session
-    from app.storage.library import DEMONSTRATOR, Library
-    from app.storage.opened import OpenedLibrary
     from devices.replay import labelled
     from devices.walker import DEMONSTRATION, simulate
 
@@ -72,11 +64,7 @@ def silent(_share: float, _what: str) -> None:
     """For whom progress is nothing."""
 
 
-def tidy(library: "OpenedLibrary") -> None:
-    from app.storage.backup import remove_old_backups
-    from app.storage.retention import destroy_overdue
-    from app.storage.stored import Role
-
+def tidy(library: OpenedLibrary) -> None:
     operator = library.library.operator
     if operator is None or operator.role is Role.VIEWER:
         return

@@ -8,6 +8,10 @@ from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject, QThread, Signal
 
+from app.storage.bringing_home import bring_home
+from app.storage.opened import held_alone
+from app.storage.stored import LibraryError
+
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
 
@@ -52,9 +56,6 @@ class LibraryWatch(QThread):
 
     def _took_back(self, ends: ExitStack) -> bool:
         """Go on with the same library in another folder at its place: its disk was mounted anew, or it is a copy."""
-        from app.storage.opened import held_alone
-        from app.storage.stored import LibraryError
-
         root = self._library.library.root
         if root is None or not root.is_another():
             return False
@@ -67,9 +68,6 @@ class LibraryWatch(QThread):
         return True
 
     def _bring_home(self) -> int:
-        from app.storage.bringing_home import bring_home
-        from app.storage.stored import LibraryError
-
         if time.monotonic() < self._bring_from_s:
             return 0
         try:

@@ -35,6 +35,7 @@ from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
 from app.workers.library_desk import LibraryDesk
 from core.samples import RecordingKind
+from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:

@@ -35,7 +35,8 @@ from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
 from app.widgets.button import Button
-from app.workers.library_desk import LibraryDesk, OpenedState
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import OpenedState
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session

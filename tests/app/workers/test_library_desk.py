@@ -21,7 +21,8 @@ from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk, LibraryPlace, OpenedState
+from app.workers.library_desk import LibraryDesk
+from app.workers.library_state import LibraryPlace, OpenedState
 from app.workers.refusals import refusal_of
 from core.body import Site
 from core.samples import Patient
@@ -377,7 +378,7 @@ def test_a_refusing_keyring_is_no_reason_not_to_open(
     def refuse(*_: object) -> None:
         raise KeyRefusedError("The keyring takes no key", "Unlock it")
 
-    monkeypatch.setattr("app.storage.keyring_slot.remember", refuse)
+    monkeypatch.setattr("app.workers.library_opening.remember", refuse)
     with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
         desk.open(folder, PASSPHRASE, "hk", must_remember=True)
 

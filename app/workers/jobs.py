@@ -1,0 +1,85 @@
+"""Threads that do one job after the other and tell whoever asked, as long as they are still there."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from queue import SimpleQueue
+from threading import Event
+from typing import ParamSpec, TypeVar
+from weakref import WeakMethod, ref
+
+from PySide6.QtCore import QObject, QThread, Signal
+from shiboken6 import isValid
+
+from app.workers.refusals import refusal_of
+
+P = ParamSpec("P")
+T = TypeVar("T")
+Failed = Callable[[str, str], object]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Job:
+    call: Callable[[], object]
+    done: "WeakMethod[Callable[..., object]] | None"
+    failed: "WeakMethod[Failed] | None"
+    owner: "ref[QObject]"
+
+    def listening(self, method: "WeakMethod[Callable[P, object]] | None") -> Callable[P, object] | None:
+        """The method, where it and its owner are still there."""
+        owner = self.owner()
+        return method() if method is not None and owner is not None and isValid(owner) else None
+
+
+def nothing() -> None:
+    """What runs elsewhere."""
+
+
+class JobThread(QThread):
+    """Does one job after the other until `finish`, and nothing after it; begins with the first."""
+
+    told = Signal(object, object)  # the job, and what came of it
+
+    def __init__(
+        self, parent: QObject, after_each: Callable[[], object] = nothing, at_end: Callable[[], object] = nothing
+    ) -> None:
+        super().__init__(parent)
+        self._jobs: SimpleQueue[Job | None] = SimpleQueue()
+        self._after_each, self._at_end = after_each, at_end
+        self._is_over = False
+
+    def ask(self, job: Job) -> None:
+        if self._is_over:
+            return
+        self._jobs.put(job)
+        if not self.isRunning():
+            self.start()
+
+    def passed(self) -> Event:
+        """Set once all that was asked until now is done."""
+        passed = Event()
+        if self.isRunning():
+            self.ask(Job(passed.set, None, None, ref(self)))
+        else:
+            passed.set()
+        return passed
+
+    def finish(self) -> None:
+        self._is_over = True
+        if self.isRunning():
+            self._jobs.put(None)
+            self.wait()
+
+    def run(self) -> None:
+        while (job := self._jobs.get()) is not None:
+            try:
+                outcome = job.call()
+            except Exception as error:  # the edge of the thread: beyond it nobody could catch it
+                outcome = refusal_of(error)
+            self.told.emit(job, outcome)
+            del job, outcome  # not held until the next one comes
+            self._after_each()
+        self._at_end()
+
+
+def weak(method: Callable[P, T] | None) -> "WeakMethod[Callable[P, T]] | None":
+    return None if method is None else WeakMethod(method)

@@ -1,0 +1,84 @@
+"""What the library's thread tells the screen: a library that is open, or a folder's; what became of what was asked."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+from uuid import UUID
+
+from app.workers.refusals import Refusal
+
+if TYPE_CHECKING:
+    from app.storage.key_change import ChangedKey
+    from app.storage.login_delay import LoginDelay
+    from app.storage.opened import OpenedLibrary
+    from app.storage.recovery import Interrupted
+    from app.storage.rollback import Rollback
+    from app.storage.stored import Operator
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedState:
+    """What was found on opening.
+
+    Attributes
+    ----------
+    interrupted
+        Recordings that nobody stopped, to be looked at.
+    is_end_lost
+        The library was not closed well, and what was saved last is damaged.
+    brought_home
+        Recordings that were made while the library was gone, and are in it again.
+    recovery_key
+        Of a library that was just made, to be shown once; else empty.
+    rollback
+        What this computer has seen of the library and it does not hold any more.
+    is_recovery_key_confirmed
+        Whether somebody typed the recovery key back from its sheet since it was made.
+    """
+
+    library: "OpenedLibrary"
+    operator: "Operator"
+    interrupted: tuple["Interrupted", ...] = ()
+    is_end_lost: bool = False
+    brought_home: frozenset[UUID] = frozenset()
+    recovery_key: str = field(default="", repr=False)
+    rollback: "Rollback | None" = None
+    is_recovery_key_confirmed: bool = True
+
+    @property
+    def is_demonstration(self) -> bool:
+        return self.library.data_key is None
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryPlace:
+    """What a folder says before its library is opened. `remembered`: operators whom the keyring may let in."""
+
+    folder: Path
+    exists: bool
+    codes: tuple[str, ...]
+    remembered: tuple[str, ...]
+    has_keyring: bool
+    delay: "LoginDelay"
+
+
+class NotOpened(NamedTuple):
+    what: str
+    remedy: str
+    is_key: bool
+
+
+class Closed(NamedTuple):
+    pass
+
+
+class Unlocked(NamedTuple):
+    pass
+
+
+class KeyChanged(NamedTuple):
+    """What came of a change of the key; `changed` None: nothing but `refusal`. `state` None: nothing is open now."""
+
+    state: OpenedState | None
+    changed: "ChangedKey | None"
+    refusal: Refusal
