@@ -1,7 +1,7 @@
 """All sources of one visit, read side by side: recorded, shown and worked on, none of them waiting for another.
 
     sources -> readers -> journal (queue, own thread)
-                       -> ring buffers -> the screen, the live work
+                       -> ring buffers -> the screen, the live estimator
 
 Times are seconds since `start`, of the sensors' own stamps.
 """
@@ -14,14 +14,14 @@ import numpy as np
 
 from app.acquisition.heard_sensor import SensorStatus
 from app.acquisition.heartbeat import Heartbeat, Standstill
-from app.acquisition.preview import LiveWork, Preview
+from app.acquisition.preview import LiveEstimator, Preview
 from app.acquisition.reader import Reader
 from app.storage.journal.writer import JournalSummary, JournalWriter
 from core.samples import ImuBlock, RecordingKind
 from devices.host_clock import host_time_ns
 from devices.live import LiveSource, SourceRefusedError
 
-__all__ = ["Acquisition", "LiveWork", "SensorStatus"]
+__all__ = ["Acquisition", "LiveEstimator", "SensorStatus"]
 
 
 class Acquisition:
@@ -87,12 +87,12 @@ class Acquisition:
 
     @property
     def trouble(self) -> Exception | None:
-        """What the present live work failed with first; the recording goes on."""
+        """What the present live estimator failed with first; the recording goes on."""
         return self._preview.trouble
 
     @property
     def dropped_from_preview(self) -> int:
-        """Samples that the live work was too slow for. They are recorded all the same."""
+        """Samples that the live estimator was too slow for. They are recorded all the same."""
         return self._preview.dropped
 
     def status(self) -> Mapping[str, SensorStatus]:
@@ -153,9 +153,9 @@ class Acquisition:
             self._writer = None
             return writer.stop()
 
-    def set_work(self, work: LiveWork | None) -> None:
-        """What is done with new samples from now on; see `LiveWork`."""
-        self._preview.set_work(work)
+    def set_estimator(self, estimator: LiveEstimator | None) -> None:
+        """What is done with new samples from now on; see `LiveEstimator`."""
+        self._preview.set_estimator(estimator)
 
     def ask(self, kind: RecordingKind | None) -> float | None:
         """Ask simulated patients to do what is recorded next; None: nothing.

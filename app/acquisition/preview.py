@@ -11,14 +11,14 @@ from app.acquisition.reader import Reader
 from core.samples import ImuBlock
 
 EVERY_S = 0.03
-LEAST_PAUSE_S = 0.005  # for the readers, where the work takes all there is
+LEAST_PAUSE_S = 0.005  # for the readers, where the estimator takes all there is
 MOST_BEHIND_S = 5.0
 CLOSE_S = 5.0  # an update takes no longer
 
 _log = logging.getLogger(__name__)
 
 
-class LiveWork(Protocol):
+class LiveEstimator(Protocol):
     """What is done with new samples. Results are attributes that are replaced whole: the screen reads them any time."""
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
@@ -30,20 +30,20 @@ class LiveWork(Protocol):
 
 @dataclass(slots=True)
 class _Task:
-    work: LiveWork
+    estimator: LiveEstimator
     taken: dict[str, int] = field(default_factory=dict)  # how many of a sensor's samples it has had
     has_failed: bool = False
 
 
 class Preview:
-    """The thread that does the live work. It may fail or fall behind: the recording goes on.
+    """The thread that runs the live estimator. It may fail or fall behind: the recording goes on.
 
     Attributes
     ----------
     trouble
-        What the present work failed with first.
+        What the present estimator failed with first.
     dropped
-        How many samples the work was too slow for, and never saw.
+        How many samples the estimator was too slow for, and never saw.
     """
 
     def __init__(self, readers: Sequence[Reader]) -> None:
@@ -57,11 +57,11 @@ class Preview:
     def start(self) -> None:
         self._thread.start()
 
-    def set_work(self, work: LiveWork | None) -> None:
-        """From now on do this; an update of the former work may still be going on."""
+    def set_estimator(self, estimator: LiveEstimator | None) -> None:
+        """From now on run this; an update of the former estimator may still be going on."""
         self.trouble = None
         taken = {name: total for reader in self._readers for name, total in reader.totals().items()}
-        self._task = None if work is None else _Task(work, taken)
+        self._task = None if estimator is None else _Task(estimator, taken)
 
     def close(self) -> None:
         self._is_closing.set()
@@ -82,10 +82,10 @@ class Preview:
         if not blocks:
             return
         try:
-            task.work.update(blocks)
+            task.estimator.update(blocks)
         except Exception as error:  # the thread's edge: it is only a preview
             if not task.has_failed:
-                _log.exception("the live work failed")
+                _log.exception("the live estimator failed")
                 task.has_failed = True
                 if task is self._task:
                     self.trouble = error

@@ -3,9 +3,9 @@
     python -m tests.benchmarks.live_road [--seconds 30]
 
 The demonstration's patient with six sensors at 200 Hz, played in real time through the acquisition: reader, sealed
-journal, ring buffers and the work of each step. CPU of the whole process but the frames, as a share of one core;
-"reading and recording" is what every row holds besides its work. Age: from a sample's stamp until the state that has
-it can be read; of walking that of the angles, which wait for the samples around them. A frame is a millisecond of
+journal, ring buffers and the estimator of each step. CPU of the whole process but the frames, as a share of one core;
+"reading and recording" is what every row holds besides. Age: from a sample's stamp until the state that has it can be
+read; of walking that of the angles, which wait for the samples around them. A frame is a millisecond of
 Python on a thread of its own, due 30 times a second as the screen's are: when it is done.
 """
 
@@ -20,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from app.acquisition.acquisition import Acquisition, LiveWork
+from app.acquisition.acquisition import Acquisition, LiveEstimator
 from app.acquisition.live_sensors import live_sensors
 from app.storage.journal.writer import JournalWriter
-from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
-from app.wizard.sensors.estimator import PlacingWork
-from app.wizard.standing.estimator import StandingWork
-from app.wizard.walking.estimator import WalkingWork
+from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
+from app.wizard.sensors.estimator import PlacingEstimator
+from app.wizard.standing.estimator import StandingEstimator
+from app.wizard.walking.estimator import WalkingEstimator
 from core.analysis import analyse
 from core.body import Side, Site
 from core.live.sensors import LiveSensor
@@ -43,9 +43,9 @@ FRAME_LOOPS = 20_000  # about a millisecond
 
 @dataclass(slots=True)
 class Timed:
-    """Does a work's updates, and notes how long each took and how old what it shows is."""
+    """Does an estimator's updates, and notes how long each took and how old what it shows is."""
 
-    work: LiveWork
+    estimator: LiveEstimator
     newest_shown_s: Callable[[], float] | None
     now_s: Callable[[], float]
     took_s: list[float] = field(default_factory=list)
@@ -54,7 +54,7 @@ class Timed:
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
         begin_s = time.thread_time()
-        self.work.update(blocks)
+        self.estimator.update(blocks)
         self.took_s.append(time.thread_time() - begin_s)
         now_s = self.now_s()
         time_s = np.concatenate([block.time_s for block in blocks.values()])
@@ -100,23 +100,23 @@ class Screen(threading.Thread):
 def measure(
     acquisition: Acquisition,
     name: str,
-    work: LiveWork,
+    estimator: LiveEstimator,
     kind: RecordingKind,
     seconds: float,
     newest_shown_s: Callable[[], float] | None = None,
 ) -> str:
     """One stage of the visit, recorded: a row of the table."""
-    timed, screen = Timed(work, newest_shown_s, lambda: acquisition.now_s), Screen()
+    timed, screen = Timed(estimator, newest_shown_s, lambda: acquisition.now_s), Screen()
     acquisition.ask(kind)
     with tempfile.TemporaryDirectory() as folder:
         acquisition.record(JournalWriter.create(Path(folder), uuid.uuid4(), KEY, room=NO_ROOM_ASKED))
-        acquisition.set_work(timed)
+        acquisition.set_estimator(timed)
         screen.start()
         begin_s, cpu_s = time.perf_counter(), time.process_time()
         time.sleep(seconds)
         elapsed_s, cpu_s = time.perf_counter() - begin_s, time.process_time() - cpu_s
         screen.end()
-        acquisition.set_work(None)
+        acquisition.set_estimator(None)
         summary = acquisition.stop_recording()
     lost = sum(status.counts.lost for status in acquisition.status().values())
     share = 100 * (cpu_s - screen.cpu_s) / elapsed_s
@@ -130,15 +130,15 @@ def _quantiles(values_s: list[float], which: tuple[float, ...], digits: int) -> 
     return ", ".join(f"{1000 * value:.{digits}f}" for value in np.quantile(values_s, which))
 
 
-def stood(acquisition: Acquisition) -> StandingWork:
+def stood(acquisition: Acquisition) -> StandingEstimator:
     """Let the patient stand until every sensor has shown its rest."""
-    work = StandingWork(acquisition.sensors)
-    acquisition.set_work(work)
+    estimator = StandingEstimator(acquisition.sensors)
+    acquisition.set_estimator(estimator)
     until_s = time.monotonic() + 10.0
-    while not work.state.standing.is_done and time.monotonic() < until_s:
+    while not estimator.state.standing.is_done and time.monotonic() < until_s:
         time.sleep(0.1)
-    acquisition.set_work(None)
-    return work
+    acquisition.set_estimator(None)
+    return estimator
 
 
 def run(seconds: float) -> None:
@@ -152,38 +152,38 @@ def run(seconds: float) -> None:
         rests = stood(acquisition).state.standing.rest
         sensors = live_sensors(site_of, rests, acquisition.status())
         standing = {name: rest.acc_m_s2 for name, rest in rests.items()}
-        walking = WalkingWork(site_of, sensors, calibration)
+        walking = WalkingEstimator(site_of, sensors, calibration)
         free, walk = RecordingKind.FREE_MOTION, RecordingKind.WALKING
 
         def newest_angle_s() -> float:
             curves = walking.state.joints.values()
             return min((float(c.time_s[-1]) for c in curves if len(c.time_s)), default=-np.inf)
 
-        print("| work | of one core, % | update 50 %, 99 %, worst, ms | age 50 %, 95 %, worst, ms |", end="")
+        print("| estimator | of one core, % | update 50 %, 99 %, worst, ms | age 50 %, 95 %, worst, ms |", end="")
         print(" frame done 50 %, 99 %, worst, ms | lost: sensors, journal, preview |\n|---|---|---|---|---|---|")
-        for name, work, kind in (
+        for name, estimator, kind in (
             ("reading and recording", Nothing(), walk),
-            ("placing", PlacingWork(site_of, standing), free),
-            ("standing", StandingWork(site_of), RecordingKind.STANDING),
-            ("free motion", FreeMotionWork(site_of, sensors, standing=standing), free),
+            ("placing", PlacingEstimator(site_of, standing), free),
+            ("standing", StandingEstimator(site_of), RecordingKind.STANDING),
+            ("free motion", FreeMotionEstimator(site_of, sensors, standing=standing), free),
             ("free motion, sites unknown", unplaced(sensors, standing), free),
         ):
-            print(measure(acquisition, name, work, kind, seconds), flush=True)
+            print(measure(acquisition, name, estimator, kind, seconds), flush=True)
         print(measure(acquisition, "walking", walking, walk, seconds, newest_angle_s), flush=True)
     finally:
         acquisition.close()
 
 
-def unplaced(sensors: Mapping[str, LiveSensor], standing: Mapping[str, FloatArray]) -> UnplacedFreeMotionWork:
+def unplaced(sensors: Mapping[str, LiveSensor], standing: Mapping[str, FloatArray]) -> UnplacedFreeMotionEstimator:
     """Both legs begin together, so that somebody has to say which is which."""
-    work = UnplacedFreeMotionWork(sensors, None, standing=standing)
-    work.name_leg((next(iter(sensors)), Side.LEFT))
-    return work
+    estimator = UnplacedFreeMotionEstimator(sensors, None, standing=standing)
+    estimator.name_leg((next(iter(sensors)), Side.LEFT))
+    return estimator
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=30.0, help="of each work")
+    parser.add_argument("--seconds", type=float, default=30.0, help="of each estimator")
     run(parser.parse_args().seconds)
 
 

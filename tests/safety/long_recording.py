@@ -75,7 +75,7 @@ class LongRun:
 
 
 class Adding:
-    """A live work that looks at every sample."""
+    """A live estimator that looks at every sample."""
 
     def __init__(self) -> None:
         self.total = 0.0
@@ -91,7 +91,7 @@ def record_long(
     source = ReplaySource(numbered_session("long", SENSORS), speed=speed)
     acquisition = Acquisition([source], now_ns=source.now_ns)
     acquisition.start()
-    acquisition.set_work(Adding())
+    acquisition.set_estimator(Adding())
     acquisition.record(open_journal(folder, ID, now_ns=source.now_ns))
     _pull(acquisition, warm_s)
     before = most = Held.now()

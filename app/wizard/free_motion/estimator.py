@@ -40,7 +40,7 @@ class FreeMotionView:
         What is known of the legs where the placement is left to the motion.
     is_side_open
         The legs are certain, and which is left is not: both began together, or there is only one. `name_leg` of
-        `UnplacedFreeMotionWork` settles it.
+        `UnplacedFreeMotionEstimator` settles it.
     """
 
     motion: FreeMotionState = field(default_factory=FreeMotionState)
@@ -52,7 +52,7 @@ class FreeMotionView:
     is_side_open: bool = False
 
 
-class FreeMotionWork:
+class FreeMotionEstimator:
     """The motion of sensors whose sites are known. Their joints are watched leg by leg, so that one can begin anew.
 
     Parameters
@@ -117,7 +117,7 @@ class FreeMotionWork:
         return LiveFreeMotion(of_leg, self._prosthetic_sides, self._without_ankle)
 
 
-class UnplacedFreeMotionWork:
+class UnplacedFreeMotionEstimator:
     """The motion of sensors whose sites it has to tell itself: it is held back until it has, and then made up for.
 
     Where both legs began together, or only one wears sensors, `name_leg` settles what the motion cannot tell.
@@ -141,7 +141,7 @@ class UnplacedFreeMotionWork:
         self._sensors, self._first_moved, self._standing = live_sensors, first_moved, standing or {}
         self._prosthetic_sides, self._without_ankle = prosthetic_sides, without_ankle
         self._search = ChainSearch(live_sensors, live_sensors, standing)
-        self._placed: FreeMotionWork | None = None
+        self._placed: FreeMotionEstimator | None = None
         self._held: list[dict[str, ImuBlock]] = []
         self._first_s, self._now_s = np.inf, -np.inf
         self._answer: tuple[str, Side] | None = None
@@ -153,7 +153,7 @@ class UnplacedFreeMotionWork:
         self._answer = told
 
     def repeat(self, side: Side) -> None:
-        """As of `FreeMotionWork`; nothing before it is known who is where. From any thread."""
+        """As of `FreeMotionEstimator`; nothing before it is known who is where. From any thread."""
         self._wish = side
 
     def update(self, blocks: Mapping[str, ImuBlock]) -> None:
@@ -171,7 +171,7 @@ class UnplacedFreeMotionWork:
         is_side_open = self._placed is None and self._search.is_sure
         self.state = replace(state, elapsed_s=elapsed_s, chains=self._search.chains, is_side_open=is_side_open)
 
-    def _caught_up(self, placed: FreeMotionWork) -> FreeMotionView:
+    def _caught_up(self, placed: FreeMotionEstimator) -> FreeMotionView:
         """Take a little of what was held back."""
         wish, self._wish = self._wish, None
         if wish is not None:
@@ -189,7 +189,7 @@ class UnplacedFreeMotionWork:
         self._search.update(worn)
         site_of = self._told()
         if site_of:
-            self._placed = FreeMotionWork(
+            self._placed = FreeMotionEstimator(
                 site_of, self._sensors, self._prosthetic_sides, self._without_ankle, self._standing
             )
 

@@ -14,7 +14,7 @@ from app.theme import Look
 from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
-from app.wizard.free_motion.estimator import FreeMotionWork, UnplacedFreeMotionWork
+from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
 from app.wizard.free_motion.hints import (
     Asked,
     HintHold,
@@ -64,8 +64,8 @@ class FreeMotionStep(Step):
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: FreeMotionPage | None = None
-        self._work: FreeMotionWork | UnplacedFreeMotionWork | None = None
-        self._unplaced: UnplacedFreeMotionWork | None = None  # the same, where it has to find the sites
+        self._estimator: FreeMotionEstimator | UnplacedFreeMotionEstimator | None = None
+        self._unplaced: UnplacedFreeMotionEstimator | None = None  # the same, where it has to find the sites
         self._hold = HintHold()
         self._motion = FreeMotionState()
         self._before = FreeMotionState()  # of the leg that is not repeated
@@ -158,14 +158,14 @@ class FreeMotionStep(Step):
         if self._then is AfterRecording.ANOTHER:
             self._then = AfterRecording.ITSELF
         if (acquisition := self._visit.sensors.acquisition) is not None:
-            acquisition.set_work(None)
-        self._work = None
+            acquisition.set_estimator(None)
+        self._estimator = None
 
     def tick(self) -> None:
         self._ticks += 1
         if self._ticks % TICKS or not self._is_in_sight:
             return
-        if self._work is not None and self._is_recording:
+        if self._estimator is not None and self._is_recording:
             self._look_at_motion()
         elif self._may_begin:
             self._begin(self._again_side)  # what was recorded before has been closed by now
@@ -305,7 +305,9 @@ class FreeMotionStep(Step):
         self._hold = HintHold(prosthetic)
         if sensors.is_left_to_motion and not sensors.site_of:
             live = live_sensors(acquisition.sensors, visit.rests, sensors.status)
-            self._work = self._unplaced = UnplacedFreeMotionWork(live, Side.LEFT, prosthetic, without, standing)
+            self._estimator = self._unplaced = UnplacedFreeMotionEstimator(
+                live, Side.LEFT, prosthetic, without, standing
+            )
             self._unplaced.name_leg(self._side.told)
         else:
             self._unplaced = None
@@ -314,12 +316,12 @@ class FreeMotionStep(Step):
                 for name, site in sensors.site_of.items()
                 if self._repeated is None or site.side is self._repeated
             }
-            self._work = FreeMotionWork(site_of, visit.live_sensors(), prosthetic, without, standing)
-        acquisition.set_work(self._work)
+            self._estimator = FreeMotionEstimator(site_of, visit.live_sensors(), prosthetic, without, standing)
+        acquisition.set_estimator(self._estimator)
 
     def _look_at_motion(self) -> None:
-        assert self._work is not None
-        view, sensors = self._work.state, self._visit.sensors
+        assert self._estimator is not None
+        view, sensors = self._estimator.state, self._visit.sensors
         self._elapsed_s = view.elapsed_s
         if view.site_of and not sensors.site_of:  # the motion has told it
             sensors.assign_all(view.site_of)
@@ -355,9 +357,9 @@ class FreeMotionStep(Step):
 
     def _repeat(self, side: Side) -> None:
         """Begin one leg anew, and leave the other as it is."""
-        if self._is_recording and self._work is not None:
+        if self._is_recording and self._estimator is not None:
             self._settled.stop()
-            self._work.repeat(side)
+            self._estimator.repeat(side)
             self._ask_patient()
         elif self._has_moved and any(site.side is side for site in self._visit.sensors.site_of.values()):
             self._begin(side)

@@ -43,8 +43,8 @@ class PlacingState:
         return self.chains.sites(first_moved) if is_told else {}
 
 
-class PlacingWork:
-    """For one way of placing sensors; another begins with another work.
+class PlacingEstimator:
+    """For one way of placing sensors; another begins with another estimator.
 
     Parameters
     ----------

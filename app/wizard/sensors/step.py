@@ -19,7 +19,7 @@ from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.sensors.columns_telling import ColumnsTelling
-from app.wizard.sensors.estimator import PlacingWork
+from app.wizard.sensors.estimator import PlacingEstimator
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.replays import Replays
 from app.wizard.sensors.sensor_row import SensorRow
@@ -48,7 +48,7 @@ class SensorsStep(Step):
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: SensorsPage | None = None
-        self._work: PlacingWork | None = None
+        self._estimator: PlacingEstimator | None = None
         self._shakes = self._ticks = 0
         self._is_in_sight = False
         self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
@@ -125,7 +125,7 @@ class SensorsStep(Step):
     def enter(self) -> None:
         self._is_in_sight = True
         self._visit.begin_session()
-        self._begin_work()
+        self._begin_estimator()
         self._show()
         self.page.focus()
 
@@ -136,8 +136,8 @@ class SensorsStep(Step):
         self._telling.end()
         sensors = self._visit.sensors
         if sensors.acquisition is not None:
-            sensors.acquisition.set_work(None)
-        self._work = None
+            sensors.acquisition.set_estimator(None)
+        self._estimator = None
         if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
             # other places of the same sensors: they were told wrongly; other sensors: strapped on since
             if self._visit.takes.since_strapped and sensors.site_of.keys() == self._known_places.keys():
@@ -152,8 +152,8 @@ class SensorsStep(Step):
             self._telling.tick()
         if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._telling.is_on:
             return
-        if self._work is not None:
-            state = self._work.state
+        if self._estimator is not None:
+            state = self._estimator.state
             if state.shakes != self._shakes:
                 self._shakes = state.shakes
                 if state.shaken is not None:
@@ -227,13 +227,13 @@ class SensorsStep(Step):
         session = self._visit.session
         return session.placements[-1].site_of if session is not None and session.placements else {}
 
-    def _begin_work(self) -> None:
+    def _begin_estimator(self) -> None:
         """Let the estimator's thread listen for shaken sensors while the step is in sight."""
         acquisition = self._visit.sensors.acquisition
         if acquisition is None or not self._is_in_sight:
             return
-        self._work, self._shakes = PlacingWork(acquisition.sensors), 0
-        acquisition.set_work(self._work)
+        self._estimator, self._shakes = PlacingEstimator(acquisition.sensors), 0
+        acquisition.set_estimator(self._estimator)
 
     def _show(self) -> None:
         self._show_sources()
@@ -345,7 +345,7 @@ class SensorsStep(Step):
                 sensors.assign_all(known)
                 break
         self._wanted = {}
-        self._begin_work()
+        self._begin_estimator()
         if self._is_in_sight:
             self._show()
             self.page.focus()

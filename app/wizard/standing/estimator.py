@@ -28,8 +28,8 @@ class StandingView:
     movement_deg_s: Mapping[str, float] = field(default_factory=dict)
 
 
-class StandingWork:
-    """One attempt to stand still; another begins with another work."""
+class StandingEstimator:
+    """One attempt to stand still; another begins with another estimator."""
 
     def __init__(self, sensors: Iterable[str], wanted_s: float = WANTED_S) -> None:
         self._names = frozenset(sensors)

@@ -13,7 +13,7 @@ from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.standing.estimator import StandingWork
+from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
 from app.wizard.takes import Take
@@ -36,7 +36,7 @@ class StandStillStep(Step):
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: StandStillPage | None = None
-        self._work: StandingWork | None = None
+        self._estimator: StandingEstimator | None = None
         self._phase = StandPhase.READY
         self._moved: tuple[str, ...] = ()
         self._heard = 0  # the second that was sounded last
@@ -106,13 +106,13 @@ class StandStillStep(Step):
         if self._is_recording:  # not to its end
             self._visit.takes.stop(is_kept=False)
         if (acquisition := self._visit.sensors.acquisition) is not None:
-            acquisition.set_work(None)
-        self._work = None
+            acquisition.set_estimator(None)
+        self._estimator = None
 
     def tick(self) -> None:
         self._ticks += 1
-        if self._ticks % TICKS == 0 and self._work is not None:
-            standing = self._work.state.standing
+        if self._ticks % TICKS == 0 and self._estimator is not None:
+            standing = self._estimator.state.standing
             self._moved = standing.moved or self._moved
             self._sound(standing.wanted_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
@@ -198,13 +198,13 @@ class StandStillStep(Step):
         self._moved = ()
         acquisition = self._visit.sensors.acquisition
         if acquisition is not None:
-            self._work = StandingWork(self._visit.sensors.site_of or acquisition.sensors)
-            acquisition.set_work(self._work)
+            self._estimator = StandingEstimator(self._visit.sensors.site_of or acquisition.sensors)
+            acquisition.set_estimator(self._estimator)
 
     def _finish(self) -> None:
         """Three seconds are in the journal."""
-        assert self._work is not None
-        self._visit.rests = dict(self._work.state.standing.rest)
+        assert self._estimator is not None
+        self._visit.rests = dict(self._estimator.state.standing.rest)
         self._phase = StandPhase.DONE
         self._visit.takes.stop()
         sounds.play(Sound.READY)
@@ -217,10 +217,10 @@ class StandStillStep(Step):
             self.done.emit()
 
     def _show(self) -> None:
-        work, site_of = self._work, self._visit.sensors.site_of
-        if work is None or self._page is None:
+        estimator, site_of = self._estimator, self._visit.sensors.site_of
+        if estimator is None or self._page is None:
             return
-        standing = work.state.standing
+        standing = estimator.state.standing
 
         def placed(sensors: tuple[str, ...]) -> tuple[str, ...]:
             return tuple(site_of.get(sensor, sensor) for sensor in sensors)
@@ -231,7 +231,9 @@ class StandStillStep(Step):
                 phase=self._phase,
                 still_s=self._stood_s if self._phase is StandPhase.DONE else standing.still_s,
                 wanted_s=standing.wanted_s,
-                movement_deg_s={site_of.get(name, name): value for name, value in work.state.movement_deg_s.items()},
+                movement_deg_s={
+                    site_of.get(name, name): value for name, value in estimator.state.movement_deg_s.items()
+                },
                 moved=placed(self._moved),
                 silent=placed(standing.silent),
                 restarts=standing.restarts if is_counting else 0,
@@ -248,7 +250,7 @@ class StandStillStep(Step):
     def _on_ended(self, take: Take) -> None:
         if take.told.kind is not RecordingKind.STANDING:
             return
-        if self._phase is StandPhase.DONE and not self._shown.isActive() and self._work is not None:
+        if self._phase is StandPhase.DONE and not self._shown.isActive() and self._estimator is not None:
             self._go_on()  # the check mark has been seen while the journal was closed
         self.changed.emit()
 

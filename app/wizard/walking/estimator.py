@@ -23,7 +23,7 @@ KEPT_S = 15.0
 SILENT_S = 0.5
 
 
-class WalkingWork:
+class WalkingEstimator:
     """Both legs of a walking patient, from walk to walk without a break: filters that have settled stay so.
 
     Parameters

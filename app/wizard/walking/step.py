@@ -25,7 +25,7 @@ from app.wizard.walk_messages import (
     recovered_message,
     slip_message,
 )
-from app.wizard.walking.estimator import WalkingWork
+from app.wizard.walking.estimator import WalkingEstimator
 from app.wizard.walking.walk_labels import label_after, labels_for, letters_of
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
@@ -48,7 +48,7 @@ class WalkingStep(Step):
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
-        self._work: WalkingWork | None = None
+        self._estimator: WalkingEstimator | None = None
         self._shown: WalkingReadout | None = None
         self._at_stop: WalkingReadout | None = None
         self._counted_before: dict[Side, int] = {}
@@ -135,7 +135,7 @@ class WalkingStep(Step):
 
     def enter(self) -> None:
         self._is_in_sight = True
-        self._begin_work()
+        self._begin_estimator()
         self.page.set_simulated(self._visit.is_simulated)
         if not self._label:
             self._label = label_after(self._visit.patient.told, self._used)
@@ -145,16 +145,16 @@ class WalkingStep(Step):
     def leave(self) -> None:
         self._is_in_sight = False
         if (acquisition := self._visit.sensors.acquisition) is not None:
-            acquisition.set_work(None)
-        self._work = None
+            acquisition.set_estimator(None)
+        self._estimator = None
 
     def tick(self) -> None:
         if self._ticks % WATCH_TICKS == 0:
             self._watch_sensors()
         self._ticks += 1
-        if self._work is None or not self._visit.takes.is_recording:
+        if self._estimator is None or not self._visit.takes.is_recording:
             return
-        view = self._work.state
+        view = self._estimator.state
         if view is self._shown or math.isnan(view.now_s):
             return
         self._shown = view
@@ -255,8 +255,8 @@ class WalkingStep(Step):
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)
         takes.begin(acquisition, RecordingKind.WALKING, self._label)
-        if self._work is not None and takes.ongoing is not None:
-            self._work.count_from(takes.ongoing.began_s)
+        if self._estimator is not None and takes.ongoing is not None:
+            self._estimator.count_from(takes.ongoing.began_s)
         self.page.focus()
 
     def _stop(self) -> None:
@@ -276,19 +276,19 @@ class WalkingStep(Step):
 
     # what is live
 
-    def _begin_work(self) -> None:
-        """Let the estimator work on this step, with the calibration as it is now."""
+    def _begin_estimator(self) -> None:
+        """Let the estimator estimator on this step, with the calibration as it is now."""
         acquisition = self._visit.sensors.acquisition
         if acquisition is None:
             return
         calibration = self._visit.evaluation.calibration
-        self._work = WalkingWork(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
+        self._estimator = WalkingEstimator(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
         if self._visit.takes.ongoing is not None:
-            self._work.count_from(self._visit.takes.ongoing.began_s)
-        acquisition.set_work(self._work)
+            self._estimator.count_from(self._visit.takes.ongoing.began_s)
+        acquisition.set_estimator(self._estimator)
 
     def _strides(self, view: "WalkingReadout") -> dict[Side, int]:
-        """Those of this walk, also where another work began amid it."""
+        """Those of this walk, also where another estimator began amid it."""
         return {side: count + self._counted_before.get(side, 0) for side, count in view.strides.items()}
 
     def _ask_for_ankles(self, strides: dict[Side, int]) -> None:
@@ -314,16 +314,16 @@ class WalkingStep(Step):
         calibration = self._visit.evaluation.calibration
         known = set(self._shown.joints) if self._shown is not None else set()
         worn = set(self._visit.sensors.joints)
-        if self._work is None or (set(calibration) & worn) - known:
+        if self._estimator is None or (set(calibration) & worn) - known:
             if self._shown is not None:
                 self._counted_before = self._strides(self._shown)
-            self._begin_work()
-            if self._work is not None and self._counted_before and self._visit.sensors.acquisition is not None:
-                self._work.count_from(self._visit.sensors.acquisition.now_s)
+            self._begin_estimator()
+            if self._estimator is not None and self._counted_before and self._visit.sensors.acquisition is not None:
+                self._estimator.count_from(self._visit.sensors.acquisition.now_s)
         else:
             for joint in Joint:
                 if not joint.is_knee and joint in calibration:
-                    self._work.recalibrate(joint, calibration[joint])
+                    self._estimator.recalibrate(joint, calibration[joint])
         self._show()
 
     # what is to be said

@@ -335,18 +335,18 @@ def test_bytes_are_kept_before_they_are_decoded_and_decoded_again(
 def test_the_live_work_gets_every_sample_once(start: Start) -> None:
     acquisition = start(played("a", 2), played("b", 1))
     wait_for(lambda: acquisition.now_s > 0.2)
-    work = Counting()
-    acquisition.set_work(work)
+    estimator = Counting()
+    acquisition.set_estimator(estimator)
     began_s = acquisition.now_s
     wait_for(lambda: acquisition.now_s > began_s + 0.5)
-    acquisition.set_work(None)
+    acquisition.set_estimator(None)
     time.sleep(0.1)
-    calls = work.calls
+    calls = estimator.calls
     time.sleep(0.1)
-    assert work.calls == calls
-    assert len(work.threads) == 1
-    assert set(work.times_s) == set(acquisition.sensors)
-    for times_s in work.times_s.values():
+    assert estimator.calls == calls
+    assert len(estimator.threads) == 1
+    assert set(estimator.times_s) == set(acquisition.sensors)
+    for times_s in estimator.times_s.values():
         assert np.allclose(np.diff(times_s), 1 / RATE_HZ)
         assert times_s[0] > began_s - 0.1  # nothing from before it was set
     assert acquisition.dropped_from_preview == 0
@@ -357,13 +357,13 @@ def test_live_work_that_fails_is_told_once_and_ends_nothing(
 ) -> None:
     acquisition = start(played("a", 1))
     acquisition.record(open_journal(tmp_path, ID))
-    work = Counting()
-    work.fails = True
-    acquisition.set_work(work)
-    wait_for(lambda: work.calls > 3)
+    estimator = Counting()
+    estimator.fails = True
+    acquisition.set_estimator(estimator)
+    wait_for(lambda: estimator.calls > 3)
     assert isinstance(acquisition.trouble, ValueError)
     assert len([record for record in caplog.records if record.levelname == "ERROR"]) == 1
-    acquisition.set_work(Counting())
+    acquisition.set_estimator(Counting())
     assert not acquisition.trouble
     decoded = read_back([acquisition.stop_recording().path])
     assert faults_of(decoded.sensors, {"a-left_thigh": 0}) == []
@@ -375,14 +375,14 @@ def test_live_work_that_falls_behind_loses_the_oldest_and_the_recording_nothing(
     monkeypatch.setattr("app.acquisition.preview.MOST_BEHIND_S", 0.1)
     acquisition = start(played("a", 1))
     acquisition.record(open_journal(tmp_path, ID))
-    work = Counting()
-    work.pause_s = 0.3
-    acquisition.set_work(work)
-    wait_for(lambda: work.calls > 2)
-    acquisition.set_work(None)
+    estimator = Counting()
+    estimator.pause_s = 0.3
+    acquisition.set_estimator(estimator)
+    wait_for(lambda: estimator.calls > 2)
+    acquisition.set_estimator(None)
     assert acquisition.dropped_from_preview > 20
-    (times_s,) = work.times_s.values()
-    assert len(times_s) <= (work.calls) * 0.1 * RATE_HZ + 1
+    (times_s,) = estimator.times_s.values()
+    assert len(times_s) <= (estimator.calls) * 0.1 * RATE_HZ + 1
     decoded = read_back([acquisition.stop_recording().path])
     assert faults_of(decoded.sensors, {"a-left_thigh": 0}) == []
 

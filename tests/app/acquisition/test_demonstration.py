@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.wizard.evaluation import calibration_of
-from app.wizard.walking.estimator import WalkingWork
+from app.wizard.walking.estimator import WalkingEstimator
 from core.analysis import analyse
 from core.body import Joint, Site
 from core.calibration.rest import rest_of
@@ -47,16 +47,16 @@ def test_no_strap_of_it_slips_from_walk_to_walk() -> None:
         for site, rest in rests.items()
         if rest is not None
     }
-    work = WalkingWork({str(site): site for site in Site}, sensors, calibration)
+    estimator = WalkingEstimator({str(site): site for site in Site}, sensors, calibration)
     now_s = 0.0
     for walk in walked:
         imu = after(walk, now_s)
         end_s = max(block.time_s[-1] for block in imu.values())
         for from_s, to_s in pairwise(np.arange(now_s, end_s + PIECE_S, PIECE_S).tolist()):
-            work.update({str(site): between(block, from_s, to_s) for site, block in imu.items()})
+            estimator.update({str(site): between(block, from_s, to_s) for site, block in imu.items()})
         now_s = end_s + PAUSE_S
-    assert sum(work.state.strides.values()) > 70
-    assert work.state.slips == ()
+    assert sum(estimator.state.strides.values()) > 70
+    assert estimator.state.slips == ()
     for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE):
-        turns = work._walking._straps[joint].turns
+        turns = estimator._walking._straps[joint].turns
         assert np.rad2deg(np.ptp(turns.turn_rad)) < MOST_DEG

@@ -127,7 +127,7 @@ def test_a_blocked_screen_and_a_full_processor_lose_nothing(
 
 
 class Newest:
-    """A live work that only notes how far it has come."""
+    """A live estimator that only notes how far it has come."""
 
     newest_s = 0.0
 
@@ -148,7 +148,7 @@ def test_a_disk_that_stalls_loses_nothing_and_holds_up_no_view(
 
     monkeypatch.setattr(JournalFile, "append", slow_append)
     shown = Newest()
-    acquisition.set_work(shown)
+    acquisition.set_estimator(shown)
     acquisition.record(open_journal(tmp_path, ID))
     time.sleep(0.1)
     answers.clear()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.wizard.free_motion.estimator import FreeMotionView, FreeMotionWork, UnplacedFreeMotionWork
+from app.wizard.free_motion.estimator import FreeMotionEstimator, FreeMotionView, UnplacedFreeMotionEstimator
 from core.body import Joint, Side, Site
 from core.live.free_motion import FreeMotionState
 from core.samples import ImuBlock
@@ -15,12 +15,12 @@ LEFT_MOVES_S, RIGHT_MOVES_S = BEGIN_S, BEGIN_S + 11.0
 
 
 def fed(
-    work: FreeMotionWork | UnplacedFreeMotionWork, streams: dict[str, ImuBlock], block_s: float = 0.1
+    estimator: FreeMotionEstimator | UnplacedFreeMotionEstimator, streams: dict[str, ImuBlock], block_s: float = 0.1
 ) -> list[FreeMotionView]:
     told = []
     for block in in_blocks(streams, block_s):
-        work.update(block)
-        told.append(work.state)
+        estimator.update(block)
+        told.append(estimator.state)
     return told
 
 
@@ -41,7 +41,7 @@ def exchanged(dressed: Worn, one: Site, other: Site) -> dict[str, Site]:
 
 @pytest.fixture(scope="module")
 def usual(dressed: Worn) -> list[FreeMotionView]:
-    return fed(FreeMotionWork(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), 0.03)
+    return fed(FreeMotionEstimator(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), 0.03)
 
 
 def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[FreeMotionView]) -> None:
@@ -58,16 +58,16 @@ def test_both_legs_are_watched_and_the_weakest_joint_is_of_either(usual: list[Fr
 
 @pytest.mark.parametrize("block_s", [0.7, 60.0])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[FreeMotionView], block_s: float) -> None:
-    other = fed(FreeMotionWork(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), block_s)[-1]
+    other = fed(FreeMotionEstimator(dressed.site_of, dressed.live_sensors), dict(dressed.free_motion), block_s)[-1]
     assert_same(other.motion, usual[-1].motion)
     assert (other.elapsed_s, other.exchanged) == (usual[-1].elapsed_s, usual[-1].exchanged)
 
 
 def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None:
-    work = FreeMotionWork(dressed.site_of, dressed.live_sensors)
-    before = fed(work, shortened(dressed, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
-    work.repeat(Side.LEFT)
-    after = fed(work, shortened(dressed, LEFT_MOVES_S + 8.0, LEFT_MOVES_S + 14.0))
+    estimator = FreeMotionEstimator(dressed.site_of, dressed.live_sensors)
+    before = fed(estimator, shortened(dressed, LEFT_MOVES_S, LEFT_MOVES_S + 8.0))[-1]
+    estimator.repeat(Side.LEFT)
+    after = fed(estimator, shortened(dressed, LEFT_MOVES_S + 8.0, LEFT_MOVES_S + 14.0))
     first, last = after[0], after[-1]
     assert first.repeated is last.repeated is Side.LEFT
     assert first.motion.joints[Joint.LEFT_KNEE].moved_s == 0.0
@@ -82,8 +82,8 @@ def test_one_leg_begins_anew_and_the_other_stays_as_it_is(dressed: Worn) -> None
 )
 def test_labels_that_the_motion_contradicts_are_named(dressed: Worn, one: Site, other: Site) -> None:
     standing = {name: rest.acc_m_s2 for name, rest in dressed.rests.items()}
-    work = FreeMotionWork(exchanged(dressed, one, other), dressed.live_sensors, standing=standing)
-    told = fed(work, dict(dressed.free_motion))
+    estimator = FreeMotionEstimator(exchanged(dressed, one, other), dressed.live_sensors, standing=standing)
+    told = fed(estimator, dict(dressed.free_motion))
     assert told[-1].exchanged == ((one, other),)
     if one.side is other.side:  # across the legs another group may be named until both have moved for long
         assert all(state.exchanged in ((), ((one, other),)) for state in told)
@@ -93,8 +93,8 @@ def test_labels_that_the_motion_contradicts_are_named(dressed: Worn, one: Site, 
 def test_sensors_without_sites_are_placed_and_made_up_for(
     dressed: Worn, usual: list[FreeMotionView], first: Side | None
 ) -> None:
-    work = UnplacedFreeMotionWork(dressed.live_sensors, first)
-    told = fed(work, dict(dressed.free_motion), 0.1)
+    estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, first)
+    told = fed(estimator, dict(dressed.free_motion), 0.1)
     if first is None:
         assert not told[-1].site_of
         assert told[-1].chains is not None
@@ -109,10 +109,10 @@ def test_sensors_without_sites_are_placed_and_made_up_for(
 
 
 def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(dressed: Worn) -> None:
-    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
+    estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, None)
     left = next(name for name, site in dressed.site_of.items() if site is Site.LEFT_SHANK)
-    work.name_leg((left, Side.RIGHT))
-    last = fed(work, dict(dressed.free_motion))[-1]
+    estimator.name_leg((left, Side.RIGHT))
+    last = fed(estimator, dict(dressed.free_motion))[-1]
     assert {name: site.segment for name, site in last.site_of.items()} == {
         name: site.segment for name, site in dressed.site_of.items()
     }
@@ -121,47 +121,47 @@ def test_a_word_names_the_side_that_nobody_was_asked_to_move_first(dressed: Worn
 
 def test_a_word_about_the_leg_that_moved_second_names_the_first_the_other(dressed: Worn) -> None:
     """Whoever answers looks at a sensor, not at which leg the search has put first by then."""
-    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
+    estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, None)
     right = next(name for name, site in dressed.site_of.items() if site is Site.RIGHT_SHANK)
-    work.name_leg((right, Side.RIGHT))
-    assert fed(work, dict(dressed.free_motion))[-1].site_of == dressed.site_of
+    estimator.name_leg((right, Side.RIGHT))
+    assert fed(estimator, dict(dressed.free_motion))[-1].site_of == dressed.site_of
 
 
 def test_a_word_that_is_undone_places_nobody(dressed: Worn) -> None:
-    work = UnplacedFreeMotionWork(dressed.live_sensors, None)
-    work.name_leg((next(iter(dressed.site_of)), Side.RIGHT))
-    work.name_leg(None)
-    last = fed(work, dict(dressed.free_motion))[-1]
+    estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, None)
+    estimator.name_leg((next(iter(dressed.site_of)), Side.RIGHT))
+    estimator.name_leg(None)
+    last = fed(estimator, dict(dressed.free_motion))[-1]
     assert last.is_side_open
     assert not last.site_of
 
 
 def test_a_single_leg_is_not_taken_for_the_one_that_was_asked(dressed: Worn) -> None:
     right = {name: dressed.live_sensors[name] for name, site in dressed.site_of.items() if site.side is Side.RIGHT}
-    work = UnplacedFreeMotionWork(right, Side.LEFT)
+    estimator = UnplacedFreeMotionEstimator(right, Side.LEFT)
     streams = {name: between(dressed.free_motion[name], RIGHT_MOVES_S, RIGHT_MOVES_S + 8.0) for name in right}
-    assert fed(work, streams)[-1].is_side_open
-    assert not work.state.site_of
-    work.name_leg((next(iter(right)), Side.RIGHT))
+    assert fed(estimator, streams)[-1].is_side_open
+    assert not estimator.state.site_of
+    estimator.name_leg((next(iter(right)), Side.RIGHT))
     later = {name: between(dressed.free_motion[name], RIGHT_MOVES_S + 8.0, RIGHT_MOVES_S + 11.0) for name in right}
-    assert fed(work, later)[-1].site_of == {name: dressed.site_of[name] for name in right}
+    assert fed(estimator, later)[-1].site_of == {name: dressed.site_of[name] for name in right}
 
 
 @pytest.mark.endurance
 def test_no_more_than_half_a_minute_is_held_back(dressed: Worn) -> None:
-    work = UnplacedFreeMotionWork(dressed.live_sensors, Side.LEFT)
+    estimator = UnplacedFreeMotionEstimator(dressed.live_sensors, Side.LEFT)
     stood = {
         name: ImuBlock(name, np.concatenate([block.time_s + 5.0 * k for k in range(8)]), *repeated(block, 8))
         for name, block in dressed.standing.items()
     }
     for block in in_blocks(stood, 0.5):
-        work.update(block)
+        estimator.update(block)
     end_s = max(float(block.time_s[-1]) for block in stood.values())
     moved = {
         name: ImuBlock(name, block.time_s - BEGIN_S + end_s + 0.02, block.gyr_rad_s, block.acc_m_s2)
         for name, block in dressed.free_motion.items()
     }
-    told = fed(work, moved)
+    told = fed(estimator, moved)
     assert told[-1].site_of == dressed.site_of
     assert told[-1].elapsed_s == pytest.approx(62.0, abs=0.2)
     assert told[-1].motion.joints[Joint.RIGHT_KNEE].moved_s == pytest.approx(11.0, abs=1.0)

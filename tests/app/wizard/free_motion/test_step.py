@@ -67,7 +67,7 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
     assert step.page.band.hint.sentence == "Move any leg"
     ticks(qtbot, step, lambda: knows(step))
     closed = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
-    step._work = Told(worn, FreeMotionState(closed))  # type: ignore[assignment]  # a busy machine takes its time
+    step._estimator = Told(worn, FreeMotionState(closed))  # type: ignore[assignment]  # a busy machine takes its time
     with qtbot.waitSignal(step.done, timeout=10_000):
         ticks(qtbot, step, lambda: states(step.page) == {GaugeState.READY})
         verb = step.bar().primary
@@ -85,10 +85,10 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
 ) -> None:
     step.enter()
     qtbot.waitUntil(lambda: visit.takes.is_recording)
-    ticks(qtbot, step, lambda: step._work is not None)
+    ticks(qtbot, step, lambda: step._estimator is not None)
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
-    step._work = Told(worn, FreeMotionState(joints))  # type: ignore[assignment]  # as above, a work already done
+    step._estimator = Told(worn, FreeMotionState(joints))  # type: ignore[assignment]  # as above, an estimator already done
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "As good as it gets")
     assert not step._settled.isActive()
     bar = step.bar()
@@ -113,9 +113,9 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
-    ticks(qtbot, step, lambda: step._work is not None)
+    ticks(qtbot, step, lambda: step._estimator is not None)
     open_joints = motion({joint: state(3.8, 6.0) for joint in Joint})
-    step._work = Told(worn, open_joints)  # type: ignore[assignment]  # as far as it came
+    step._estimator = Told(worn, open_joints)  # type: ignore[assignment]  # as far as it came
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "The replay has ended")
     bar = step.bar()
     assert bar.primary is not None
@@ -149,7 +149,7 @@ def test_one_leg_begins_anew_while_the_motion_goes_on(qtbot: QtBot, step: FreeMo
     step.enter()
     ticks(qtbot, step, lambda: knows(step))
     assert step.on_intent(Intent(KeyAction.RIGHT_LEG))
-    ticks(qtbot, step, lambda: step._work is not None and step._work.state.repeated is Side.RIGHT)
+    ticks(qtbot, step, lambda: step._estimator is not None and step._estimator.state.repeated is Side.RIGHT)
     ticks(qtbot, step, lambda: True)
     left, right = (step.page.gauges[joint].face for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE))
     ticks(qtbot, step, lambda: step.page.gauges[Joint.RIGHT_KNEE].face != right)
@@ -277,8 +277,8 @@ def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
     step.enter()
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Move the left leg first")
     assert states(step.page) == {GaugeState.OPEN}
-    work = Told(worn)
-    step._work = work  # type: ignore[assignment]  # the search itself is slower than this patient
+    estimator = Told(worn)
+    step._estimator = estimator  # type: ignore[assignment]  # the search itself is slower than this patient
     ticks(qtbot, step, lambda: visit.sensors.site_of == worn)
 
 
@@ -330,7 +330,7 @@ def test_a_leg_that_was_named_wrongly_changes_places_when_that_is_undone(
 
 
 class Told:
-    """A work that knows everything already."""
+    """An estimator that knows everything already."""
 
     def __init__(self, site_of: dict[str, Site], motion: FreeMotionState | None = None) -> None:
         self.state = FreeMotionView(motion or FreeMotionState(), site_of=site_of)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.wizard.sensors.estimator import PlacingState, PlacingWork
+from app.wizard.sensors.estimator import PlacingEstimator, PlacingState
 from core.body import Side
 from core.samples import ImuBlock
 from tests.app.wizard.dressed_patient import BEGIN_S, Worn, between, in_blocks
@@ -43,10 +43,10 @@ def shaken(block: ImuBlock, from_s: float, to_s: float, hz: float = 3.0) -> ImuB
 
 
 def states(blocks: Iterator[dict[str, ImuBlock]]) -> list[PlacingState]:
-    work, told = PlacingWork(NAMES), []
+    estimator, told = PlacingEstimator(NAMES), []
     for block in blocks:
-        work.update(block)
-        told.append(work.state)
+        estimator.update(block)
+        told.append(estimator.state)
     return told
 
 
@@ -114,10 +114,10 @@ def test_a_sensor_that_has_fallen_silent_keeps_nobody_from_being_recognised() ->
 
 
 def test_the_legs_are_told_and_their_sides_by_who_moved_first(dressed: Worn) -> None:
-    work, told = PlacingWork(dressed.site_of), []
+    estimator, told = PlacingEstimator(dressed.site_of), []
     for block in in_blocks(dressed.free_motion, 0.03):
-        work.update(block)
-        told.append(work.state)
+        estimator.update(block)
+        told.append(estimator.state)
     named = [state.sites(Side.LEFT) for state in told]
     assert all(sites in ({}, dressed.site_of) for sites in named)  # never anything wrong
     assert named[-1] == dressed.site_of
@@ -130,22 +130,22 @@ def test_standing_and_shaking_tell_no_legs(dressed: Worn) -> None:
     streams = dict(dressed.standing)
     for number, name in enumerate(streams):
         streams[name] = shaken(streams[name], BEGIN_S + 0.8 * number, BEGIN_S + 0.8 * (number + 1))
-    work = PlacingWork(dressed.site_of)
+    estimator = PlacingEstimator(dressed.site_of)
     for block in in_blocks(streams, 0.03):
-        work.update(block)
-        assert not work.state.is_sure
+        estimator.update(block)
+        assert not estimator.state.is_sure
 
 
 @pytest.mark.parametrize("block_s", [0.013, 60.0])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, block_s: float) -> None:
-    usual, other = PlacingWork(dressed.site_of), PlacingWork(dressed.site_of)
+    usual, other = PlacingEstimator(dressed.site_of), PlacingEstimator(dressed.site_of)
     # a look that is going on at the end tells nothing yet, unless one block brings all its steps
     streams = {name: between(block, BEGIN_S, BEGIN_S + 21.9) for name, block in dressed.free_motion.items()}
     name = next(iter(streams))
     streams[name] = shaken(streams[name], BEGIN_S + 20.5, BEGIN_S + 21.9)
-    for work, size_s in ((usual, 0.03), (other, block_s)):
+    for estimator, size_s in ((usual, 0.03), (other, block_s)):
         for block in in_blocks(streams, size_s):
-            work.update(block)
+            estimator.update(block)
     assert other.state == usual.state
 
 

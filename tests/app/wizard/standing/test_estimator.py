@@ -4,16 +4,16 @@ from dataclasses import replace
 
 import pytest
 
-from app.wizard.standing.estimator import LIMIT_DEG_S, StandingView, StandingWork
+from app.wizard.standing.estimator import LIMIT_DEG_S, StandingEstimator, StandingView
 from core.samples import ImuBlock
 from tests.app.wizard.dressed_patient import BEGIN_S, Worn, in_blocks
 
 
 def states(dressed: Worn, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[StandingView]:
-    work, told = StandingWork(dressed.site_of), []
+    estimator, told = StandingEstimator(dressed.site_of), []
     for block in in_blocks(streams, block_s):
-        work.update(block)
-        told.append(work.state)
+        estimator.update(block)
+        told.append(estimator.state)
     return told
 
 
@@ -45,11 +45,11 @@ def test_the_bars_pass_the_limit_just_when_the_verdict_says_so(dressed: Worn) ->
 
 def test_a_sensor_that_is_not_worn_is_passed_over(dressed: Worn) -> None:
     first, *others = sorted(dressed.standing)
-    work = StandingWork(others)
+    estimator = StandingEstimator(others)
     for block in in_blocks(dressed.standing, 0.1):
-        work.update(block)
-    assert first not in work.state.movement_deg_s
-    assert work.state.standing.is_done
+        estimator.update(block)
+    assert first not in estimator.state.movement_deg_s
+    assert estimator.state.standing.is_done
 
 
 @pytest.mark.parametrize("block_s", [0.013, 10.0])

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from app.wizard.walking.readout import WalkingReadout
 
-from app.wizard.walking.estimator import KEPT_S, WalkingWork
+from app.wizard.walking.estimator import KEPT_S, WalkingEstimator
+from app.wizard.walking.readout import WalkingReadout
 from core.body import Joint, Side, Site
 from core.gait.phases import Phase
 from core.results import AxisSource
@@ -20,21 +20,21 @@ pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 ORDER = (Phase.LOADING, Phase.FOOT_FLAT, Phase.PRE_SWING, Phase.SWING)
 
 
-def work_of(dressed: Worn) -> WalkingWork:
-    return WalkingWork(dressed.site_of, dressed.live_sensors, dressed.calibration)
+def estimator_of(dressed: Worn) -> WalkingEstimator:
+    return WalkingEstimator(dressed.site_of, dressed.live_sensors, dressed.calibration)
 
 
-def fed(work: WalkingWork, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingReadout]:
+def fed(estimator: WalkingEstimator, streams: dict[str, ImuBlock], block_s: float = 0.03) -> list[WalkingReadout]:
     told = []
     for block in in_blocks(streams, block_s):
-        work.update(block)
-        told.append(work.state)
+        estimator.update(block)
+        told.append(estimator.state)
     return told
 
 
 @pytest.fixture(scope="module")
 def usual(dressed: Worn) -> list[WalkingReadout]:
-    return fed(work_of(dressed), dict(dressed.walk))
+    return fed(estimator_of(dressed), dict(dressed.walk))
 
 
 def test_curves_hold_the_last_seconds_of_every_joint(dressed: Worn, usual: list[WalkingReadout]) -> None:
@@ -73,16 +73,16 @@ def test_strides_and_cadence_are_told_while_somebody_walks(usual: list[WalkingRe
 
 
 def test_a_walk_counts_its_own_strides(dressed: Worn, usual: list[WalkingReadout]) -> None:
-    work = work_of(dressed)
-    work.count_from(BEGIN_S + 8.0)
-    last = fed(work, dict(dressed.walk))[-1]
+    estimator = estimator_of(dressed)
+    estimator.count_from(BEGIN_S + 8.0)
+    last = fed(estimator, dict(dressed.walk))[-1]
     for side in Side:
         assert 3 < last.strides[side] < usual[-1].strides[side] - 3
 
 
 @pytest.mark.parametrize("block_s", [60.0, pytest.param(0.017, marks=pytest.mark.endurance)])
 def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[WalkingReadout], block_s: float) -> None:
-    one, two = usual[-1], fed(work_of(dressed), dict(dressed.walk), block_s)[-1]
+    one, two = usual[-1], fed(estimator_of(dressed), dict(dressed.walk), block_s)[-1]
     for joint in Joint:
         np.testing.assert_array_equal(two.joints[joint].time_s, one.joints[joint].time_s)
         np.testing.assert_allclose(two.joints[joint].angle_rad, one.joints[joint].angle_rad, rtol=0, atol=1e-9)
@@ -93,7 +93,7 @@ def test_the_size_of_the_blocks_changes_nothing(dressed: Worn, usual: list[Walki
 
 def test_a_foot_that_falls_silent_is_missing_and_leaves_a_gap(dressed: Worn) -> None:
     name, (from_s, to_s) = dressed.name_at(Site.RIGHT_FOOT), (BEGIN_S + 6.0, BEGIN_S + 8.0)
-    told = fed(work_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
+    told = fed(estimator_of(dressed), {**dressed.walk, name: without(dressed.walk[name], from_s, to_s)})
     amid = next(state for state in told if state.now_s > to_s - 0.2)
     assert amid.missing == (Site.RIGHT_FOOT,)
     lane = amid.lanes[Side.RIGHT]
@@ -120,13 +120,13 @@ def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: l
     joint = Joint.LEFT_ANKLE
     settled = dressed.calibration[joint]
     provisional = replace(settled, axis_source=AxisSource.FREE_MOTION, zero_rad=settled.zero_rad + 0.2)
-    work = WalkingWork(dressed.site_of, dressed.live_sensors, {**dressed.calibration, joint: provisional})
+    estimator = WalkingEstimator(dressed.site_of, dressed.live_sensors, {**dressed.calibration, joint: provisional})
     early = {name: between(block, BEGIN_S, BEGIN_S + 8.0) for name, block in dressed.walk.items()}
     late = {name: between(block, BEGIN_S + 8.0, BEGIN_S + 99.0) for name, block in dressed.walk.items()}
-    assert fed(work, early)[-1].joints[joint].is_provisional
-    work.recalibrate(joint, settled)
-    assert work.state.joints[joint].is_provisional  # not yet
-    last = fed(work, late)[-1].joints[joint]
+    assert fed(estimator, early)[-1].joints[joint].is_provisional
+    estimator.recalibrate(joint, settled)
+    assert estimator.state.joints[joint].is_provisional  # not yet
+    last = fed(estimator, late)[-1].joints[joint]
     assert not last.is_provisional
     whole = usual[-1].joints[joint]
     np.testing.assert_allclose(last.angle_rad[-300:], whole.angle_rad[-300:], atol=0.02)
@@ -136,8 +136,10 @@ def test_another_calibration_is_taken_at_the_next_update(dressed: Worn, usual: l
 def test_a_leg_of_one_joint_has_one_curve_and_no_lane(dressed: Worn) -> None:
     sites = (Site.LEFT_THIGH, Site.LEFT_SHANK)
     streams = {name: dressed.walk[name] for name, site in dressed.site_of.items() if site in sites}
-    work = WalkingWork({name: dressed.site_of[name] for name in streams}, dressed.live_sensors, dressed.calibration)
-    last = fed(work, dict(dressed.walk))[-1]  # the others are heard, and not dressed
+    estimator = WalkingEstimator(
+        {name: dressed.site_of[name] for name in streams}, dressed.live_sensors, dressed.calibration
+    )
+    last = fed(estimator, dict(dressed.walk))[-1]  # the others are heard, and not dressed
     assert set(last.joints) == {Joint.LEFT_KNEE}
     assert not last.lanes
     assert not last.strides
@@ -145,13 +147,13 @@ def test_a_leg_of_one_joint_has_one_curve_and_no_lane(dressed: Worn) -> None:
 
 
 def test_a_state_that_was_read_stays_as_it_was(dressed: Worn) -> None:
-    work, held = work_of(dressed), []
+    estimator, held = estimator_of(dressed), []
     for _ in range(4):  # past the arrays' room
-        last_s = 0.0 if math.isnan(work.state.now_s) else work.state.now_s - BEGIN_S + 0.01
+        last_s = 0.0 if math.isnan(estimator.state.now_s) else estimator.state.now_s - BEGIN_S + 0.01
         later = {name: replace(block, time_s=block.time_s + last_s) for name, block in dressed.walk.items()}
         for block in in_blocks(later, 0.25):
-            work.update(block)
-            curve = work.state.joints[Joint.RIGHT_KNEE]
+            estimator.update(block)
+            curve = estimator.state.joints[Joint.RIGHT_KNEE]
             held.append((curve, curve.time_s.copy(), curve.angle_rad.copy()))
     for curve, time_s, angle_rad in held:
         np.testing.assert_array_equal(curve.time_s, time_s)
