@@ -85,7 +85,7 @@ class Preview:
             task.estimator.update(blocks)
         except Exception as error:  # the thread's edge: it is only a preview
             if not task.has_failed:
-                _log.exception("the live estimator failed")
+                _log.exception("the live work failed")
                 task.has_failed = True
                 if task is self._task:
                     self.trouble = error

@@ -277,7 +277,7 @@ class WalkingStep(Step):
     # what is live
 
     def _begin_estimator(self) -> None:
-        """Let the estimator estimator on this step, with the calibration as it is now."""
+        """Let the estimator work on this step, with the calibration as it is now."""
         acquisition = self._visit.sensors.acquisition
         if acquisition is None:
             return
