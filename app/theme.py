@@ -4,13 +4,14 @@ from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from PySide6.QtCore import QByteArray, QObject, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette, QPen
-from PySide6.QtWidgets import QApplication
+from PySide6.QtCore import QByteArray, QEvent, QObject, QRectF, Qt, Signal
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QPainter, QPalette, QPen
+from PySide6.QtWidgets import QApplication, QStyle, QToolTip, QWidget
 
 from app.colours import DARK as DARK
 from app.colours import LIGHT as LIGHT
 from app.colours import Colours as Colours
+from app.style import ControlStyle
 from core.body import Side
 
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
@@ -74,11 +75,33 @@ class Theme:
             pen.setDashPattern([4.0, 2.2])
         return pen
 
-    def veil(self, is_pressed: bool) -> QColor:
-        """Give the thin layer of ink over a control under the mouse."""
-        colour = QColor(self.colours.ink)
-        colour.setAlphaF(0.10 if is_pressed else 0.04)
+    def veil(self, is_pressed: bool, ink: QColor | None = None) -> QColor:
+        """Give the thin layer of ink over a control under the mouse, twice as strong in the `ink` of a dark one."""
+        colour = QColor(ink or self.colours.ink)
+        colour.setAlphaF((0.10 if is_pressed else 0.04) * (2 if ink is not None else 1))
         return colour
+
+    def paint_box(
+        self,
+        painter: QPainter,
+        box: QRectF,
+        fill: QColor | str | None,
+        line: QColor | str | None = None,
+        width: float = 1.25,
+        radius: float = CONTROL_RADIUS,
+    ) -> None:
+        """Draw a box with round corners; without `fill` or `line` what is under it is seen."""
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setPen(self.pen(line, width) if line is not None else Qt.PenStyle.NoPen)
+        painter.setBrush(QColor(fill) if fill is not None else Qt.BrushStyle.NoBrush)
+        painter.drawRoundedRect(box, radius * self.scale, radius * self.scale)
+
+    def paint_cap(self, painter: QPainter, box: QRectF, key: str, ink: QColor | str, line: QColor | str) -> None:
+        """Draw a key cap."""
+        self.paint_box(painter, box, None, line, 1, CHIP_RADIUS)
+        painter.setPen(QColor(ink))
+        painter.setFont(self.font(12, QFont.Weight.Medium))
+        painter.drawText(box, Qt.AlignmentFlag.AlignCenter, key)
 
 
 @cache
@@ -101,7 +124,7 @@ class Look(QObject):
 
     def __init__(self, parent: QObject | None = None) -> None:
         super().__init__(parent)
-        self.theme = Theme()
+        self._apply(Theme())
 
     def set_dark(self, is_dark: bool) -> None:
         self._apply(replace(self.theme, colours=DARK if is_dark else LIGHT))
@@ -122,10 +145,37 @@ class Look(QObject):
         self.theme = theme
         app = QApplication.instance()
         if isinstance(app, QApplication):
-            app.setPalette(_palette(theme.colours))
-            app.setFont(theme.font(14))
-            app.setStyleSheet(_style_sheet(theme))
+            self._put_on(app)
         self.changed.emit()
+
+    def _put_on(self, app: QApplication) -> None:
+        """Give the application style, palette and fonts, and tell every widget, those within others first.
+
+        Qt itself would tell them in the order of their addresses, and what is laid out by hand measures its parts.
+        """
+        style = app.style()
+        if isinstance(style, ControlStyle):
+            style.theme = self.theme
+        else:
+            style = ControlStyle(self.theme)
+            app.setStyle(style)
+        palette = _palette(self.theme.colours)
+        app.setPalette(palette)
+        QToolTip.setPalette(palette)
+        app.setFont(self.theme.font(14))
+        choices = self.theme.font(16, QFont.Weight.DemiBold)
+        app.setFont(choices, "QComboBox")  # type: ignore[arg-type]  # the stubs ask for bytes, which it refuses
+        for window in app.topLevelWidgets():
+            for change in (QEvent.Type.ApplicationFontChange, QEvent.Type.ApplicationPaletteChange):
+                app.sendEvent(window, QEvent(change))  # which Qt would post, after the new style had been measured by
+            _tell_style_changed(window, style)
+
+
+def _tell_style_changed(widget: QWidget, style: QStyle) -> None:
+    for child in widget.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
+        _tell_style_changed(child, style)
+    style.polish(widget)
+    QApplication.sendEvent(widget, QEvent(QEvent.Type.StyleChange))
 
 
 def load_fonts() -> None:
@@ -165,34 +215,3 @@ def _palette(colours: Colours) -> QPalette:
     for one in (role.WindowText, role.Text, role.ButtonText):
         palette.setColor(QPalette.ColorGroup.Disabled, one, QColor(colours.disabled))
     return palette
-
-
-def _style_sheet(theme: Theme) -> str:
-    """Give the style of lists, tables and scroll bars; all else paints itself."""
-    c, px = theme.colours, theme.px
-    return f"""
-    QTableView {{ background: transparent; border: none; color: {c.ink}; outline: none; }}
-    QTableView QTableCornerButton::section, QTableView QHeaderView {{ background: transparent; border: none; }}
-    QTableView::item:selected {{ background: {c.sunken}; color: {c.ink}; }}
-    QPlainTextEdit {{ background: {c.surface}; color: {c.ink}; border: {px(1.25)}px solid {c.control};
-        border-radius: {px(8)}px; padding: {px(8)}px;
-        selection-background-color: {c.inv}; selection-color: {c.inv_ink}; }}
-    QScrollArea, QScrollArea > QWidget > QWidget {{ background: transparent; border: none; }}
-    QComboBox QAbstractItemView {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control};
-        selection-background-color: {c.inv}; selection-color: {c.inv_ink}; outline: none; }}
-    QComboBox QAbstractItemView::item {{ min-height: {px(44)}px; padding: 0 {px(12)}px; }}
-    QMenu {{ background: {c.surface}; color: {c.ink}; border: 1px solid {c.control}; padding: {px(4)}px; }}
-    QMenu::item {{ background: transparent; padding: {px(12)}px {px(28)}px {px(12)}px {px(16)}px; }}
-    QMenu::item:selected {{ background: {c.inv}; color: {c.inv_ink}; }}
-    QMenu::indicator {{ width: 0; }}
-    QProgressBar {{ background: {c.track}; border: none; border-radius: {px(4)}px; }}
-    QProgressBar::chunk {{ background: {c.ink}; border-radius: {px(4)}px; }}
-    QScrollBar:vertical {{ background: transparent; width: {px(12)}px; }}
-    QScrollBar:horizontal {{ background: transparent; height: {px(12)}px; }}
-    QScrollBar::handle {{ background: {c.control}; border-radius: {px(3)}px; margin: {px(3)}px;
-        min-height: {px(32)}px; min-width: {px(32)}px; }}
-    QScrollBar::add-line, QScrollBar::sub-line {{ width: 0; height: 0; }}
-    QScrollBar::add-page, QScrollBar::sub-page {{ background: transparent; }}
-    QAbstractScrollArea::corner {{ background: transparent; border: none; }}
-    QToolTip {{ background: {c.inv}; color: {c.inv_ink}; border: none; padding: {px(8)}px; }}
-    """

@@ -7,7 +7,6 @@ from PySide6.QtGui import (
     QColor,
     QFont,
     QImage,
-    QPalette,
     QResizeEvent,
     QTextBlock,
     QTextBlockFormat,
@@ -112,7 +111,6 @@ class HelpReader(QTextBrowser):
 
     def _set_text(self) -> None:
         document = self.document()
-        document.setDefaultFont(self._look.theme.font(BODY))
         document.setDocumentMargin(self._look.theme.px(8))
         document.setMarkdown(self._markdown, QTextDocument.MarkdownFeature.MarkdownDialectGitHub)
         self._set_pictures()
@@ -198,15 +196,7 @@ class HelpReader(QTextBrowser):
                     cell.setFormat(under)
 
     def _on_look_changed(self) -> None:
-        theme = self._look.theme
-        palette = self.palette()
-        for role, colour in (
-            (QPalette.ColorRole.Base, theme.colours.surface),
-            (QPalette.ColorRole.Text, theme.colours.ink),
-        ):
-            palette.setColor(role, QColor(colour))
-        for one in (self, self.viewport()):  # under a style sheet the viewport keeps the colours it was made with
-            one.setPalette(palette)
+        self.setFont(self._look.theme.font(BODY))
         at = self.verticalScrollBar().value()
         self._wrap()
         self._set_text()

@@ -112,7 +112,6 @@ class LineList(QListView):
         self.setMouseTracking(True)
         self.setFrameShape(QListView.Shape.NoFrame)
         self.setResizeMode(QListView.ResizeMode.Adjust)
-        self.setStyleSheet("background: transparent")
         self.viewport().setAutoFillBackground(False)
         self.setUniformItemSizes(not is_opened_by_click)  # patients may be thousands, sessions are of one patient
         if is_opened_by_click:

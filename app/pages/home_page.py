@@ -4,11 +4,11 @@ from collections.abc import Sequence
 from uuid import UUID
 
 from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent, QPalette
+from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
-from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.icons import Icon, paint_icon
@@ -287,7 +287,6 @@ class _Search(QLineEdit):
         self._look = look
         self.setAccessibleName(tr("Search patients"))
         self.setPlaceholderText(tr("Code, year, device"))
-        self.setStyleSheet("background: transparent; border: none")  # the frame is painted under the text
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         look.changed.connect(self._on_look_changed)
         self.textChanged.connect(self._on_look_changed)
@@ -300,24 +299,14 @@ class _Search(QLineEdit):
         return self.sizeHint()
 
     def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(c.control, 1.25))
-        painter.setBrush(QColor(c.surface))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
         side = px(22)
         paint_icon(painter, Icon.SEARCH, QRectF(px(14), (self.height() - side) / 2, side, side), c.ink2)
         if cap := self._cap():
-            painter.setPen(theme.pen(c.control, 1))
-            painter.drawRoundedRect(cap, CHIP_RADIUS * theme.scale, CHIP_RADIUS * theme.scale)
-            painter.setPen(QColor(c.ink2))
-            painter.setFont(theme.font(12, MEDIUM))
-            painter.drawText(cap, Qt.AlignmentFlag.AlignCenter, tr("Ctrl F"))
-        painter.end()
-        super().paintEvent(event)
+            theme.paint_cap(painter, cap, tr("Ctrl F"), c.ink2, c.control)
 
     def _cap(self) -> QRectF | None:
         """The place of the key cap, where it leaves room for the words."""
@@ -331,10 +320,6 @@ class _Search(QLineEdit):
     def _on_look_changed(self) -> None:
         theme = self._look.theme
         self.setFont(theme.font(16))
-        palette = self.palette()
-        palette.setColor(QPalette.ColorRole.Text, QColor(theme.colours.ink))
-        palette.setColor(QPalette.ColorRole.PlaceholderText, QColor(theme.colours.ink3))
-        self.setPalette(palette)
-        self.setTextMargins(theme.px(44), 0, theme.px(12), 0)
+        self.setTextMargins(theme.px(44) - 1, 0, theme.px(12) - 1, 0)  # the frame of a line is 1 px wide
         self.updateGeometry()
         self.update()

@@ -40,7 +40,8 @@ from app.reports.walk_figures import (
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icon_mark import IconMark
+from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.withheld_panel import WithheldPanel
 from app.wording import joined, later, tr

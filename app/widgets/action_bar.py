@@ -18,7 +18,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.button import HEIGHT, Button, Kind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.icons import Icon, paint_icon
@@ -293,27 +293,25 @@ class VerbButton(Button):
 
     def __init__(self, look: Look, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
-        self._is_primary, self._is_inverse = is_primary, False
+        self._is_primary = is_primary
         self._verb = Verb("")
         self.hide()
 
     @property
     def is_filled(self) -> bool:
-        return self._kind is Kind.PRIMARY
+        return self.face.kind is Kind.PRIMARY
 
     def show_verb(self, verb: Verb | None, kind: Kind, is_inverse: bool) -> None:
         self.setVisible(verb is not None)
         if verb is None:
             return
-        self._verb, self._kind, self._is_inverse = verb, kind, is_inverse
-        self._icon, self._key = verb.icon, verb.key
-        self._height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
+        self._verb = verb
+        height = STOP_HEIGHT if is_inverse and self._is_primary else HEIGHT
+        self.set_face(kind=kind, icon=verb.icon, key=verb.key, is_inverse=is_inverse, height=height)
         self.setText(verb.text)
         self.setAccessibleName(verb.text)
         self.setAccessibleDescription(tr("Key {key}").format(key=verb.key) if verb.key else "")
         self.setEnabled(verb.is_enabled)
-        self.updateGeometry()
-        self.update()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
         """Take a double click for the one press that it is meant as: the second would stop what the first began."""
@@ -321,58 +319,20 @@ class VerbButton(Button):
 
     def set_room(self, width: int) -> None:
         """Leave away the key cap, then the icon, where the words alone fill `width` pixels."""
-        self._icon, self._key = self._verb.icon, self._verb.key
+        self.set_face(icon=self._verb.icon, key=self._verb.key)
         if self.sizeHint().width() > width:
-            self._key = ""
+            self.set_face(key="")
         if self.sizeHint().width() > width:
-            self._icon = None
+            self.set_face(icon=None)
 
     def leave_icon_away(self) -> None:
-        self._icon = None
+        self.set_face(icon=None)
 
     def sizeHint(self) -> QSize:
         size = super().sizeHint()
         if self._is_primary:
             size.setWidth(max(size.width(), self._look.theme.px(PRIMARY_WIDTH)))
         return size
-
-    def _paint_frame(self, painter: QPainter) -> QColor:
-        c = self._look.theme.colours
-        if self._is_inverse:
-            return self._paint_inverse_frame(painter)
-        if self._kind is Kind.PRIMARY and not self.isEnabled():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(c.track))
-            radius = CONTROL_RADIUS * self._look.theme.scale
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(1, 1, -1, -1), radius, radius)
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            return QColor(c.disabled)
-        return super()._paint_frame(painter)
-
-    def _paint_inverse_frame(self, painter: QPainter) -> QColor:
-        """Draw the frame on the inverse bar, and the focus within it: the usual ring would be ink on ink."""
-        theme = self._look.theme
-        c = theme.colours
-        radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        ink = QColor(c.inv if self._kind is Kind.PRIMARY else c.inv_ink)
-        if not self.isEnabled():
-            ink = QColor(c.disabled)
-        painter.setPen(theme.pen(c.inv_ink2, 1.25) if self._kind is Kind.SECONDARY else Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(c.inv_ink) if self._kind is Kind.PRIMARY else Qt.BrushStyle.NoBrush)
-        painter.drawRoundedRect(box, radius, radius)
-        if self.isEnabled() and (self.underMouse() or self.isDown()):
-            veil = QColor(ink)
-            veil.setAlphaF(0.20 if self.isDown() else 0.08)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(veil)
-            painter.drawRoundedRect(box, radius, radius)
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-        if self.hasFocus():
-            inset = 3 * theme.scale
-            painter.setPen(theme.pen(ink, 2))
-            painter.drawRoundedRect(box.adjusted(inset, inset, -inset, -inset), radius - inset / 2, radius - inset / 2)
-        return ink
 
 
 class _Clock(QWidget):

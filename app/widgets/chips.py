@@ -2,23 +2,20 @@
 
 from collections.abc import Iterable, Sequence
 
-from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
+from PySide6.QtCore import QRect, QSize, Qt, Signal
+from PySide6.QtGui import QKeyEvent, QResizeEvent
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import CONTROL_RADIUS, Look
-from app.widgets.icons import Icon, paint_icon
-from app.widgets.painted_text import PaintedText
-from app.widgets.text import MEDIUM, SEMIBOLD
+from app.theme import Look
+from app.widgets.button import FacedButton, Kind
+from app.widgets.themed import Themed
 
 HEIGHT = 44
-PADDING = 12
-CHECK = 16
 GAP = 8
 STEPS = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
 
 
-class Chips(QWidget):
+class Chips(Themed):
     """`options` are key and word of each; they wrap into as many lines as they need.
 
     Parameters
@@ -40,7 +37,9 @@ class Chips(QWidget):
         for key, word in options:
             self._add(key, word)
         self._let_tab_reach(self.buttons[0])
-        look.changed.connect(self._arrange)
+
+    def apply_theme(self) -> None:
+        self._arrange()
 
     @property
     def chosen(self) -> tuple[str, ...]:
@@ -123,18 +122,11 @@ class Chips(QWidget):
         self.turned.emit()
 
 
-class _Chip(QAbstractButton):
+class _Chip(FacedButton):
     def __init__(self, look: Look, word: str, group: Chips) -> None:
-        super().__init__(group)
-        self._look, self._group = look, group
-        self.setText(word)
-        self.setAccessibleName(word)
+        super().__init__(look, word, Kind.CHIP, height=HEIGHT, parent=group)
+        self._group = group
         self.setCheckable(True)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-
-    def sizeHint(self) -> QSize:
-        theme = self._look.theme
-        return QSize(self._word_width() + self._check_width() + 2 * theme.px(PADDING), theme.px(HEIGHT))
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         by = STEPS.get(Qt.Key(event.key()))
@@ -142,36 +134,3 @@ class _Chip(QAbstractButton):
             super().keyPressEvent(event)
             return
         self._group.step(self, by)
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        c, px = theme.colours, theme.px
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.setPen(theme.pen(c.ink, 1.75) if self.isChecked() else theme.pen(c.control, 1.25))
-        painter.setBrush(QColor(c.surface))
-        painter.drawRoundedRect(box, radius, radius)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
-        if self.isChecked():
-            side = px(CHECK)
-            paint_icon(painter, Icon.CHECK, QRectF(px(PADDING), (self.height() - side) / 2, side, side), c.ink)
-        for text in self.painted_texts():
-            text.paint(painter, c)
-
-    def painted_texts(self) -> list[PaintedText]:
-        theme = self._look.theme
-        x = theme.px(PADDING) + self._check_width()
-        font = theme.font(14, SEMIBOLD if self.isChecked() else MEDIUM)
-        return [PaintedText(self.text(), QRectF(x, 0, self._word_width(), self.height()), font)]
-
-    def _check_width(self) -> int:
-        return self._look.theme.px(CHECK + 4) if self.isChecked() else 0
-
-    def _word_width(self) -> int:
-        """As wide as the word is when chosen, so that only the check makes room for itself."""
-        return QFontMetrics(self._look.theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())

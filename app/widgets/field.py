@@ -3,7 +3,7 @@
 import math
 import unicodedata
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
@@ -16,12 +16,15 @@ from PySide6.QtGui import (
     QPalette,
     QWheelEvent,
 )
-from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
-from app.theme import CONTROL_RADIUS, Look
+from app.style import IS_WRONG
+from app.theme import Look
 from app.widgets.chip import paint_chip
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icon_mark import IconMark
+from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 from core.body import Side
 
@@ -29,10 +32,11 @@ HEIGHT = 48
 PADDING = 14
 CHIP_PADDING = 10
 CHIP = 24
+KEPT_CLEAR = 3  # px: Qt's own, on either side of the text
 TEXT, SIDE_TEXT = 16, 20  # a side's fields hold one figure each, read beside the patient
 
 
-class Field(QWidget):
+class Field(Themed):
     """Keeps what was typed, right or wrong.
 
     Parameters
@@ -95,10 +99,9 @@ class Field(QWidget):
         self._box.textEdited.connect(self._on_text_edited)
         self._box.inputRejected.connect(self._on_input_rejected)
         self._box.editingFinished.connect(self._on_editing_finished)
-        look.changed.connect(self._on_look_changed)
         self.set_unit(unit)
         self.set_wrong("")
-        self._on_look_changed()
+        self.apply_theme()
 
     @property
     def line_edit(self) -> QLineEdit:
@@ -171,7 +174,7 @@ class Field(QWidget):
         self._is_pending = False
         self.committed.emit()
 
-    def _on_look_changed(self) -> None:
+    def apply_theme(self) -> None:
         px = self._look.theme.px
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(px(6))
@@ -253,24 +256,21 @@ class _Box(QLineEdit):
     def __init__(self, look: Look, side: Side | None, is_code: bool) -> None:
         super().__init__()
         self._look, self._side, self._is_code = look, side, is_code
-        self._is_wrong = False
         self.unit = ""
-        self.setStyleSheet("background: transparent; border: none")  # the frame is painted under the text
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         if side is not None:
             self.setAlignment(Qt.AlignmentFlag.AlignRight)
-        look.changed.connect(self._on_look_changed)
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_unit(self, unit: str) -> None:
         self.unit = unit
-        self._on_look_changed()
+        self._apply_theme()
 
     def set_wrong(self, is_wrong: bool) -> None:
         if is_wrong != self._is_wrong:
-            self._is_wrong = is_wrong
-            self._on_look_changed()
+            self.setProperty(IS_WRONG, is_wrong)
+            self._apply_theme()
 
     def sizeHint(self) -> QSize:
         margins = self.textMargins()
@@ -285,21 +285,16 @@ class _Box(QLineEdit):
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change a number
 
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._apply_theme()
+
     def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        border = c.caution_edge if self._is_wrong else c.control if self.isEnabled() else c.line
-        painter.setPen(theme.pen(border, 1.75 if self._is_wrong else 1.25))
-        painter.setBrush(QColor(c.caution if self._is_wrong else c.surface))
-        radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.drawRoundedRect(box, radius, radius)
-        if self.isEnabled() and self.underMouse() and not self.hasFocus():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(is_pressed=False))
-            painter.drawRoundedRect(box, radius, radius)
         if self._side is not None:
             top = (self.height() - px(CHIP)) / 2
             paint_chip(painter, QRectF(px(CHIP_PADDING), top, px(CHIP), px(CHIP)), self._side, theme)
@@ -308,33 +303,27 @@ class _Box(QLineEdit):
             painter.setPen(QColor(c.caution_ink if self._is_wrong else c.ink2 if self.isEnabled() else c.disabled))
             right = self.rect().adjusted(0, 0, -px(PADDING), 0)
             painter.drawText(right, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, self.unit)
-        painter.end()
-        super().paintEvent(event)
+
+    @property
+    def _is_wrong(self) -> bool:
+        return bool(self.property(IS_WRONG))
 
     def _unit_font(self) -> QFont:
         return self._look.theme.font(14 if self._side is None else SIDE_TEXT - 2)
 
-    def _on_look_changed(self) -> None:
+    def _apply_theme(self) -> None:
         theme = self._look.theme
-        c, px = theme.colours, theme.px
+        px = theme.px
         self.setFont(
             theme.font(TEXT if self._side is None else SIDE_TEXT, SEMIBOLD if self._is_code else REGULAR, self._is_code)
         )
-        palette = self.palette()
-        ink = QColor(c.caution_ink if self._is_wrong else c.ink)
-        for role, colour in (
-            (QPalette.ColorRole.Text, ink),
-            (QPalette.ColorRole.PlaceholderText, QColor(c.ink3)),
-            (QPalette.ColorRole.Highlight, QColor(c.inv)),
-            (QPalette.ColorRole.HighlightedText, QColor(c.inv_ink)),
-        ):
-            palette.setColor(role, colour)
-        palette.setColor(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text, QColor(c.disabled))
+        palette = QPalette()
+        if self._is_wrong:
+            palette.setColor(QPalette.ColorRole.Text, QColor(theme.colours.caution_ink))
         self.setPalette(palette)
         unit_width = QFontMetrics(self._unit_font()).horizontalAdvance(self.unit) + px(6) if self.unit else 0
         left = px(PADDING) if self._side is None else px(CHIP_PADDING + CHIP + 8)
-        # Qt itself keeps 2 px clear on either side of the text
-        self.setTextMargins(left - 2, 0, px(PADDING) + unit_width - 2, 0)
+        self.setTextMargins(left - KEPT_CLEAR, 0, px(PADDING) + unit_width - KEPT_CLEAR, 0)
         self.updateGeometry()
         self.update()
 

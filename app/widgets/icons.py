@@ -4,12 +4,10 @@ from enum import StrEnum
 from functools import cache
 from importlib.resources import files
 
-from PySide6.QtCore import QByteArray, QRectF, QSize
-from PySide6.QtGui import QColor, QPainter, QPaintEvent
+from PySide6.QtCore import QByteArray, QRectF
+from PySide6.QtGui import QColor, QPainter
 from PySide6.QtSvg import QSvgRenderer
-from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
 from core.findings import Severity
 
 
@@ -64,32 +62,3 @@ def _drawing(icon: Icon, ink: str) -> QSvgRenderer:
     """Kept, since painters ask for the same few thousands of times a minute."""
     svg = (files("resources") / "icons" / f"{icon}.svg").read_bytes()
     return QSvgRenderer(QByteArray(svg.replace(b"currentColor", ink.encode())))
-
-
-class IconMark(QWidget):
-    """An icon beside words. The words say what it says, so a reader of screens passes over it."""
-
-    def __init__(self, look: Look, icon: Icon, size: float = 20, tone: str = "ink") -> None:
-        super().__init__()
-        self._look, self._icon, self._size, self._tone = look, icon, size, tone
-        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
-
-    def set_icon(self, icon: Icon) -> None:
-        self._icon = icon
-        self.update()
-
-    def sizeHint(self) -> QSize:
-        side = self._look.theme.px(self._size)
-        return QSize(side, side)
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        painter = QPainter(self)
-        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))
-
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -2,16 +2,15 @@
 
 from collections.abc import Sequence
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtCore import QRectF, Signal
+from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import CONTROL_RADIUS, Look
-from app.widgets.text import MEDIUM, SEMIBOLD
+from app.theme import Look
+from app.widgets.button import FacedButton, Kind
 
 HEIGHT = 52
 PLAIN_HEIGHT = 48  # without second lines, as high as a field
-PADDING = 14
 
 
 class Segmented(QWidget):
@@ -35,7 +34,6 @@ class Segmented(QWidget):
             row.addWidget(segment, 1)
         next(iter(self._segments.values())).setChecked(True)
         self._group.buttonToggled.connect(self._on_button_toggled)
-        look.changed.connect(self.update)
 
     @property
     def segments(self) -> list[QAbstractButton]:
@@ -72,13 +70,9 @@ class Segmented(QWidget):
             segment.set_brief(is_brief)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.line, 1))
-        painter.setBrush(QColor(theme.colours.sunken))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+        c = self._look.theme.colours
+        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        self._look.theme.paint_box(QPainter(self), box, c.sunken, c.line, 1)
 
     def _leave(self, key: str, must_leave: bool) -> None:
         """Go to the first choice that can be chosen, if `key` was chosen and no longer can be."""
@@ -91,77 +85,27 @@ class Segmented(QWidget):
             self.chosen.emit(next(key for key, segment in self._segments.items() if segment is button))
 
 
-class _Segment(QAbstractButton):
+class _Segment(FacedButton):
     def __init__(self, look: Look, word: str, note: str, height: float, parent: QWidget) -> None:
-        super().__init__(parent)
-        self._look, self._note, self._height, self._reason = look, note, height, ""
-        self._is_brief = False
-        self.setText(word)
+        super().__init__(look, word, Kind.SEGMENT, height=height, parent=parent)
+        self._note, self._reason, self._is_brief = note, "", False
         self.setCheckable(True)
         self.setAutoExclusive(True)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
-        self._name()
-        look.changed.connect(self._on_look_changed)
+        self._tell()
 
     def set_word(self, word: str) -> None:
         self.setText(word)
-        self._name()
-        self._on_look_changed()
+        self._tell()
 
     def set_brief(self, is_brief: bool) -> None:
-        if is_brief != self._is_brief:
-            self._is_brief = is_brief
-            self._on_look_changed()
+        self._is_brief = is_brief
+        self._tell()
 
     def set_reason(self, reason: str) -> None:
         self._reason = reason
         self.setEnabled(not reason)
-        self._name()
-        self._on_look_changed()
+        self._tell()
 
-    def sizeHint(self) -> QSize:
-        theme = self._look.theme
-        word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(self.text())
-        note = QFontMetrics(theme.font(12)).horizontalAdvance(self._second_line())
-        return QSize(max(word, note) + 2 * theme.px(PADDING), theme.px(self._height) - 4)
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        c = theme.colours
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        radius = (CONTROL_RADIUS - 1) * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        if self.isChecked():
-            painter.setPen(theme.pen(c.ink, 1.75))
-            painter.setBrush(QColor(c.surface))
-            painter.drawRoundedRect(box, radius, radius)
-        elif self.isEnabled() and (self.underMouse() or self.isDown()):
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
-        ink = c.disabled if not self.isEnabled() else c.ink if self.isChecked() else c.ink2
-        note_ink = c.ink2  # also when switched off: the reason is to be read
-        height, note_height = theme.px(20), theme.px(16) if self._second_line() else 0
-        top = (self.height() - height - note_height) // 2
-        painter.setPen(QColor(ink))
-        painter.setFont(theme.font(14, SEMIBOLD if self.isChecked() else MEDIUM))
-        painter.drawText(0, top, self.width(), height, Qt.AlignmentFlag.AlignCenter, self.text())
-        painter.setPen(QColor(note_ink))
-        painter.setFont(theme.font(12))
-        painter.drawText(0, top + height, self.width(), note_height, Qt.AlignmentFlag.AlignCenter, self._second_line())
-
-    def _second_line(self) -> str:
-        return self._reason or ("" if self._is_brief else self._note)
-
-    def _name(self) -> None:
+    def _tell(self) -> None:
+        self.set_face(note=self._reason or ("" if self._is_brief else self._note))
         self.setAccessibleName(", ".join(filter(None, [self.text(), self._reason or self._note])))
-
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()

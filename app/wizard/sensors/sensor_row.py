@@ -382,7 +382,6 @@ class _PlaceMenu(QMenu):
             action = QAction(words, self)
             action.setCheckable(True)
             action.setChecked(one is site)
-            action.setFont(look.theme.font(16, SEMIBOLD if one is site else REGULAR))
             action.setData(None if one is None else one.value)
             group.addAction(action)
             self.addAction(action)

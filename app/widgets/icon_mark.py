@@ -1,0 +1,32 @@
+"""An icon that stands in a page beside its words."""
+
+from PySide6.QtCore import QRectF, QSize
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
+
+from app.theme import Look
+from app.widgets.icons import Icon, paint_icon
+
+
+class IconMark(QWidget):
+    """An icon beside words. The words say what it says, so a reader of screens passes over it."""
+
+    def __init__(self, look: Look, icon: Icon, size: float = 20, tone: str = "ink") -> None:
+        super().__init__()
+        self._look, self._icon, self._size, self._tone = look, icon, size, tone
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
+
+    def set_icon(self, icon: Icon) -> None:
+        self._icon = icon
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        side = self._look.theme.px(self._size)
+        return QSize(side, side)
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))
