@@ -24,6 +24,7 @@ from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 BAR = 72
@@ -69,7 +70,7 @@ class BarState:
     has_back: bool = True
 
 
-class ActionBar(QWidget):
+class ActionBar(Themed):
     """Grows by a line where a narrow window or a long language leaves no room; nothing in it is ever cut."""
 
     back_pressed = Signal()
@@ -96,7 +97,6 @@ class ActionBar(QWidget):
         self.back.clicked.connect(self.back_pressed)
         self.primary.clicked.connect(self.primary_pressed)
         self.sound.clicked.connect(self.sound_pressed)
-        look.changed.connect(self._on_look_changed)
         self._show()
 
     @property
@@ -342,7 +342,6 @@ class _Clock(QWidget):
         super().__init__(parent)
         self._look, self._time = look, "00:00"
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self.updateGeometry)
 
     def show_elapsed(self, elapsed_s: float) -> None:
         time = clock_time(elapsed_s)

@@ -2,12 +2,13 @@
 
 from PySide6.QtCore import QPointF, QRectF, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 HEIGHT = 64
@@ -15,7 +16,7 @@ MARK = 36
 ABOVE = 12  # clear of the header; gone together with the banner
 
 
-class Banner(QWidget):
+class Banner(Themed):
     """Hidden until it is told something."""
 
     dismissed = Signal()
@@ -41,7 +42,6 @@ class Banner(QWidget):
         self._row.addWidget(self._dismiss)
         self._act.clicked.connect(self.acted)
         self._dismiss.clicked.connect(self._on_dismiss_clicked)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.hide()
 
@@ -64,11 +64,8 @@ class Banner(QWidget):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(c.caution_edge, 1))
-        painter.setBrush(QColor(c.caution))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5), radius, radius)
+        box = QRectF(self.rect()).adjusted(0.5, px(ABOVE) + 0.5, -0.5, -0.5)
+        theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         centre = QPointF(px(16 + MARK / 2), (self.height() + px(ABOVE)) / 2)
         painter.setPen(theme.pen(c.caution_edge, 1))
         painter.setBrush(QColor(c.caution_mark))
@@ -86,4 +83,3 @@ class Banner(QWidget):
         self._row.setContentsMargins(px(16 + MARK + 12), px(ABOVE + 8), px(8), px(8))
         self._row.setSpacing(px(16))
         self.setMinimumHeight(px(HEIGHT + ABOVE))
-        self.update()

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from PySide6.QtCore import QAbstractTableModel, QModelIndex, QSize, Qt
+from PySide6.QtCore import QAbstractTableModel, QEvent, QModelIndex, QSize, Qt
 from PySide6.QtGui import QKeyEvent, QKeySequence, QResizeEvent
 from PySide6.QtWidgets import QApplication, QHeaderView, QStyledItemDelegate, QStyleOptionViewItem, QTableView
 
@@ -40,12 +40,16 @@ class BareTable(QTableView):
             self.verticalHeader().hide()
             self.verticalHeader().setMinimumSectionSize(1)
         self.setItemDelegate(delegate)
-        self._look.changed.connect(self.fit)
         self.fit()
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
         raise NotImplementedError
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self.fit()
 
     def minimumSizeHint(self) -> QSize:
         height = self.horizontalHeader().height() + sum(self.rowHeight(row) for row in range(self.model().rowCount()))

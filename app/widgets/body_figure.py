@@ -78,7 +78,6 @@ class BodyFigure(QWidget):
         self._emphasised: Site | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
         self._name()
-        look.changed.connect(self._on_look_changed)
 
     @property
     def is_from_behind(self) -> bool:
@@ -102,11 +101,11 @@ class BodyFigure(QWidget):
         """Turn the figure's back to you: the patient's right then stands at the right."""
         self._is_from_behind = is_from_behind
         self._name()
-        self._on_look_changed()
+        self._refresh()
 
     def set_legs_only(self, is_legs_only: bool) -> None:
         self._is_legs_only = is_legs_only
-        self._on_look_changed()
+        self._refresh()
 
     def keep_beside(self, width: int) -> None:
         """Leave `width` px on either side of the legs for what stands there; the figure is as much smaller."""
@@ -215,7 +214,7 @@ class BodyFigure(QWidget):
             places.append(tr("marked: {site}").format(site=name_of(self._emphasised)))
         self.setAccessibleDescription("; ".join(places))
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()
 

@@ -47,7 +47,6 @@ class Chip(QWidget):
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(_leg_name(side))
-        look.changed.connect(self._on_look_changed)
 
     def sizeHint(self) -> QSize:
         chip = self._look.theme.px(CHIP)
@@ -59,10 +58,6 @@ class Chip(QWidget):
     def paintEvent(self, _event: QPaintEvent) -> None:
         paint_chip(QPainter(self), QRectF(self.rect()), self._side, self._look.theme)
 
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()
-
 
 class SideKey(QWidget):
     """Chip and line of one leg: the key to the curves."""
@@ -72,7 +67,6 @@ class SideKey(QWidget):
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAccessibleName(_leg_name(side))
-        look.changed.connect(self._on_look_changed)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -90,10 +84,6 @@ class SideKey(QWidget):
         painter.setPen(theme.side_pen(self._side, 2))
         middle = self.height() // 2
         painter.drawLine(chip + theme.px(8), middle, self.width(), middle)
-
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()
 
 
 def _leg_name(side: Side) -> str:

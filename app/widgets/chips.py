@@ -38,7 +38,7 @@ class Chips(Themed):
             self._add(key, word)
         self._let_tab_reach(self.buttons[0])
 
-    def apply_theme(self) -> None:
+    def _on_look_changed(self) -> None:
         self._arrange()
 
     @property

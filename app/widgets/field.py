@@ -101,7 +101,7 @@ class Field(Themed):
         self._box.editingFinished.connect(self._on_editing_finished)
         self.set_unit(unit)
         self.set_wrong("")
-        self.apply_theme()
+        self._on_look_changed()
 
     @property
     def line_edit(self) -> QLineEdit:
@@ -174,7 +174,7 @@ class Field(Themed):
         self._is_pending = False
         self.committed.emit()
 
-    def apply_theme(self) -> None:
+    def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(px(6))

@@ -24,17 +24,13 @@ class FocusRing(QWidget):
         app = QApplication.instance()
         if isinstance(app, QApplication):
             app.focusChanged.connect(self._on_focus_changed)
-        look.changed.connect(self.update)
         self.hide()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.ink, WIDTH))
         half = WIDTH * theme.scale / 2
-        radius = (CONTROL_RADIUS + DISTANCE) * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(half, half, -half, -half), radius, radius)
+        box = QRectF(self.rect()).adjusted(half, half, -half, -half)
+        theme.paint_box(QPainter(self), box, None, theme.colours.ink, WIDTH, CONTROL_RADIUS + DISTANCE)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         moved = (QEvent.Type.Move, QEvent.Type.Resize, QEvent.Type.Show, QEvent.Type.Hide)

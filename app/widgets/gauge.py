@@ -125,7 +125,6 @@ class Gauge(QWidget):
         self._face = GaugeFace()
         self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        look.changed.connect(self._on_look_changed)
         self._name()
 
     @property
@@ -145,7 +144,7 @@ class Gauge(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._refresh()
 
     def sizeHint(self) -> QSize:
         return (COMPACT_CARD if self._is_compact else CARD) * self._look.theme.scale
@@ -397,7 +396,7 @@ class Gauge(QWidget):
         parts.append(face.note or (tr("move now") if face.state is GaugeState.NOW else state_word(face.state)))
         self.setAccessibleName(", ".join(parts))
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()
 

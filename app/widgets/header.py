@@ -1,6 +1,6 @@
 """Whose session is on the screen, and is it real? The line at the top of every page."""
 
-from PySide6.QtCore import QPoint, QPointF, QRect, QSize, Qt
+from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
@@ -9,6 +9,7 @@ from app.widgets.grid import LEAST, side_margin
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.strip_button import StripButton
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 from core.body import Side
 
@@ -17,7 +18,7 @@ COMPACT_HEIGHT = 48
 FACTS_AT_LEAST = 120  # narrower, the lines break after every word
 
 
-class Header(QWidget):
+class Header(Themed):
     """With the rail beside it, it needs neither mark nor name; `fold` and `stopwatch` are hidden until they are used.
 
     Where all does not fit into one line, what is at the right moves to a second.
@@ -44,7 +45,6 @@ class Header(QWidget):
         self.fold.resized.connect(self._arrange)
         self._shown: tuple[str, str, bool] | None = None
         self.show_session("", "", is_simulated=False)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def show_session(self, code: str, facts: str, is_simulated: bool) -> None:
@@ -136,7 +136,6 @@ class Header(QWidget):
 
     def _on_look_changed(self) -> None:
         self._arrange()
-        self.update()
 
 
 class Mark(QWidget):
@@ -146,7 +145,6 @@ class Mark(QWidget):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self.updateGeometry)
 
     def sizeHint(self) -> QSize:
         side = self._look.theme.px(28)
@@ -173,19 +171,15 @@ class _Tag(Text):
     def __init__(self, look: Look, text: str) -> None:
         super().__init__(look, text, size=13, weight=SEMIBOLD, tone="caution_ink")
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_margin_changed)
-        self._on_margin_changed()
 
     def paintEvent(self, event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.caution_edge, 1.25))
-        painter.setBrush(QColor(theme.colours.caution))
-        painter.drawRoundedRect(self.rect().adjusted(1, 1, -1, -1), theme.px(CHIP_RADIUS), theme.px(CHIP_RADIUS))
+        c, painter = self._look.theme.colours, QPainter(self)
+        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        self._look.theme.paint_box(painter, box, c.caution, c.caution_edge, radius=CHIP_RADIUS)
         painter.end()
         super().paintEvent(event)
 
-    def _on_margin_changed(self) -> None:
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         px = self._look.theme.px
         self.setContentsMargins(px(10), px(4), px(10), px(4))

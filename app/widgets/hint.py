@@ -34,7 +34,6 @@ class HintBand(QWidget):
         self._elapsed, self._usual = "", ""
         self._is_compact = False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     @property
     def hint(self) -> Hint:
@@ -62,7 +61,7 @@ class HintBand(QWidget):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._refresh()
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -76,10 +75,7 @@ class HintBand(QWidget):
         theme, hint = self._look.theme, self._hint
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(c.inv))
-        painter.drawRoundedRect(QRectF(self.rect()), CARD_RADIUS * theme.scale, CARD_RADIUS * theme.scale)
+        theme.paint_box(painter, QRectF(self.rect()), c.inv, radius=CARD_RADIUS)
         painter.setBrush(Qt.BrushStyle.NoBrush)
         middle = self.height() / 2
         side = px(40) if self._is_compact else px(70)
@@ -138,6 +134,6 @@ class HintBand(QWidget):
         height = px(64 if self._is_compact else 88)
         return QRectF(self.width() - px(24) - width, (self.height() - height) / 2, width, height)
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()

@@ -39,7 +39,6 @@ class _Line(QWidget):
         super().__init__()
         self._look, self._pen_of = look, pen_of
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)
-        look.changed.connect(self.updateGeometry)
 
     def sizeHint(self) -> QSize:
         return QSize(self._look.theme.px(KEY), self._look.theme.px(16))

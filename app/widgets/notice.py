@@ -1,18 +1,19 @@
 """What is so and what follows, beside what it is about, after an icon. Yellow where it needs a look."""
 
 from PySide6.QtCore import QRectF, Qt
-from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, QPaintEvent
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 
 ICON = 22
 PADDING = 10
 
 
-class Notice(QWidget):
+class Notice(Themed):
     """Keeps its place while it has nothing to say, unless it is hidden."""
 
     def __init__(self, look: Look, size: float = 18) -> None:
@@ -28,7 +29,6 @@ class Notice(QWidget):
         self._words.addWidget(self._then)
         self._row = QHBoxLayout(self)
         self._row.addLayout(self._words, 1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -56,12 +56,9 @@ class Notice(QWidget):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         if self._is_caution:
-            painter.setPen(theme.pen(c.caution_edge, 1))
-            painter.setBrush(QColor(c.caution))
-            radius = CONTROL_RADIUS * theme.scale
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+            box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+            theme.paint_box(painter, box, c.caution, c.caution_edge, 1)
         if self._icon is not None:
             first = self._what if self._what.text() else self._then
             wraps = Qt.TextFlag.TextWordWrap
@@ -75,4 +72,3 @@ class Notice(QWidget):
         px = self._look.theme.px
         self._row.setContentsMargins(px(PADDING + ICON + 8), px(PADDING), px(PADDING), px(PADDING))
         self._words.setSpacing(px(2))
-        self.update()

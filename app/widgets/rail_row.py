@@ -12,7 +12,6 @@ from PySide6.QtGui import (
     QFontMetrics,
     QKeyEvent,
     QPainter,
-    QPainterPath,
     QPaintEvent,
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
@@ -77,7 +76,6 @@ class RailButton(QAbstractButton):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setCursor(Qt.CursorShape.PointingHandCursor)
-        look.changed.connect(self._on_look_changed)
 
     @property
     def is_current(self) -> bool:
@@ -92,7 +90,7 @@ class RailButton(QAbstractButton):
             parts.insert(0, tr("Step {number} of {count}").format(number=number, count=count))
         self.setText(row.title)
         self.setAccessibleName(", ".join(filter(None, parts)))
-        self._on_look_changed()
+        self._refresh()
 
     def show_below(self, row: BelowRow) -> None:
         self._row, self._number, self._count = RailRow(row.title, icon=row.icon), 0, 0
@@ -100,11 +98,11 @@ class RailButton(QAbstractButton):
         self.setText(row.title)
         self.setAccessibleName(row.title)
         self.setAccessibleDescription(tr("Key {key}").format(key=row.key) if row.key else "")
-        self._on_look_changed()
+        self._refresh()
 
     def set_form(self, form: RailForm) -> None:
         self._form = form
-        self._on_look_changed()
+        self._refresh()
 
     @property
     def note(self) -> str:
@@ -156,10 +154,8 @@ class RailButton(QAbstractButton):
         if self.is_current:
             self._paint_join(painter)
         elif self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            radius = CONTROL_RADIUS * theme.scale
-            painter.drawRoundedRect(QRectF(self.rect()).adjusted(0, 2, -theme.px(6), -2), radius, radius)
+            box = QRectF(self.rect()).adjusted(0, 2, -theme.px(6), -2)
+            theme.paint_box(painter, box, theme.veil(self.isDown()))
         if self._row.icon is not None:
             ring = self._ring()
             inset = (ring.width() - theme.px(20)) / 2
@@ -169,9 +165,7 @@ class RailButton(QAbstractButton):
             self._paint_line(painter)
             self._paint_ring(painter)
         if self._key and self._form is not RailForm.COMPACT:
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.setPen(theme.pen(c.control, 1))
-            painter.drawRoundedRect(self._cap(), CHIP_RADIUS * theme.scale, CHIP_RADIUS * theme.scale)
+            theme.paint_box(painter, self._cap(), None, c.control, 1, CHIP_RADIUS)
         for text in self.painted_texts():
             text.paint(painter, c)
 
@@ -205,17 +199,10 @@ class RailButton(QAbstractButton):
         """Draw the ground that joins the row to the page, and the bar at its outer edge."""
         theme = self._look.theme
         c, px = theme.colours, theme.px
-        radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(0, px(2), radius, -px(2))  # its right corners lie outside
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(QColor(c.ground))
-        shape = QPainterPath()
-        shape.addRoundedRect(box, radius, radius)
-        painter.drawPath(shape)
-        painter.setBrush(QColor(c.ink))
+        beyond = CONTROL_RADIUS * theme.scale  # its right corners lie outside
+        theme.paint_box(painter, QRectF(self.rect()).adjusted(0, px(2), beyond, -px(2)), c.ground)
         reach = px(32)
-        bar = QRectF(0, (self.height() - reach) / 2, px(BAR), reach)
-        painter.drawRoundedRect(bar, bar.width() / 2, bar.width() / 2)
+        theme.paint_box(painter, QRectF(0, (self.height() - reach) / 2, px(BAR), reach), c.ink, radius=BAR / 2)
 
     def _paint_line(self, painter: QPainter) -> None:
         """Draw this row's part of the line that joins the rings."""
@@ -289,7 +276,7 @@ class RailButton(QAbstractButton):
             height_for(self._row.note, self._look.theme.font(12), width),
         )
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import Look
 from app.widgets.body_figure import paint_legs
@@ -13,6 +13,7 @@ from app.widgets.grid import LEAST, side_margin
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.sensor_tile import SensorTile, marks
 from app.widgets.text import SEMIBOLD
+from app.widgets.themed import Themed
 from app.widgets.tile_widget import TileWidget
 from app.wording import tr
 from core.body import Segment, Side, Site
@@ -25,7 +26,7 @@ BETWEEN = 22  # of the sides, where the legs are left away
 EVERY_MS = 250  # faster changes cannot be read
 
 
-class SensorStrip(QWidget):
+class SensorStrip(Themed):
     """One stop for Tab; the arrows go from tile to tile."""
 
     turned_bad = Signal()
@@ -47,7 +48,6 @@ class SensorStrip(QWidget):
             widget.moved.connect(self._on_moved)
         self._legs = QRect()
         self._set_tab_stop(next(iter(self.widgets.values())))
-        look.changed.connect(self._on_look_changed)
         self._arrange()
 
     @property
@@ -79,7 +79,6 @@ class SensorStrip(QWidget):
         """Turn the tiles with the figure: from behind, the patient's left stands at the left."""
         self._is_from_behind = is_from_behind
         self._arrange()
-        self.update()
 
     def focus(self) -> None:
         stop = next(widget for widget in self.widgets.values() if widget.focusPolicy() is Qt.FocusPolicy.StrongFocus)

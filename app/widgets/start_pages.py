@@ -1,18 +1,19 @@
 """What stands in the place of a result before there is one: an empty page, and a page that works."""
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import later, tr
 
 SENTENCE = later("No session is open.")
 
 
-class EmptyPage(QWidget):
+class EmptyPage(Themed):
     """One sentence and the two ways on."""
 
     def __init__(self, look: Look) -> None:
@@ -33,7 +34,6 @@ class EmptyPage(QWidget):
         self._column.addLayout(self._row)
         self._column.addWidget(self._hint, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def set_narrow(self, is_narrow: bool) -> None:
@@ -48,7 +48,7 @@ class EmptyPage(QWidget):
         self._row.setSpacing(px(16))
 
 
-class WorkingPage(QWidget):
+class WorkingPage(Themed):
     """What is being done, how far it is, and the way out."""
 
     stop_pressed = Signal()
@@ -72,7 +72,6 @@ class WorkingPage(QWidget):
         self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
         self.stop.clicked.connect(self.stop_pressed)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def begin(self, title: str) -> None:

@@ -15,6 +15,7 @@ from app.widgets.header import Mark
 from app.widgets.icons import Icon
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 
@@ -34,7 +35,7 @@ def home_below() -> tuple[BelowRow, ...]:
     )
 
 
-class StepRail(QWidget):
+class StepRail(Themed):
     """One stop for Tab: within it the arrows go from row to row, Enter or Space presses one."""
 
     step_pressed = Signal(int)
@@ -54,7 +55,6 @@ class StepRail(QWidget):
         self._tag = _NameTag(look, self)
         self._build()
         self.show_below(wizard_below())
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

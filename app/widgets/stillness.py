@@ -45,7 +45,6 @@ class CountRing(QWidget):
         super().__init__()
         self._look, self._face = look, RingFace()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        look.changed.connect(self._on_look_changed)
 
     def show_face(self, face: RingFace) -> None:
         if face == self._face:
@@ -126,10 +125,6 @@ class CountRing(QWidget):
         word = QRectF(cap.right() + theme.px(8), line.top(), word_width + 2, line.height())
         painter.drawText(word, Qt.AlignmentFlag.AlignVCenter, face.word)
 
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()
-
 
 @dataclass(frozen=True, slots=True)
 class _Row:
@@ -152,11 +147,10 @@ class MovementBars(QWidget):
         self._limit = 1.0
         self._rows: dict[str, _Row] = {}
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._refresh()
 
     def show_movement(
         self,
@@ -179,7 +173,7 @@ class MovementBars(QWidget):
         }
         if list(rows) != list(self._rows) or limit_deg_s != self._limit:
             self._rows, self._limit = rows, limit_deg_s
-            self._on_look_changed()
+            self._refresh()
             return
         for number, (site, row) in enumerate(rows.items()):
             if row != self._rows[site]:
@@ -257,7 +251,7 @@ class MovementBars(QWidget):
     def _figure_width(self) -> int:
         return QFontMetrics(self._look.theme.font(14, SEMIBOLD)).horizontalAdvance("000.0") + self._look.theme.px(INSET)
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()
 

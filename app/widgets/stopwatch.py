@@ -22,7 +22,6 @@ class Stopwatch(QWidget):
         super().__init__()
         self._look, self._is_compact, self._elapsed_s = look, False, 0
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
         self.show_elapsed(0.0)
 
     def show_elapsed(self, elapsed_s: float) -> None:
@@ -35,7 +34,7 @@ class Stopwatch(QWidget):
     def set_compact(self, is_compact: bool) -> None:
         """Leave the line away; its words stay."""
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._refresh()
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -101,6 +100,6 @@ class Stopwatch(QWidget):
         time = max(large.horizontalAdvance("00:00"), large.horizontalAdvance(clock_time(self._elapsed_s)))
         return max(widest + theme.px(2), theme.px(LINE)), time + theme.px(2)
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 from PySide6.QtCore import QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.body_figure import paint_legs
 from app.widgets.painted_text import PaintedText
 from app.widgets.sensor_tile import SensorTile, marks, sentence
@@ -28,7 +28,6 @@ class StripButton(QAbstractButton):
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.show_tiles({})
-        look.changed.connect(self._on_look_changed)
 
     def show_tiles(self, tiles: Mapping[Site, SensorTile]) -> None:
         words = sentence(tiles)
@@ -36,12 +35,12 @@ class StripButton(QAbstractButton):
             self._tiles = dict(tiles)
             self.setText(words)
             self.setAccessibleName(words)
-            self._on_look_changed()
+            self._refresh()
             self.resized.emit()
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_look_changed()
+        self._refresh()
 
     def sizeHint(self) -> QSize:
         theme = self._look.theme
@@ -60,17 +59,12 @@ class StripButton(QAbstractButton):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        pen = theme.pen(c.caution_edge, 1.75) if self._is_bad() else theme.pen(c.control, 1.25)
-        painter.setPen(theme.pen(c.ink, 1.75) if self.isChecked() else pen)
-        painter.setBrush(QColor(c.caution if self._is_bad() else c.ground))
-        radius = CONTROL_RADIUS * theme.scale
-        box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.drawRoundedRect(box, radius, radius)
+        is_bad, box = self._is_bad(), QRectF(self.rect()).adjusted(1, 1, -1, -1)
+        line = c.ink if self.isChecked() else c.caution_edge if is_bad else c.control
+        width = 1.75 if self.isChecked() or is_bad else 1.25
+        theme.paint_box(painter, box, c.caution if is_bad else c.ground, line, width)
         if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+            theme.paint_box(painter, box, theme.veil(self.isDown()))
         legs = QRectF(px(12), px(5), px(24), self.height() - 2 * px(5))
         paint_legs(painter, legs, theme, None, marks(self._tiles))
         for text in self.painted_texts():
@@ -85,6 +79,6 @@ class StripButton(QAbstractButton):
     def _text_left(self) -> int:
         return self._look.theme.px(44)
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()

@@ -1,6 +1,6 @@
 """A piece of text that follows the theme. It is never cut short: it wraps, or it asks for the room it needs."""
 
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
 
@@ -30,8 +30,12 @@ class Text(QLabel):
         self._size, self._weight, self._tone, self._is_code = size, weight, tone, is_code
         self.setTextFormat(Qt.TextFormat.PlainText)  # what files hold is never markup
         self.setWordWrap(wraps)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._on_look_changed()
 
     def set_size(self, size: float) -> None:
         if size != self._size:

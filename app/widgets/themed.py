@@ -5,13 +5,15 @@ from PySide6.QtWidgets import QWidget
 
 
 class Themed(QWidget):
-    """What it paints is painted anew by itself; `apply_theme` sets margins and sizes, and is called at first by
-    whoever derives from it."""
+    """`_on_look_changed` sets margins and sizes; what is painted, Qt paints anew and measures by itself.
+
+    Whoever derives from it calls it once its parts are there.
+    """
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.StyleChange:
-            self.apply_theme()
+            self._on_look_changed()
 
-    def apply_theme(self) -> None:
+    def _on_look_changed(self) -> None:
         raise NotImplementedError

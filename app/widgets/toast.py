@@ -4,7 +4,6 @@ from PySide6.QtCore import QEvent, QRectF, QTimer, Signal
 from PySide6.QtGui import (
     QAccessible,
     QAccessibleAnnouncementEvent,
-    QColor,
     QEnterEvent,
     QHideEvent,
     QPainter,
@@ -12,10 +11,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.action_bar import Verb, VerbButton
 from app.widgets.button import Kind
 from app.widgets.text import Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 WIDTH = 320
@@ -23,7 +23,7 @@ HEIGHT = 56
 STAYS_MS = 6000
 
 
-class Toast(QWidget):
+class Toast(Themed):
     """Hidden until it has something to offer. The shell places it and knows its key."""
 
     undone = Signal()
@@ -42,7 +42,6 @@ class Toast(QWidget):
         self._row.addWidget(self.button)
         self._clock.timeout.connect(self._on_timeout)
         self.button.clicked.connect(self.undo)
-        look.changed.connect(self._on_look_changed)
         self.hide()
         self._on_look_changed()
 
@@ -89,13 +88,9 @@ class Toast(QWidget):
         self._clock.stop()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(theme.pen(theme.colours.surface, 1))  # so that it stands out on the inverse bar too
-        painter.setBrush(QColor(theme.colours.inv))
-        radius = CONTROL_RADIUS * theme.scale
-        painter.drawRoundedRect(QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5), radius, radius)
+        c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        line = c.surface  # so that it stands out on the inverse bar too
+        self._look.theme.paint_box(QPainter(self), box, c.inv, line, 1)
 
     def _on_timeout(self) -> None:
         if self.button.hasFocus():
@@ -114,4 +109,3 @@ class Toast(QWidget):
         self._row.setContentsMargins(px(16), px(4), px(4), px(4))
         self._row.setSpacing(px(12))
         self._fit()
-        self.update()

@@ -2,12 +2,13 @@
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.gates_in_words import verdict_word
 from app.theme import CONTROL_RADIUS, Look
 from app.widgets.chip import Chip
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import capitalised
 from core.body import Side
 from core.verdicts.model import Verdict
@@ -16,7 +17,7 @@ PADDING = 8
 LEAST_WIDTH = 260  # narrower, its sentences have no room in height
 
 
-class WithheldPanel(QWidget):
+class WithheldPanel(Themed):
     """Hidden while there is nothing to say."""
 
     def __init__(self, look: Look, side: Side) -> None:
@@ -32,7 +33,6 @@ class WithheldPanel(QWidget):
         self._row = QHBoxLayout(self)
         self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignTop)
         self._row.addLayout(self._words, 1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.tell("")
 
@@ -66,4 +66,3 @@ class WithheldPanel(QWidget):
         self._row.setSpacing(px(8))
         self._words.setSpacing(px(2))
         self.setMinimumWidth(px(LEAST_WIDTH))
-        self.update()
