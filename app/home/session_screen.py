@@ -27,6 +27,7 @@ from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text
+from app.widgets.themed import Themed
 from app.wording import filled, later, place, side_name, tr
 from app.workers.background import Background, Work
 from app.workers.opening import opening_demonstration, opening_folder
@@ -56,7 +57,7 @@ ENDED_EARLY = (
 )
 
 
-class SessionScreen(QWidget):
+class SessionScreen(Themed):
     """A header, a page, an action bar. `set_way_back`: where there is something to go back to."""
 
     left = Signal()
@@ -178,7 +179,6 @@ class SessionScreen(QWidget):
         self._background.failed.connect(self._on_failed)
         self._saving.done.connect(self._on_figures_saved)
         self._saving.failed.connect(self._on_figures_not_saved)
-        self._look.changed.connect(self._on_look_changed)
 
     def _begin(self, work: Work, title: str) -> None:
         self.banner.hide()
@@ -286,7 +286,7 @@ class SessionScreen(QWidget):
         self.update()
 
 
-class _ActionBar(QWidget):
+class _ActionBar(Themed):
     """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
     def __init__(self, look: Look) -> None:
@@ -306,7 +306,6 @@ class _ActionBar(QWidget):
         self._row.addWidget(self.open_demonstration)
         self._row.addWidget(self.how_found)
         self._row.addWidget(self._purpose, 1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def set_narrow(self, is_narrow: bool) -> None:

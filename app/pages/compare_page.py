@@ -49,6 +49,7 @@ from app.widgets.icon_mark import IconMark
 from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import later, tr
 from core.body import Side
 from core.gait.cycles import POINTS
@@ -76,7 +77,7 @@ NOTHING = {
 }
 
 
-class ComparePage(QWidget):
+class ComparePage(Themed):
     """`kinds` and `bases` are placed by the page around it, where room is short `view` is as well.
 
     Signals
@@ -232,7 +233,6 @@ class ComparePage(QWidget):
         self.kinds.currentIndexChanged.connect(self._on_kind_changed)
         self.bases.currentIndexChanged.connect(self._show)
         self.view.chosen.connect(self._show_parts)
-        self._look.changed.connect(self._on_look_changed)
 
     def _place_view(self) -> None:
         """Put the choice of views over the card where the curves stay in sight; else the page around places it."""

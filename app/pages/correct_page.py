@@ -13,6 +13,7 @@ from app.widgets.chip import Chip
 from app.widgets.field import Field
 from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import capitalised, name_of, tr
 from core.body import Joint
@@ -38,7 +39,7 @@ class JointLine:
     note: str
 
 
-class CorrectPage(QWidget):
+class CorrectPage(Themed):
     """Each correction is told at once; the page is shown what came of it.
 
     Signals
@@ -77,7 +78,6 @@ class CorrectPage(QWidget):
         self._build()
         self.back.clicked.connect(self.closed)
         self.swap.clicked.connect(self.sides_swapped)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

@@ -8,12 +8,13 @@ from app.theme import Look
 from app.widgets.banner import Banner
 from app.widgets.header import Mark
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 
 COLUMN = 540  # a whole recovery key fits into a field
 ABOVE = 48
 
 
-class EntryPage(QWidget):
+class EntryPage(Themed):
     """`column` is what a page fills, under the program's mark and name."""
 
     def __init__(self, look: Look) -> None:
@@ -42,16 +43,13 @@ class EntryPage(QWidget):
         outer = QVBoxLayout(self)
         outer.setContentsMargins(0, 0, 0, 0)
         outer.addWidget(scroll)
-        look.changed.connect(self._on_room_changed)
-        self._on_room_changed()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         QPainter(self).fillRect(self.rect(), QColor(self._look.theme.colours.ground))
 
-    def _on_room_changed(self) -> None:
+    def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self._inside.setMaximumWidth(px(COLUMN + 48))
         self.column.setContentsMargins(px(24), px(ABOVE), px(24), px(24))
         self.column.setSpacing(px(16))
         self._mark_row.setSpacing(px(12))
-        self.update()

@@ -206,7 +206,6 @@ class FirstStartPage(EntryPage):
         for field in (self.code, self.name, self.passphrase, self.again):
             field.edited.connect(self._on_edited)
             field.line_edit.returnPressed.connect(self._on_make)
-        self._look.changed.connect(self._on_look_changed)
 
     def _show(self) -> None:
         has_key, is_asking = bool(self._key), self._is_asking
@@ -279,4 +278,5 @@ class FirstStartPage(EntryPage):
         self.done.emit()
 
     def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         self._keep_row.setSpacing(self._look.theme.px(12))

@@ -32,6 +32,7 @@ from app.widgets.icons import SEVERITY_ICONS, Icon
 from app.widgets.line_keys import LineKeys
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import capitalised, joined, name_of, sentence, tr
 from core.body import Joint, Side
 from core.diagnostics import JointDiagnostics
@@ -45,7 +46,7 @@ CLOSE_S = 10.0
 MIN_APART = 0.2  # of how alike the curves are; less apart, this second tells no pairing
 
 
-class FoundPage(QWidget):
+class FoundPage(Themed):
     """One joint at a time; it is computed elsewhere.
 
     Signals
@@ -82,7 +83,6 @@ class FoundPage(QWidget):
         self.back.clicked.connect(self.closed)
         self.joints.chosen.connect(self.joint_chosen)
         self.save.clicked.connect(self.save_wished)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

@@ -21,13 +21,14 @@ from PySide6.QtWidgets import (
 
 from app.pages.help_reader import HelpReader
 from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
 from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
 LIST_WIDTH = 248
@@ -36,7 +37,7 @@ PADDING = 12
 SHORTEST_SEARCH = 2
 
 
-class HelpPage(QWidget):
+class HelpPage(Themed):
     """Topics at the left, or above where room is short; what is searched for is marked in the text."""
 
     closed = Signal()
@@ -57,7 +58,6 @@ class HelpPage(QWidget):
         self.choice.currentIndexChanged.connect(self._on_choice_changed)
         self.search.edited.connect(self._on_search_edited)
         self.back.clicked.connect(self.closed)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.show_topic(Topic.HOME)
         self.set_compact(is_compact=False)
@@ -236,14 +236,14 @@ class _TopicRow(QAbstractButton):
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.show_count(None)
-        look.changed.connect(self._on_look_changed)
 
     def show_count(self, count: int | None) -> None:
         """Tell how often the topic has what is searched for; None while nothing is."""
         self._count = count
         found = "" if count is None else tr_n("{count} place", "{count} places", count).format(count=count)
         self.setAccessibleName(", ".join(filter(None, [self.text(), found])))
-        self._on_look_changed()
+        self.updateGeometry()
+        self.update()
 
     def sizeHint(self) -> QSize:
         theme = self._look.theme
@@ -257,16 +257,9 @@ class _TopicRow(QAbstractButton):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setPen(Qt.PenStyle.NoPen)
-        radius = CONTROL_RADIUS * theme.scale
         box = QRectF(self.rect())
-        if self.isChecked():
-            painter.setBrush(QColor(c.sunken))
-            painter.drawRoundedRect(box, radius, radius)
-        elif self.underMouse():
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+        if self.isChecked() or self.underMouse():
+            theme.paint_box(painter, box, c.sunken if self.isChecked() else theme.veil(self.isDown()))
         is_without = self._count == 0
         painter.setPen(QColor(c.ink3 if is_without else c.ink))
         painter.setFont(theme.font(14, SEMIBOLD if self.isChecked() else REGULAR))
@@ -279,7 +272,3 @@ class _TopicRow(QAbstractButton):
 
     def _count_width(self) -> int:
         return QFontMetrics(self._look.theme.font(14, MEDIUM)).horizontalAdvance(str(self._count or ""))
-
-    def _on_look_changed(self) -> None:
-        self.updateGeometry()
-        self.update()

@@ -117,7 +117,6 @@ class LineList(QListView):
         if is_opened_by_click:
             self.clicked.connect(self._on_opened)
         self.selectionModel().currentChanged.connect(self._on_current_changed)
-        look.changed.connect(self._on_look_changed)
 
     @property
     def line(self) -> Line | None:
@@ -166,10 +165,6 @@ class LineList(QListView):
 
     def _on_current_changed(self, index: ModelIndex, _before: ModelIndex) -> None:
         self.chosen.emit(index.data(Role.LINE).id if index.isValid() else None)
-
-    def _on_look_changed(self) -> None:
-        self.scheduleDelayedItemsLayout()
-        self.viewport().update()
 
 
 class _LineDelegate(QStyledItemDelegate):

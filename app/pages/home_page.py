@@ -13,6 +13,7 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
 SEARCH_HEIGHT = 48
@@ -23,7 +24,7 @@ PATIENTS_AT_LEAST = 280
 LIST_AT_LEAST = 236  # three lines
 
 
-class HomePage(QWidget):
+class HomePage(Themed):
     """Knows lines and ids. Typing narrows the list down; the arrow keys choose from it while typing goes on."""
 
     patient_chosen = Signal(object)  # UUID or None
@@ -184,7 +185,6 @@ class HomePage(QWidget):
         self.delete_session.clicked.connect(self._on_delete_session)
         self._nobody.new_patient.clicked.connect(self.new_patient_wished)
         self._nobody.demonstration.clicked.connect(self.demonstration_wished)
-        self._look.changed.connect(self._on_look_changed)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
 
@@ -242,7 +242,7 @@ class HomePage(QWidget):
         self._list_card.setMinimumWidth(px(PATIENTS_AT_LEAST))
 
 
-class _Empty(QWidget):
+class _Empty(Themed):
     """What stands in the list's place: nobody yet, or nobody who is searched for."""
 
     def __init__(self, look: Look) -> None:
@@ -258,7 +258,6 @@ class _Empty(QWidget):
         self._column.addWidget(self.new_patient, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addWidget(self.demonstration, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

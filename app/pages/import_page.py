@@ -10,11 +10,12 @@ from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.findings_list import FindingsList
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 from core.findings import Finding
 
 
-class ImportPage(QWidget):
+class ImportPage(Themed):
     code_changed = Signal(str)
 
     def __init__(self, look: Look) -> None:
@@ -37,7 +38,6 @@ class ImportPage(QWidget):
         self._column.addWidget(self.findings)
         self._column.addStretch(1)
         self.code.edited.connect(self.code_changed)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

@@ -177,7 +177,6 @@ class LogInPage(EntryPage):
         self.demonstration.clicked.connect(self.demonstration_wished)
         self.operator.currentIndexChanged.connect(self._on_operator_changed)
         self._second.timeout.connect(self._on_second)
-        self._look.changed.connect(self._on_look_changed)
 
     def _show(self) -> None:
         is_recovering = self._is_recovering
@@ -264,6 +263,7 @@ class LogInPage(EntryPage):
         self._show_go()
 
     def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         px = self._look.theme.px
         self._who.setSpacing(px(6))
         self._quiet.setSpacing(px(4))

@@ -24,6 +24,7 @@ from app.widgets.findings_list import FindingsList
 from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
 from core.body import Joint
@@ -84,7 +85,7 @@ class ResultParts:
         return bool(left)
 
 
-class ResultPage(QWidget):
+class ResultPage(Themed):
     """`parts`: those that were made before."""
 
     def __init__(self, look: Look, parts: ResultParts | None = None) -> None:
@@ -285,7 +286,6 @@ class ResultPage(QWidget):
             toggle.toggled.connect(slot)
             shortcut = QShortcut(QKeySequence(toggle.key), toggle)  # asleep while its toggle is hidden
             shortcut.activated.connect(toggle.toggle)
-        self._look.changed.connect(self._on_look_changed)
 
     def _place(self) -> None:
         """Put the controls into one row, where they fit; the methods go under the curves where they do not."""

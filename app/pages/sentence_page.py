@@ -1,15 +1,16 @@
 """A sentence in the place of what is not there yet, and one button that leads on."""
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QVBoxLayout, QWidget
+from PySide6.QtWidgets import QVBoxLayout
 
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 
 
-class SentencePage(QWidget):
+class SentencePage(Themed):
     pressed = Signal()
 
     def __init__(self, look: Look) -> None:
@@ -27,7 +28,6 @@ class SentencePage(QWidget):
         self._column.addWidget(self._then)
         self._column.addWidget(self.button, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(1)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def focus(self) -> None:

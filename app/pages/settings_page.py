@@ -16,6 +16,7 @@ from app.widgets.field import Field
 from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import tr
 
@@ -44,7 +45,7 @@ class DeletedLine:
     is_patient: bool
 
 
-class SettingsPage(QWidget):
+class SettingsPage(Themed):
     """The parts about a library are hidden where they mean nothing: in the demonstration, and for who may not."""
 
     scheme_chosen = Signal(str)
@@ -307,7 +308,6 @@ class SettingsPage(QWidget):
         self.clinic.committed.connect(self._on_clinic_named)
         for field in (self.old, self.new, self.again, self.code, self.name, self.first):
             field.edited.connect(self._on_edited)
-        self._look.changed.connect(self._on_look_changed)
 
     def show_key_change(self, sentence: str, *, is_running: bool) -> None:
         """Say how far the change of the library's key is, or how it ended."""

@@ -9,10 +9,11 @@ import math
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.theme import Look
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
+from app.widgets.themed import Themed
 from app.wording import tr
 from core.body import Side
 from core.published.figures import CostOverSphere
@@ -29,7 +30,7 @@ CIRCLE_STEPS = 73
 X_REACH, Y_REACH = 2 * math.sqrt(2), math.sqrt(2)  # half axes of Hammer's ellipse
 
 
-class CostMap(QWidget):
+class CostMap(Themed):
     """One sensor of one joint."""
 
     def __init__(self, look: Look) -> None:
@@ -40,7 +41,6 @@ class CostMap(QWidget):
         self._axis_sd_rad: float | None = None
         self._image: QImage | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def show_cost(self, cost: CostOverSphere, side: Side, axis_sd_rad: float | None, name: str) -> None:
         """Draw the map of the sensor on the segment `name`; the circle about the axis is 2 SD wide."""

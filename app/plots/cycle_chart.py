@@ -10,7 +10,7 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QWidget
+from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
 from app.plots.axes import (
     ABOUT_MEAN_DEG,
@@ -43,6 +43,7 @@ from app.widgets.chip import LETTERS, SideKey
 from app.widgets.icon_mark import IconMark
 from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.widgets.withheld_panel import WithheldPanel
 from app.wording import joined, later, tr
 from core.body import Joint, Side
@@ -78,7 +79,7 @@ class Band:
     sd_deg: FloatArray
 
 
-class CycleCharts(QWidget):
+class CycleCharts(Themed):
     """Both charts, with what they share: the band and the single strides, each on or off."""
 
     picked = Signal(bool, float, float)  # whether of the knee; percent of the stride, degrees
@@ -95,7 +96,6 @@ class CycleCharts(QWidget):
             self._box.addWidget(frame, 1)
             frame.chart.picked.connect(self._on_picked)
         self.set_band(reference)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -279,7 +279,7 @@ class CycleFrame(Card):
         return notes
 
 
-class CycleChart(QWidget):
+class CycleChart(Themed):
     """One joint over 0 to 100 % of the stride; its axis stays unless a mean curve leaves it."""
 
     picked = Signal(float, float)  # percent of the stride, degrees
@@ -297,7 +297,6 @@ class CycleChart(QWidget):
         self.stride: tuple[Side, FloatArray] | None = None
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        look.changed.connect(self._on_look_changed)
 
     @property
     def is_widened(self) -> bool:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.plots.compared_chart import DOT, paint_letter
 from app.theme import Look
@@ -14,6 +14,7 @@ from app.widgets.chip import CHIP, paint_chip
 from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
+from app.widgets.themed import Themed
 from core.body import Side
 
 TITLE, ROW, GAP, AXIS = 26, 30, 8, 28
@@ -56,7 +57,7 @@ class DifferenceGroup:
     rows: tuple[DifferenceRow, ...]
 
 
-class DifferencePlot(QWidget):
+class DifferencePlot(Themed):
     """As high as its rows."""
 
     def __init__(self, look: Look) -> None:
@@ -64,7 +65,6 @@ class DifferencePlot(QWidget):
         self._look = look
         self.groups: tuple[DifferenceGroup, ...] = ()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def show_groups(self, groups: Sequence[DifferenceGroup], name: str, in_words: str) -> None:
         self.groups = tuple(groups)

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
-from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.axes import (
@@ -26,6 +26,7 @@ from app.widgets.chip import SideKey
 from app.widgets.icon_mark import IconMark
 from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import later, name_of, tr
 from core.body import Joint, Side
 from core.results import SideGait
@@ -36,7 +37,7 @@ NO_VALUE = later("no value")
 NO_GAIT: Mapping[Side, SideGait] = {}
 
 
-class JointCharts(QWidget):
+class JointCharts(Themed):
     """Two charts that act as one control: the mouse or the keys read, move along and zoom in time.
 
     `view_changed` tells whether the whole recording is in sight, and which part is.
@@ -67,7 +68,6 @@ class JointCharts(QWidget):
         self.phases.lanes.dragged.connect(self.go_on)
         self.ankle.chart.link_time(self.knee.chart)
         self.knee.chart.view_moved.connect(self._on_view_moved)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

@@ -194,11 +194,10 @@ class PhaseLanes(QWidget):
         self._held_x: float | None = None
         self.setMouseTracking(True)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def show_lanes(self, lanes: Mapping[Side, Lane]) -> None:
         self.lanes = lanes
-        self._on_look_changed()
+        self._refresh()
 
     def see(self, first_s: float, last_s: float) -> None:
         self._visible_s = (first_s, last_s)
@@ -293,7 +292,7 @@ class PhaseLanes(QWidget):
             if painter.fontMetrics().horizontalAdvance(tr(ZOOM_IN)) + theme.px(16) < seen.width():
                 painter.drawText(seen, Qt.AlignmentFlag.AlignCenter, tr(ZOOM_IN))
 
-    def _on_look_changed(self) -> None:
+    def _refresh(self) -> None:
         self.updateGeometry()
         self.update()
 
@@ -305,7 +304,6 @@ class Swatch(QWidget):
         super().__init__()
         self._look, self._phase = look, phase
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self.updateGeometry)
 
     def sizeHint(self) -> QSize:
         return QSize(self._look.theme.px(22), self._look.theme.px(12))

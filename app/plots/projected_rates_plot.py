@@ -4,12 +4,13 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.reports.how_found import parts_deg_s
 from app.theme import Look
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
+from app.widgets.themed import Themed
 from app.wording import tr
 from core.body import Side
 from core.published.figures import ProjectedRates
@@ -23,7 +24,7 @@ FOOT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignBottom
 STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 
 
-class ProjectedRatesPlot(QWidget):
+class ProjectedRatesPlot(Themed):
     """Two panels of one size and one scale."""
 
     def __init__(self, look: Look) -> None:
@@ -32,7 +33,6 @@ class ProjectedRatesPlot(QWidget):
         self._side = Side.LEFT
         self._shown: ProjectedRates | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def show_rates(self, shown: ProjectedRates | None, side: Side) -> None:
         """Draw both pairings; None where no second showed them."""

@@ -6,13 +6,14 @@ import numpy as np
 import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, range_for
 from app.plots.thinning import thin
 from app.theme import Look
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
+from app.widgets.themed import Themed
 from app.wording import tr
 from core.body import Joint, Side
 from core.samples import FloatArray
@@ -27,7 +28,7 @@ MOST_TICKS = 8
 T = TypeVar("T", float, FloatArray)
 
 
-class TwoWaysChart(QWidget):
+class TwoWaysChart(Themed):
     """Degrees over seconds; the axis widens for drift, while the accelerometers' spikes are cut at its ends."""
 
     def __init__(self, look: Look) -> None:
@@ -41,7 +42,6 @@ class TwoWaysChart(QWidget):
         self.range_deg = KNEE_DEG
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
-        look.changed.connect(self._on_look_changed)
 
     def show_angles(
         self, joint: Joint, time_s: FloatArray, from_rates: FloatArray, from_forces: FloatArray, fused: FloatArray

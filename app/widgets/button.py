@@ -50,9 +50,6 @@ class FacedButton(QPushButton):
         self.initStyleOption(option)  # Qt would keep the size while face and check change
         return self.style().sizeFromContents(QStyle.ContentsType.CT_PushButton, option, QSize(), self)
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
 
 class Button(FacedButton):
     """Pressed by Enter and Space; a shortcut itself belongs to the window, which knows when it holds."""

@@ -52,9 +52,6 @@ class Chip(QWidget):
         chip = self._look.theme.px(CHIP)
         return QSize(chip, chip)
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def paintEvent(self, _event: QPaintEvent) -> None:
         paint_chip(QPainter(self), QRectF(self.rect()), self._side, self._look.theme)
 
@@ -71,9 +68,6 @@ class SideKey(QWidget):
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
         return QSize(px(CHIP) + px(8) + px(LINE), px(CHIP))
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme

@@ -1,6 +1,6 @@
 """One choice out of many, folded away until it is asked for."""
 
-from PySide6.QtCore import QSize, Qt
+from PySide6.QtCore import Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
@@ -16,9 +16,6 @@ class Choice(QComboBox):
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # words come after it is first shown
 
         self.ensurePolished()  # its font, and so its size, is the style's
-
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()  # who scrolls past must not change what is shown

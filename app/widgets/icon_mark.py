@@ -24,9 +24,6 @@ class IconMark(QWidget):
         side = self._look.theme.px(self._size)
         return QSize(side, side)
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def paintEvent(self, _event: QPaintEvent) -> None:
         painter = QPainter(self)
         paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))

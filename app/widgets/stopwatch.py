@@ -41,9 +41,6 @@ class Stopwatch(QWidget):
         words, time = self._columns()
         return QSize(words + px(16) + time, px(40))
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def painted_texts(self) -> list[PaintedText]:
         """Give what is painted now, each in its box."""
         theme = self._look.theme

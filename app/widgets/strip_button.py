@@ -47,9 +47,6 @@ class StripButton(QAbstractButton):
         words = QFontMetrics(self._font()).horizontalAdvance(self.text())
         return QSize(self._text_left() + words + theme.px(16), theme.px(44 if not self._is_compact else 40))
 
-    def minimumSizeHint(self) -> QSize:
-        return self.sizeHint()
-
     def painted_texts(self) -> list[PaintedText]:
         """Give the sentence in its box."""
         box = QRectF(self.rect()).adjusted(self._text_left(), 0, -self._look.theme.px(14), 0)

@@ -17,6 +17,7 @@ from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import RailForm
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.step_rail import StepRail
+from app.widgets.themed import Themed
 from app.widgets.toast import Toast
 
 FADE_MS = 120
@@ -35,7 +36,7 @@ class StripMode(Enum):
     HIDDEN = auto()
 
 
-class WizardShell(QWidget):
+class WizardShell(Themed):
     """Passive: it lays out what it holds, and knows nothing of what a page is for.
 
     Signals
@@ -202,7 +203,6 @@ class WizardShell(QWidget):
         self._scroll.viewport().installEventFilter(self)
         for widget in (self.bar, self.toast):
             widget.installEventFilter(self)
-        self._look.changed.connect(self._on_look_changed)
 
     def _fit(self) -> None:
         """Choose the forms of all parts by the room the window has, in px of the design."""
