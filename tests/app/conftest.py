@@ -31,12 +31,11 @@ def pseudo_language() -> Iterator[None]:
 
 
 @pytest.fixture
-def result_page(qtbot: QtBot, qapp: QApplication) -> Iterator[ResultPage]:
+def result_page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
     """The results by themselves, in the light theme."""
     load_fonts()
     look = Look()
     look.set_dark(False)
     page = ResultPage(look)
     qtbot.addWidget(page)
-    yield page
-    qapp.setStyleSheet("")
+    return page

@@ -4,7 +4,7 @@ import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
@@ -60,10 +60,9 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
-    yield Look()
-    qapp.setStyleSheet("")
+    return Look()
 
 
 @pytest.fixture

@@ -78,7 +78,7 @@ def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
 
 
 @pytest.fixture
-def home(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path) -> Iterator[Home]:
+def home(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path) -> Home:
     load_fonts()
     home = Home(Look(), desk, settings)
     home.resize(1280, 800)
@@ -87,8 +87,7 @@ def home(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings
         home.show()
         home.activateWindow()
     open_library(qtbot, desk, home, folder)
-    yield home
-    qapp.setStyleSheet("")
+    return home
 
 
 def open_library(qtbot: QtBot, desk: LibraryDesk, home: Home, folder: Path) -> None:

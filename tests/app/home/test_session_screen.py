@@ -1,6 +1,6 @@
 """A session of a folder: opening, stopping, refusals, methods, and whether every word fits."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from threading import Event
@@ -112,12 +112,11 @@ def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 import csv
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -62,7 +61,7 @@ def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> Iterator[ResultPage]:
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
     load_fonts()
     look = Look()
     look.set_dark(False)
@@ -73,8 +72,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     page.show_analysis(analysis, session.recordings)
     page.show()
     page.view.choose(COMPARE)
-    yield page
-    qapp.setStyleSheet("")
+    return page
 
 
 def lines_of(path: Path) -> list[dict[str, str]]:

@@ -1,7 +1,6 @@
 """How a joint was found: are the pictures' numbers in the files, the words in their room, and the way back open?"""
 
 import csv
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -65,12 +64,11 @@ def found(session: Session, analysis: Analysis) -> JointDiagnostics:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

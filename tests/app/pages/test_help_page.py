@@ -1,7 +1,6 @@
 """The manual: is it whole, is it found, and does it let go of the keys it borrows?"""
 
 import re
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -25,12 +24,11 @@ FORBIDDEN = re.compile(
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """The lists of patients and sessions: quick with thousands, found as typed, no word cut."""
 
-from collections.abc import Iterator
 from itertools import pairwise
 from time import process_time
 from uuid import UUID
@@ -20,12 +19,11 @@ MOST_S = 0.1  # what the screen's thread may take for anything
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """Does every page have the room for a language as long as German, at every size of window and letters?"""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from uuid import UUID
 
 import numpy as np
@@ -248,12 +248,11 @@ BELOW_STRIP = {
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.mark.usefixtures("pseudo_language")

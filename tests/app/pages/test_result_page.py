@@ -1,6 +1,6 @@
 """A walk as its mean cycle or as a whole: which views there are, their keys, and the words and figures beside them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -34,7 +34,7 @@ def analysis() -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[ResultPage]:
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     load_fonts()
     look = Look()
     look.set_dark(False)
@@ -46,8 +46,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[Resul
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()
-    yield page
-    qapp.setStyleSheet("")
+    return page
 
 
 def changed(analysis: Analysis, gait: Mapping[Side, SideGait]) -> Analysis:

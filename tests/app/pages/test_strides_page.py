@@ -1,6 +1,5 @@
 """Every stride stands in a line, is left out and taken in again by key and mouse, and it is said what was left out."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -36,7 +35,7 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[ResultPage]:
+def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     load_fonts()
     look = Look()
     look.set_dark(False)
@@ -49,8 +48,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> Iterator[Resul
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()
-    yield page
-    qapp.setStyleSheet("")
+    return page
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """The mean cycle: what is painted for how many strides, where toe-off stands, and the same axes for everyone."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from PySide6.QtGui import QColor
@@ -30,12 +28,11 @@ def cycle(n: int, height_deg: float = 60.0, toe_off_percent: float = 60.0, shift
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

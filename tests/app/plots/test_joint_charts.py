@@ -1,7 +1,5 @@
 """Knee above ankle: the same axes, the same time, gaps as gaps, and a way back to the whole."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
@@ -25,10 +23,9 @@ def angle(highest_deg: float) -> FloatArray:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
-    yield Look()
-    qapp.setStyleSheet("")
+    return Look()
 
 
 @pytest.fixture

@@ -1,7 +1,5 @@
 """Phase lanes: every phase in its look and place, on the time of the curves; events named; the unknown empty."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
@@ -38,12 +36,11 @@ def gait(first_s: float, count: int = STRIDES) -> SideGait:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

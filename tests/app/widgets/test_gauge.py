@@ -1,7 +1,6 @@
 """A gauge as it reads the excitation of a joint: figures without floors, rings that close, and words beside them."""
 
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 
 import pytest
@@ -31,12 +30,11 @@ def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: boo
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.mark.parametrize(("value", "written"), [(0.84, "0.8"), (9.94, "9.9"), (9.96, "10"), (11.4, "11"), (2.0, "2.0")])

@@ -1,7 +1,5 @@
 """Live lanes: moved on by pixels they look as if drawn anew, also where a phase was told late; silence is said."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from app.wizard.walking.readout import LiveLane, PhaseSpan
@@ -21,12 +19,11 @@ SHARES = ((LOADING, 0.0, 0.12), (FLAT, 0.12, 0.45), (PRE_SWING, 0.45, 0.6), (SWI
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

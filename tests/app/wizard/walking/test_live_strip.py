@@ -1,7 +1,5 @@
 """Live strips: moved on by pixels they look as if drawn anew; dashes stand still; gaps are empty and said in words."""
 
-from collections.abc import Iterator
-
 import numpy as np
 import pytest
 from app.wizard.walking.readout import LiveTrace
@@ -22,12 +20,11 @@ PERIOD_S = 1.1
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture

@@ -1,7 +1,6 @@
 """The Walking page: none yet, recording, asking, between; by mouse, by keys, and in words for who cannot see it."""
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -28,12 +27,11 @@ LABELS = ("Barefoot", "Shoes", "AFO")
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Look:
     load_fonts()
     look = Look()
     look.set_dark(False)
-    yield look
-    qapp.setStyleSheet("")
+    return look
 
 
 @pytest.fixture
