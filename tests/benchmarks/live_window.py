@@ -264,11 +264,11 @@ class _Watch:
 
 def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
     """Eighteen curves: what every sensor's rates about its three axes are, two curves in each of nine strips."""
-    from app.wizard.walking.readout import LiveTrace
     from PySide6.QtCore import QTimer
     from PySide6.QtWidgets import QVBoxLayout, QWidget
 
     from app.wizard.walking.live_strip import LiveStrip
+    from app.wizard.walking.readout import LiveTrace
     from core.body import Side
 
     acquisition = wizard.visit.sensors.acquisition if wizard.visit is not None else None

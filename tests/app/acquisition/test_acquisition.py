@@ -117,15 +117,14 @@ def test_a_recording_begins_with_the_press_and_ends_with_the_stop(start: Start, 
     time.sleep(0.3)
     stopped_s = time.monotonic()
     summary = acquisition.stop_recording()
-    length_s = stopped_s - pressed_s
+    length_s, most_s = stopped_s - pressed_s, time.monotonic() - pressed_s
     decoded = read_back([summary.path])
     assert decoded.is_simulated
     assert set(decoded.sensors) == set(acquisition.sensors)
     assert faults_of(decoded.sensors, dict.fromkeys(acquisition.sensors, 0)) == []
     for one in decoded.sensors.values():
         assert 0 <= one.block.time_s[0] < 0.006 + 0.01  # one sample, and what lies between press and opening
-        assert one.block.time_s[-1] == pytest.approx(length_s, abs=0.2)
-        assert one.block.time_s[-1] > length_s - 0.02
+        assert length_s - 0.02 < one.block.time_s[-1] < most_s + 0.02
     assert [source.sensors for source in decoded.sources] == [(name,) for name in acquisition.sensors]
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()
@@ -299,7 +298,7 @@ def test_bytes_are_kept_before_they_are_decoded_and_decoded_again(
     start: Start, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("app.acquisition.reader.REOPEN_S", 0.01)
-    clock = Clock()
+    clock, is_recording = Clock(), threading.Event()
 
     class Port(Scripted):
         has_bytes = True
@@ -307,6 +306,8 @@ def test_bytes_are_kept_before_they_are_decoded_and_decoded_again(
 
         def read(self, keep: Keep) -> Sequence[ImuBlock]:
             time.sleep(0.002)
+            if self.number == 10 and not is_recording.is_set():
+                return []
             if self.number in (20, 40):
                 self.number += 1
                 keep(b"half a li")
@@ -321,6 +322,7 @@ def test_bytes_are_kept_before_they_are_decoded_and_decoded_again(
     acquisition = start(source, now_ns=clock)
     wait_for(lambda: source.number >= 3)
     acquisition.record(open_journal(tmp_path, ID, now_ns=clock))
+    is_recording.set()
     wait_for(lambda: source.number >= 50)
     summary = acquisition.stop_recording()
     decoded = decode([summary.path], KEY, {"lines": LineDecoder})

@@ -5,7 +5,6 @@ from uuid import UUID
 
 import numpy as np
 import pytest
-from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
@@ -28,6 +27,7 @@ from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.source_pages import SourceOption
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from app.wording import tr
 from core.body import Joint, Side, Site

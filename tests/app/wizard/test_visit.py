@@ -43,7 +43,8 @@ def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, cond
     acquisition.ask(kind)
     with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
         visit.takes.begin(acquisition, kind, condition)
-    qtbot.wait(round(seconds / SPEED * 1000))
+    until_s = acquisition.now_s + seconds
+    qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
     with qtbot.waitSignal(visit.takes.ended, timeout=10_000) as ended:
         visit.takes.stop()
     take = ended.args[0]

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from app.wizard.walking.readout import LiveLane, PhaseSpan
 from PySide6.QtCore import QPoint
 from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
@@ -10,6 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
 from app.wizard.walking.live_lanes import LiveLanes
+from app.wizard.walking.readout import LiveLane, PhaseSpan
 from core.body import Side
 from core.gait.phases import Phase
 

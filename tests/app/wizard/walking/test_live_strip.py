@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
-from app.wizard.walking.readout import LiveTrace
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
 from app.theme import Look, load_fonts
 from app.wizard.walking.live_strip import LiveStrip, _Trace
+from app.wizard.walking.readout import LiveTrace
 from core.body import Side
 from core.samples import FloatArray, IntArray
 

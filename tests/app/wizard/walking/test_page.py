@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
@@ -13,6 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
 from app.wizard.walking.page import WalkingPage
+from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
 from core.body import Joint, Side
 from core.gait.phases import Phase
