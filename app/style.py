@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from enum import Enum, auto
 from time import monotonic
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPalette
@@ -28,10 +27,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from app.widgets.icons import Icon, paint_icon
-
-if TYPE_CHECKING:
-    from app.theme import Theme  # which puts this style on
+from app.icons import Icon, paint_icon
+from app.tokens import CONTROL_RADIUS, Theme
 
 Control = QStyle.ControlElement
 Primitive = QStyle.PrimitiveElement
@@ -97,7 +94,7 @@ class ControlStyle(QProxyStyle):
     metrics and hints, which Qt asks for a thousand times a page, are left alone.
     """
 
-    def __init__(self, theme: "Theme") -> None:
+    def __init__(self, theme: Theme) -> None:
         super().__init__("fusion")
         self.theme = theme
 
@@ -251,7 +248,7 @@ class ControlStyle(QProxyStyle):
         theme, c, box = self.theme, self.theme.colours, _framed(option)
         is_enabled, is_on = bool(option.state & State.State_Enabled), bool(option.state & State.State_On)
         ink = QColor(c.ink if is_enabled else c.disabled)
-        radius, veil_ink = 8, None
+        radius, veil_ink = CONTROL_RADIUS, None
         if face.is_inverse:
             if is_enabled:
                 ink = QColor(c.inv if face.kind is Kind.PRIMARY else c.inv_ink)
@@ -263,7 +260,7 @@ class ControlStyle(QProxyStyle):
             if is_enabled:
                 ink = veil_ink = QColor(c.inv_ink)
         elif face.kind is Kind.SEGMENT:
-            radius = 7  # within the frame round all
+            radius = CONTROL_RADIUS - 1  # within the frame round all
             ink = QColor(c.disabled if not is_enabled else c.ink if is_on else c.ink2)
             if is_on:
                 theme.paint_box(painter, box, c.surface, c.ink, 1.75, radius)

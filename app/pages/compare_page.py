@@ -45,8 +45,7 @@ from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.difference_table import DifferenceTable
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

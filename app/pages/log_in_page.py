@@ -16,8 +16,7 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording import tr

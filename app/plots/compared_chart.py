@@ -14,8 +14,7 @@ from app.reports.walk_figures import is_mean_enough
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import Chip
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
 from core.body import Side

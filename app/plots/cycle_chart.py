@@ -40,8 +40,7 @@ from app.reports.walk_figures import (
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.withheld_panel import WithheldPanel

@@ -23,8 +23,7 @@ from app.plots.phase_lanes import PhaseFrame
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, name_of, tr

@@ -21,8 +21,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 from app.style import IS_WRONG
 from app.theme import Look
 from app.widgets.chip import paint_chip
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon
+from app.widgets.icons import Icon, IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr

@@ -6,8 +6,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.theme import Look
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import SEVERITY_ICONS, Icon
+from app.widgets.icons import SEVERITY_ICONS, Icon, IconMark
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import later, sentence, tr
 from core.findings import Finding, Severity

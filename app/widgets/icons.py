@@ -1,64 +1,31 @@
-"""The icons of `resources/icons` in the theme's ink: 24 px grid, stroke of 1.75. Never alone, never coloured."""
+"""An icon that stands in a page beside its words."""
 
-from enum import StrEnum
-from functools import cache
-from importlib.resources import files
+from PySide6.QtCore import QRectF, QSize
+from PySide6.QtGui import QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from PySide6.QtCore import QByteArray, QRectF
-from PySide6.QtGui import QColor, QPainter
-from PySide6.QtSvg import QSvgRenderer
-
-from core.findings import Severity
-
-
-class Icon(StrEnum):
-    """The name of each file."""
-
-    FOLDER = "folder"
-    PLAY = "play"
-    STOP = "stop"
-    CHEVRON = "chevron"
-    CLOSE = "close"
-    WHOLE = "whole"
-    CHECK = "check"
-    UNCHECKED = "unchecked"
-    INFO = "info"
-    WARNING = "warning"
-    GRAVE = "grave"
-    BACK = "back"
-    REPEAT = "repeat"
-    SOUND = "sound"
-    SOUND_OFF = "sound_off"
-    HOME = "home"
-    SETTINGS = "settings"
-    HELP = "help"
-    LIGHT_OR_DARK = "light_or_dark"
-    IMPORT = "import"
-    ADD = "add"
-    WAVE = "wave"
-    STILL = "still"
-    SILENT = "silent"
-    RECORDING = "recording"
-    BEND = "bend"
-    NEXT = "next"
-    SEARCH = "search"
-    DELETE = "delete"
-    LOCK = "lock"
-    PRINT = "print"
-    LIGHT = "light"
-    GRIP = "grip"
+from app.icons import SEVERITY_ICONS as SEVERITY_ICONS
+from app.icons import Icon as Icon
+from app.icons import paint_icon as paint_icon
+from app.theme import Look
 
 
-SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
+class IconMark(QWidget):
+    """An icon beside words. The words say what it says, so a reader of screens passes over it."""
 
+    def __init__(self, look: Look, icon: Icon, size: float = 20, tone: str = "ink") -> None:
+        super().__init__()
+        self._look, self._icon, self._size, self._tone = look, icon, size, tone
+        self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 
-def paint_icon(painter: QPainter, icon: Icon, rect: QRectF, ink: QColor | str) -> None:
-    """Draw `icon` into the square `rect`, which need not lie on whole pixels."""
-    _drawing(icon, QColor(ink).name()).render(painter, rect)
+    def set_icon(self, icon: Icon) -> None:
+        self._icon = icon
+        self.update()
 
+    def sizeHint(self) -> QSize:
+        side = self._look.theme.px(self._size)
+        return QSize(side, side)
 
-@cache
-def _drawing(icon: Icon, ink: str) -> QSvgRenderer:
-    """Kept, since painters ask for the same few thousands of times a minute."""
-    svg = (files("resources") / "icons" / f"{icon}.svg").read_bytes()
-    return QSvgRenderer(QByteArray(svg.replace(b"currentColor", ink.encode())))
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        painter = QPainter(self)
+        paint_icon(painter, self._icon, QRectF(self.rect()), getattr(self._look.theme.colours, self._tone))

@@ -18,8 +18,7 @@ from PySide6.QtWidgets import (
 from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.icon_mark import IconMark
-from app.widgets.icons import Icon, paint_icon
+from app.widgets.icons import Icon, IconMark, paint_icon
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr, tr_n
