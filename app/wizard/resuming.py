@@ -8,7 +8,7 @@ from uuid import UUID
 from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, keep_analysis
 from app.storage.stored import Limits, RecordingState, StoredPatient, StoredSession
-from app.wizard.takes import Take, counted
+from app.wizard.recordings import SessionRecording, counted
 from app.workers.background import Report
 from core.analysis import analyse
 from core.body import Joint
@@ -29,16 +29,16 @@ class Resumed(NamedTuple):
 
     patient: StoredPatient
     session: StoredSession
-    takes: tuple[Take, ...]
+    recordings: tuple[SessionRecording, ...]
     known: "Analysis | None"
 
 
 def read_session(opened: "OpenedLibrary", session_id: UUID) -> Resumed:
     """Read a session that somebody opens; raises as `exchange.session_with_samples`."""
     session = opened.library.sessions.view(session_id)
-    takes = read_takes(opened, session)
-    known = find_analysis(opened.library.results, session_id, evaluated(session, takes))
-    return Resumed(opened.library.patients.get(session.patient_id), session, takes, known)
+    recordings = read_recordings(opened, session)
+    known = find_analysis(opened.library.results, session_id, evaluated(session, recordings))
+    return Resumed(opened.library.patients.get(session.patient_id), session, recordings, known)
 
 
 def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> "tuple[Session, Analysis]":
@@ -47,7 +47,7 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
     Strides left out by hand are left out.
     """
     results, stored = opened.library.results, opened.library.sessions.get(session_id)
-    told = evaluated(stored, read_takes(opened, stored))
+    told = evaluated(stored, read_recordings(opened, stored))
     known = find_analysis(results, session_id, told)
     if known is None:
         known = analyse(bare(told), progress=report)
@@ -56,9 +56,9 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
     return replace(told, recordings=without_samples), leave_out(known, told.recordings)
 
 
-def evaluated(session: StoredSession, takes: Sequence[Take]) -> Session:
+def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) -> Session:
     """What is evaluated of a session of the library, as `Visit.evaluate` asks it when nothing is recorded."""
-    return with_limits(replace(session.told, recordings=counted(takes)), session.limits)
+    return with_limits(replace(session.told, recordings=counted(recordings)), session.limits)
 
 
 def with_limits(told: Session, limits: Limits) -> Session:
@@ -68,11 +68,11 @@ def with_limits(told: Session, limits: Limits) -> Session:
     return replace(told, findings=(*told.findings, *said))
 
 
-def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, ...]:
+def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[SessionRecording, ...]:
     """All recordings of a session that can be read, with their samples."""
     usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     return tuple(
-        Take(
+        SessionRecording(
             stored,
             recording_with_samples(opened, stored, DECODERS)[0],
             is_decided=stored.is_decided and not (stored.is_unjudged and stored.told.is_kept),
@@ -82,12 +82,17 @@ def read_takes(opened: "OpenedLibrary", session: StoredSession) -> tuple[Take, .
     )
 
 
-def rests_of(takes: Sequence[Take]) -> "dict[str, Rest]":
+def rests_of(recordings: Sequence[SessionRecording]) -> "dict[str, Rest]":
     """What each sensor reads at rest, by its name, as the latest standing tells."""
     rests: dict[str, Rest] = {}
-    for take in takes:
-        if take.told.kind is RecordingKind.STANDING and take.recording and take.stored.placement and take.told.is_kept:
-            worn = take.stored.placement.sensors
-            found = {worn[site].name: rest_of(block) for site, block in take.recording.imu.items() if site in worn}
+    for recording in recordings:
+        if (
+            recording.told.kind is RecordingKind.STANDING
+            and recording.read_back
+            and recording.stored.placement
+            and recording.told.is_kept
+        ):
+            worn = recording.stored.placement.sensors
+            found = {worn[site].name: rest_of(block) for site, block in recording.read_back.imu.items() if site in worn}
             rests |= {name: rest for name, rest in found.items() if rest is not None}
     return rests

@@ -19,9 +19,9 @@ from app.storage.kept_analyses import keep_analysis
 from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
-from app.wizard.resuming import Resumed, evaluated, read_analysed, read_session, read_takes, rests_of, with_limits
+from app.wizard.recordings import SessionRecording, SessionRecordings
+from app.wizard.resuming import Resumed, evaluated, read_analysed, read_recordings, read_session, rests_of, with_limits
 from app.wizard.reviewing import Reviewing
-from app.wizard.takes import Take, Takes
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
 from app.workers.background import Background, Report
@@ -74,7 +74,7 @@ class Visit(QObject):
         self.session: StoredSession | None = None
         self.patient = PatientRecord(desk, self, self._refuses_code)
         self.sensors = WornSensors(self)
-        self.takes = Takes(desk, self)
+        self.recordings = SessionRecordings(desk, self)
         self.evaluation = Evaluation(self)
         self.reviewing = Reviewing(self)
         self.preview = Background(self)
@@ -94,12 +94,12 @@ class Visit(QObject):
         self.patient.refused.connect(self.refused)
         self.sensors.refused.connect(self.refused)
         self.sensors.opened.connect(self._on_sensors_opened)
-        self.takes.refused.connect(self.refused)
+        self.recordings.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
         self.evaluation.computed.connect(self._on_computed)
         self.reviewing.refused.connect(self.refused)
-        self.takes.ended.connect(self._on_take_ended)
-        self.takes.changed.connect(self._on_takes_changed)
+        self.recordings.ended.connect(self._on_recording_ended)
+        self.recordings.changed.connect(self._on_recordings_changed)
 
     @property
     def desk(self) -> LibraryDesk:
@@ -220,9 +220,9 @@ class Visit(QObject):
         """
         if self.session is None:
             return
-        session_id, stored = self.session.id, [take.stored for take in self.takes.every]
+        session_id, stored = self.session.id, [recording.stored for recording in self.recordings.every]
 
-        def swap(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[Take, ...]]:
+        def swap(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[SessionRecording, ...]]:
             library = opened.library
             worn: dict[UUID, list[StoredRecording]] = {}
             for one in stored:
@@ -235,7 +235,7 @@ class Visit(QObject):
                 other = {opposite(site): sensor for site, sensor in placement.sensors.items()}
                 library.sessions.correct_placement(recordings, other)
             session = library.sessions.get(session_id)
-            return session, read_takes(opened, session)
+            return session, read_recordings(opened, session)
 
         self._desk.run(swap, self._on_read, self._on_refused, self)
 
@@ -257,15 +257,15 @@ class Visit(QObject):
         if self.session is None:
             return
         session_id, placed = self.session.id, self.sensors.placed()
-        stored = [take.stored for take in self.takes.since_strapped]
+        stored = [recording.stored for recording in self.recordings.since_strapped]
 
-        def correct(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[Take, ...]]:
+        def correct(opened: "OpenedLibrary") -> tuple[StoredSession, tuple[SessionRecording, ...]]:
             sessions = opened.library.sessions
             sessions.place(session_id, placed)
             if stored:
                 current = [opened.library.recordings.find(recording.id) for recording in stored]
                 sessions.correct_placement([recording for recording in current if recording], placed)
-            return sessions.get(session_id), read_takes(opened, sessions.get(session_id))
+            return sessions.get(session_id), read_recordings(opened, sessions.get(session_id))
 
         self._desk.run(correct, self._on_read, self._on_refused, self)
 
@@ -283,7 +283,7 @@ class Visit(QObject):
 
     def evaluate(self, with_walk: Recording | None = None) -> None:
         """Find out what the recordings tell, with a walk that still goes on; `evaluation.done` follows."""
-        recordings = self.takes.recordings() + ((with_walk,) if with_walk is not None else ())
+        recordings = self.recordings.counted() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
             sensors = self.session.told.sensors if self.session is not None else {}
             told = with_limits(replace(self.told, sensors=sensors, is_simulated=self.is_simulated), self.limits)
@@ -306,8 +306,8 @@ class Visit(QObject):
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
         self.patient.commit()
-        if self.takes.is_recording and (acquisition := self.sensors.detach()) is not None:
-            self.takes.close()
+        if self.recordings.is_recording and (acquisition := self.sensors.detach()) is not None:
+            self.recordings.close()
 
             def close(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
                 acquisition.close()
@@ -320,7 +320,7 @@ class Visit(QObject):
     def is_idle(self) -> bool:
         """Whether nothing of it goes on any more: no recording, no thread, no window of Rerun's."""
         idle = self.sensors.is_idle and self.evaluation.is_idle and self.reviewing.is_idle and self.preview.is_idle
-        return idle and self.looking.is_idle and self.takes.is_idle
+        return idle and self.looking.is_idle and self.recordings.is_idle
 
     def finish(self) -> None:
         """Wait for all threads: for the end of the program."""
@@ -346,7 +346,7 @@ class Visit(QObject):
 
     def _on_session_changed(self, session: StoredSession) -> None:
         self._is_changing = False
-        self.session = self.takes.session = session
+        self.session = self.recordings.session = session
         wanted = self._wanted
         if self.limits != session.limits or (wanted is not None and _by_hand(wanted) != _by_hand(session.told)):
             self._change(wanted or session.told)  # typed on meanwhile
@@ -358,12 +358,15 @@ class Visit(QObject):
                 self.evaluate()
         self.changed.emit()
 
-    def _on_read(self, read: tuple[StoredSession, tuple[Take, ...]]) -> None:
-        session, takes = read
-        before = {take.id: take for take in self.takes.every}
+    def _on_read(self, read: tuple[StoredSession, tuple[SessionRecording, ...]]) -> None:
+        session, recordings = read
+        before = {recording.id: recording for recording in self.recordings.every}
         self.session = session
-        kept = (replace(before.get(take.id, take), stored=take.stored, recording=take.recording) for take in takes)
-        self.takes.take_over(session, tuple(kept))
+        kept = (
+            replace(before.get(recording.id, recording), stored=recording.stored, read_back=recording.read_back)
+            for recording in recordings
+        )
+        self.recordings.take_over(session, tuple(kept))
         self.changed.emit()
         self.evaluate()
 
@@ -385,15 +388,15 @@ class Visit(QObject):
         """No harm: it is computed again."""
 
     def _on_resumed(self, read: Resumed) -> None:
-        patient, self.session, takes, known = read
+        patient, self.session, recordings, known = read
         self.limits = self.session.limits
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
-        self._is_of_another_day = bool(takes) and _day(takes[-1].told.started) not in ("", _day(_now()))
-        self.takes.take_over(self.session, takes)
-        self.rests = rests_of(takes)
+        self._is_of_another_day = bool(recordings) and _day(recordings[-1].told.started) not in ("", _day(_now()))
+        self.recordings.take_over(self.session, recordings)
+        self.rests = rests_of(recordings)
         if known is not None:
-            self.evaluation.take_over(evaluated(self.session, takes), known)
+            self.evaluation.take_over(evaluated(self.session, recordings), known)
         else:
             self.evaluate()
         self.resumed.emit()
@@ -407,7 +410,7 @@ class Visit(QObject):
         if not self.patient.has_this_session_only:
             what = tr("This session belongs to {code}.").format(code=own)
             return what, tr("Go back to all patients to begin one with another.")
-        if self.takes.every and self.is_simulated and own.startswith(DEMO) and not code.startswith(DEMO):
+        if self.recordings.every and self.is_simulated and own.startswith(DEMO) and not code.startswith(DEMO):
             what = tr("What is simulated cannot become the session of {code}.").format(code=code)
             return what, tr("Go back to all patients to begin one with another.")
         return "", ""
@@ -416,16 +419,16 @@ class Visit(QObject):
         """What was worn on another day was taken off since."""
         if self._is_of_another_day:
             self._is_of_another_day = False
-            self.takes.say_restrapped()
+            self.recordings.say_restrapped()
             self.refused.emit(
                 tr("This session was begun on another day, and the sensors were put on anew."),
                 tr("Stand still and move freely once more before the next walk."),
             )
 
-    def _on_take_ended(self, _take: Take) -> None:
+    def _on_recording_ended(self, _take: SessionRecording) -> None:
         self.evaluate()
 
-    def _on_takes_changed(self) -> None:
+    def _on_recordings_changed(self) -> None:
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:

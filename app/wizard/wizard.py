@@ -95,7 +95,7 @@ class Wizard(QWidget):
 
     @property
     def is_recording(self) -> bool:
-        return self._visit is not None and self._visit.takes.is_recording
+        return self._visit is not None and self._visit.recordings.is_recording
 
     def begin(self, patient: "StoredPatient | None") -> None:
         """Begin a session, with a patient of the library or one that is still to be typed."""
@@ -181,8 +181,8 @@ class Wizard(QWidget):
             signal.connect(self._on_visit_changed)
         visit.resumed.connect(self._on_resumed)
         visit.refused.connect(self._on_refused)
-        visit.takes.troubled.connect(self._on_troubled)
-        visit.takes.begun.connect(self.shell.banner.hide)
+        visit.recordings.troubled.connect(self._on_troubled)
+        visit.recordings.begun.connect(self.shell.banner.hide)
         self._current = PATIENT
         self._timer.start()
         self._to_prepare = [*self._steps]
@@ -196,8 +196,8 @@ class Wizard(QWidget):
         visit.resumed.disconnect(self._on_resumed)
         visit.refused.disconnect(self._on_refused)
         visit.refused.connect(self._desk.refused)
-        visit.takes.troubled.disconnect(self._on_troubled)
-        visit.takes.begun.disconnect(self.shell.banner.hide)
+        visit.recordings.troubled.disconnect(self._on_troubled)
+        visit.recordings.begun.disconnect(self.shell.banner.hide)
 
     def go_to(self, number: int) -> None:
         """Go to a step, if it can be entered and the current one left; else say why not."""
@@ -270,10 +270,10 @@ class Wizard(QWidget):
         if self._visit is None or not self.is_recording or self._current == WALKING:
             self._told_of_recording = NOTHING
             return
-        takes, sensors = self._visit.takes, self._visit.sensors
-        message = takes.trouble_message()
+        recordings, sensors = self._visit.recordings, self._visit.sensors
+        message = recordings.trouble_message()
         if message == NOTHING:
-            message = takes.standstill_message(sensors.site_of or sensors.status)
+            message = recordings.standstill_message(sensors.site_of or sensors.status)
         if message != self._told_of_recording:
             self._told_of_recording = message
             self._tell(*message)
@@ -428,7 +428,7 @@ class Wizard(QWidget):
 
     def _on_resumed(self) -> None:
         """Land where something is to be answered or seen, else where it goes on."""
-        walks = self._visit.takes.walks if self._visit is not None else ()
+        walks = self._visit.recordings.walks if self._visit is not None else ()
         if not walks:
             self._go_to(SENSORS)
         else:

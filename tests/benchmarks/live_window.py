@@ -163,9 +163,9 @@ def _session(
         window.screens.setCurrentWidget(wizard)
         yield _after(PAUSE_S)
     wizard._on_primary()
-    yield lambda: not visit.takes.is_recording and not visit.takes.is_stopping
+    yield lambda: not visit.recordings.is_recording and not visit.recordings.is_stopping
     yield _after(PAUSE_S)
-    visit.takes.keep(visit.takes.walks[-1], True)
+    visit.recordings.keep(visit.recordings.walks[-1], True)
     wizard.go_to(5)
     results = wizard._steps[5]
     assert isinstance(results, ResultsStep)

@@ -33,9 +33,9 @@ from PySide6.QtWidgets import QApplication
 from app.settings import Settings
 from app.storage.journal.header import JournalHeader
 from app.theme import Look, load_fonts
+from app.wizard.recordings import SessionRecording
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
-from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.workers.library_desk import LibraryDesk
@@ -251,8 +251,8 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
         wizard._on_primary()
         session.wait(lambda: wizard._current == 2, "standing step")
         session.press(Qt.Key.Key_Space)
-        session.wait(lambda: visit.takes.standing is not None and wizard._current == 3, "free motion step")
-        session.wait(lambda: visit.takes.is_recording, "free motion")
+        session.wait(lambda: visit.recordings.standing is not None and wizard._current == 3, "free motion step")
+        session.wait(lambda: visit.recordings.is_recording, "free motion")
         while wizard._current == 3:
             ends_s = time.monotonic() + played.ask(RecordingKind.FREE_MOTION)
             session.wait(lambda: wizard._current != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
@@ -260,12 +260,12 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
         for number in range(walks):
             session.press(Qt.Key.Key_1)
             session.press(Qt.Key.Key_Space)
-            session.wait(lambda: visit.takes.is_recording and visit.takes._recorder is not None, "walk")
+            session.wait(lambda: visit.recordings.is_recording and visit.recordings._recorder is not None, "walk")
             left_s = played.ask(RecordingKind.WALKING)
             session.linger(left_s + 0.3)
             look(session, shots, f"{kind}-walk-{number + 1}")
             session.press(Qt.Key.Key_Space)
-            session.wait(lambda number=number: len(visit.takes.walks) == number + 1, "walk's end")  # type: ignore[misc]  # the default binds the loop's value
+            session.wait(lambda number=number: len(visit.recordings.walks) == number + 1, "walk's end")  # type: ignore[misc]  # the default binds the loop's value
             session.press(Qt.Key.Key_K)
             session.linger(0.5)
         session.press(Qt.Key.Key_Return)
@@ -287,35 +287,35 @@ def has_evaluated(visit: Visit, walks: int) -> bool:
 def outcome_of(kind: str, visit: Visit, analysis: Analysis, told: Mapping[str, FloatArray], library: Path) -> Outcome:
     """Compare what was recorded with what was measured, and the angles with the truth."""
     outcome, zero = Outcome(kind), true_zero(visit, told, library)
-    for take in visit.takes.every:
-        assert take.recording is not None
-        for site, block in take.recording.imu.items():
+    for recording in visit.recordings.every:
+        assert recording.read_back is not None
+        for site, block in recording.read_back.imu.items():
             rows = compare_samples(outcome, block, told[f"sent {site}"], STEPS[kind])
-            late_s = block.time_s[rows >= 0] + opened_s(take, library) - told[f"sent_s {site}"][rows[rows >= 0]]
-            outcome.late_ms.setdefault(take.told.name, []).append(1000 * float(late_s.mean()))
-            if take.told.kind is RecordingKind.FREE_MOTION:
+            late_s = block.time_s[rows >= 0] + opened_s(recording, library) - told[f"sent_s {site}"][rows[rows >= 0]]
+            outcome.late_ms.setdefault(recording.told.name, []).append(1000 * float(late_s.mean()))
+            if recording.told.kind is RecordingKind.FREE_MOTION:
                 outcome.moved_s = float(np.ptp(block.time_s))
             outcome.rate_hz = round(1 / float(np.median(np.diff(block.time_s))), 1)
-        found = next((one for one in analysis.recordings if one.name == take.told.name), None)
-        if take.told.kind is RecordingKind.WALKING and found is not None:
-            compare_angles(outcome, found, told, zero, opened_s(take, library))
+        found = next((one for one in analysis.recordings if one.name == recording.told.name), None)
+        if recording.told.kind is RecordingKind.WALKING and found is not None:
+            compare_angles(outcome, found, told, zero, opened_s(recording, library))
     return outcome
 
 
 def true_zero(visit: Visit, told: Mapping[str, FloatArray], library: Path) -> dict[Joint, float]:
     """How far each joint was bent, on average, while the standing was recorded that the angles are zero at."""
-    take = visit.takes.standing
-    assert take is not None
-    assert take.recording is not None
+    recording = visit.recordings.standing
+    assert recording is not None
+    assert recording.read_back is not None
     (site, *_) = Site
-    first_s, last_s = opened_s(take, library) + take.recording.imu[site].time_s[[0, -1]]
+    first_s, last_s = opened_s(recording, library) + recording.read_back.imu[site].time_s[[0, -1]]
     is_then = (told["when_s"] >= first_s) & (told["when_s"] <= last_s)
     return {joint: float(told[f"truth {joint}"][is_then].mean()) for joint in Joint}
 
 
-def opened_s(take: Take, library: Path) -> float:
+def opened_s(recording: SessionRecording, library: Path) -> float:
     """When a recording's journal was opened, by the host's clock: its time 0."""
-    (journal,) = take.stored.journals
+    (journal,) = recording.stored.journals
     content = (library / "recordings" / journal.file).read_bytes()
     return JournalHeader.parsed(content, journal.file).opened_ns / 1e9
 

@@ -174,7 +174,7 @@ class RandomLife(QObject):
     def _left_open(self, held: HeldLibrary) -> list[str]:
         wizard = self._window._wizard
         visits = [] if wizard is None else [*wizard._closing, *([wizard.visit] if wizard.visit is not None else [])]
-        return [] if any(not visit.takes.is_idle for visit in visits) else left_open(held)
+        return [] if any(not visit.recordings.is_idle for visit in visits) else left_open(held)
 
     def _is_busy(self) -> bool:
         wizard = self._window._wizard
@@ -182,7 +182,7 @@ class RandomLife(QObject):
         is_long = self._window.desk._long.is_busy
         if visit is None:
             return is_long
-        return is_long or visit.evaluation.is_busy or not visit.takes.is_idle or visit.sensors.is_searching
+        return is_long or visit.evaluation.is_busy or not visit.recordings.is_idle or visit.sensors.is_searching
 
     def _held(self) -> HeldLibrary | None:
         """The open library's, while there is one whose key the user knows."""

@@ -249,10 +249,10 @@ class SensibleUser(Hands):
     def _on_walking(self, wizard: "Wizard") -> str:
         visit = wizard.visit
         assert visit is not None
-        takes = visit.takes
-        if takes.is_stopping:
+        recordings = visit.recordings
+        if recordings.is_stopping:
             return "waits"
-        if takes.is_recording:
+        if recordings.is_recording:
             if self._waits > 0:
                 self._waits -= 1
                 return "lets walk"
@@ -264,7 +264,7 @@ class SensibleUser(Hands):
             key = self._chance.choices((Key.Key_K, Key.Key_D, Key.Key_Space), (6, 2, 2))[0]
             self.press(key)
             return "answers whether it is kept"
-        kept = sum(take.told.is_kept for take in takes.walks)
+        kept = sum(recording.told.is_kept for recording in recordings.walks)
         if kept and self._chance.random() < 0.3 + 0.1 * kept:
             self._primary(wizard)
             return "goes to the results"

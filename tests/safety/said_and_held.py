@@ -161,7 +161,7 @@ def _of_rail(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[st
     notes = [row.note for row in wizard.shell.rail.rows]
     walks = held.ask(WALKS, session)
     kept = sum(bool(row[2]) for row in walks)
-    is_recording = visit.takes.is_recording or visit.takes.is_stopping
+    is_recording = visit.recordings.is_recording or visit.recordings.is_stopping
     for place in (4, 5):
         if (said := KEPT.search(notes[place])) is not None and int(said[1]) != kept and not is_recording:
             yield f"the rail says {notes[place]!r} at step {place + 1}, held are {kept} walks kept"

@@ -117,14 +117,18 @@ def main() -> int:
         behind = acquisition.dropped_from_preview
         stopped_s = time.monotonic()
         wizard._on_primary()
-        wait(application, lambda: not visit.takes.is_recording and not visit.takes.is_stopping, ANALYSED_WITHIN_S)
+        wait(
+            application,
+            lambda: not visit.recordings.is_recording and not visit.recordings.is_stopping,
+            ANALYSED_WITHIN_S,
+        )
         read_s = time.monotonic() - stopped_s
         wait(application, lambda: not visit.evaluation.is_busy, ANALYSED_WITHIN_S)
         analysed_s = time.monotonic() - stopped_s - read_s
-        walk = visit.takes.walks[-1]
-        assert walk.recording is not None
-        faults += [fault for block in walk.recording.imu.values() for fault in faults_of(block, seconds)]
-        samples = sum(len(block) for block in walk.recording.imu.values())
+        walk = visit.recordings.walks[-1]
+        assert walk.read_back is not None
+        faults += [fault for block in walk.read_back.imu.values() for fault in faults_of(block, seconds)]
+        samples = sum(len(block) for block in walk.read_back.imu.values())
         strides = visit.evaluation.strides(walk.told.name)
     faults += [f"{name} grew" for name in grown(before, after)]
     most_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024

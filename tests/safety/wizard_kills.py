@@ -85,30 +85,30 @@ class Guide:
     def walk(self) -> None:
         """Record a walk, and answer nothing."""
         self.wizard._on_intent(Intent(KeyAction.RUN))
-        self._wait(lambda: self.visit.takes.has_begun)
+        self._wait(lambda: self.visit.recordings.has_begun)
         self._began_s = self.acquisition.now_s
         linger(self._application, WALKED_S / SPEED)
 
     def stop(self) -> None:
-        count = len(self.visit.takes.walks)
+        count = len(self.visit.recordings.walks)
         self.wizard._on_intent(Intent(KeyAction.RUN))
-        self._wait(lambda: len(self.visit.takes.walks) > count and self.visit.takes.is_idle)
+        self._wait(lambda: len(self.visit.recordings.walks) > count and self.visit.recordings.is_idle)
 
     def keep(self) -> None:
         self.wizard._on_intent(Intent(KeyAction.KEEP))
-        self._wait(lambda: self.visit.takes.walks[-1].stored.is_decided)
+        self._wait(lambda: self.visit.recordings.walks[-1].stored.is_decided)
 
     def correct(self) -> None:
         """Leave a stride out, name a condition, turn a sign, and let the second walk not count."""
         self.wizard.go_to(5)
         self._wait(lambda: self.visit.evaluation.analysis is not None and not self.visit.evaluation.is_busy)
-        first, second = self.visit.takes.walks
+        first, second = self.visit.recordings.walks
         step = self._results
-        self.visit.takes.change(first, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+        self.visit.recordings.change(first, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
         step._on_condition_typed(str(first.id), CONDITION)  # before the library has the stride: both hold
         step._on_sign_turned(str(Joint.LEFT_KNEE), True)
         step._on_kept_turned(str(second.id), False)
-        self._wait(lambda: bool(self.visit.told.turned_sign) and not self.visit.takes.walks[1].told.is_kept)
+        self._wait(lambda: bool(self.visit.told.turned_sign) and not self.visit.recordings.walks[1].told.is_kept)
         linger(self._application, 0.5)
 
     def comment(self) -> None:
@@ -132,27 +132,28 @@ class Guide:
         """Print what was said and recorded."""
         assert self.visit.session is not None
         heard = self.acquisition.latest(self.acquisition.sensors[0], 29.0)  # as long as it holds
-        takes = {
-            take.told.name: {
-                str(site): len(block) for site, block in (take.recording.imu if take.recording else {}).items()
+        recordings = {
+            recording.told.name: {
+                str(site): len(block)
+                for site, block in (recording.read_back.imu if recording.read_back else {}).items()
             }
-            for take in self.visit.takes.every
+            for recording in self.visit.recordings.every
         }
         told = {
             "session": str(self.visit.session.id),
-            "takes": takes,
+            "takes": recordings,
             "heard_s": float(heard.time_s[-1]) - self._began_s,
         }
         print(json.dumps(told), flush=True)
 
     def _record(self, kind: RecordingKind, seconds: float) -> None:
-        takes, count = self.visit.takes, len(self.visit.takes.every)
+        recordings, count = self.visit.recordings, len(self.visit.recordings.every)
         self.acquisition.ask(kind)
-        takes.begin(self.acquisition, kind)
-        self._wait(lambda: takes.has_begun)
+        recordings.begin(self.acquisition, kind)
+        self._wait(lambda: recordings.has_begun)
         linger(self._application, seconds / SPEED)
-        takes.stop()
-        self._wait(lambda: len(takes.every) > count and takes.is_idle)
+        recordings.stop()
+        self._wait(lambda: len(recordings.every) > count and recordings.is_idle)
 
     @property
     def _results(self) -> ResultsStep:

@@ -28,8 +28,8 @@ from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
 from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
 from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.recordings import SessionRecording
 from app.wizard.step import Step
-from app.wizard.takes import Take
 from app.wizard.visit import opposite
 from app.wording import name_of, tr
 from core.body import Joint, Side, Site
@@ -89,9 +89,9 @@ class FreeMotionStep(Step):
         self._settled.setSingleShot(True)
         self._settled.setInterval(SETTLED_MS)
         self._settled.timeout.connect(self._on_settled)
-        visit.takes.begun.connect(self._on_begun)
-        visit.takes.ended.connect(self._on_ended)
-        visit.takes.refused.connect(self._on_refused)
+        visit.recordings.begun.connect(self._on_begun)
+        visit.recordings.ended.connect(self._on_ended)
+        visit.recordings.refused.connect(self._on_refused)
 
     @property
     def page(self) -> FreeMotionPage:
@@ -206,7 +206,7 @@ class FreeMotionStep(Step):
             return
         self._then, self._again_side = AfterRecording.ANOTHER, self._repeated
         self._motion = self._replaced or FreeMotionState()
-        self._visit.takes.stop(is_kept=False)
+        self._visit.recordings.stop(is_kept=False)
 
     def on_quiet(self, number: int) -> None:
         self._repeat(self._repeatable[number])
@@ -231,17 +231,17 @@ class FreeMotionStep(Step):
 
     @property
     def _is_recording(self) -> bool:
-        ongoing = self._visit.takes.ongoing
+        ongoing = self._visit.recordings.ongoing
         return ongoing is not None and ongoing.told.kind is KIND
 
     @property
     def _has_moved(self) -> bool:
-        return self._visit.takes.has_moved
+        return self._visit.recordings.has_moved
 
     @property
     def _is_cut_short(self) -> bool:
         """Whether the one in force is what was recovered after a crash."""
-        moved = self._visit.takes.free_motion
+        moved = self._visit.recordings.free_motion
         return moved is not None and moved.stored.state is RecordingState.RECOVERED
 
     @property
@@ -266,15 +266,15 @@ class FreeMotionStep(Step):
     @property
     def _may_begin(self) -> bool:
         """Whether it is time to record by itself: none is in force, or the one before was given up for another."""
-        takes = self._visit.takes
+        recordings = self._visit.recordings
         if self._then is AfterRecording.ANOTHER:
-            return takes.is_idle and not takes.every[-1].told.is_kept
-        return self._then is AfterRecording.ITSELF and not (self._has_moved or takes.is_recording)
+            return recordings.is_idle and not recordings.every[-1].told.is_kept
+        return self._then is AfterRecording.ITSELF and not (self._has_moved or recordings.is_recording)
 
     def _begin(self, side: Side | None = None) -> None:
         """Record; one leg alone takes only that leg's sensors, so that what the other's motion told stays in force."""
-        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
-        if acquisition is None or self._visit.session is None or takes.is_recording:
+        acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
+        if acquisition is None or self._visit.session is None or recordings.is_recording:
             return
         self._replaced = self._motion if self._has_moved else None
         self._before = self._other_leg(side) if side is not None else FreeMotionState()
@@ -285,7 +285,7 @@ class FreeMotionStep(Step):
         if side is not None:
             self._visit.place_sensors(only=side)
         self._plays_s = None
-        takes.begin(acquisition, KIND)
+        recordings.begin(acquisition, KIND)
         self.changed.emit()
 
     def _ask_patient(self) -> None:
@@ -375,13 +375,13 @@ class FreeMotionStep(Step):
         elif not is_kept:
             then = tr("The joints are found from the walks, less surely; or go back to free motion to record it again.")
             self._left = tr("No leg moved in the free motion, so it does not count."), then
-        self._visit.takes.stop(is_kept=is_kept)
+        self._visit.recordings.stop(is_kept=is_kept)
         self.changed.emit()
 
     def _break_off(self) -> None:
         """Stop without having come to an end, and say what it counts for."""
         if self._is_done:
-            self._visit.takes.stop()
+            self._visit.recordings.stop()
             return
         joints = self._motion.joints
         again = tr("Go back to free motion to record it again.")
@@ -395,7 +395,7 @@ class FreeMotionStep(Step):
             ready = sum(state.is_closed for state in joints.values())
             what = tr("Free motion was left before its end and is kept: {ready} of {count} joints are ready.")
             self._left = what.format(ready=ready, count=len(joints)), again
-        self._visit.takes.stop(is_kept=is_kept)
+        self._visit.recordings.stop(is_kept=is_kept)
 
     # what somebody has to answer
 
@@ -495,7 +495,7 @@ class FreeMotionStep(Step):
             self._watch()
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
-        if self._is_in_sight and not self._visit.takes.is_recording:
+        if self._is_in_sight and not self._visit.recordings.is_recording:
             if self._then is not AfterRecording.NEXT_STEP:
                 self._then = AfterRecording.ITSELF if self._has_moved else AfterRecording.WORD
             self.changed.emit()
@@ -504,8 +504,8 @@ class FreeMotionStep(Step):
         if self._is_recording and self._is_done:
             self._stop()
 
-    def _on_ended(self, take: Take) -> None:
-        if take.told.kind is not KIND:
+    def _on_ended(self, recording: SessionRecording) -> None:
+        if recording.told.kind is not KIND:
             return
         if self._repeated is not None:  # the other leg's sensors are worn as before
             self._repeated = None

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage, ResultParts
-    from app.wizard.takes import Take
+    from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
     from app.workers.how_found_desk import HowFoundDesk
     from core.results import Analysis
@@ -47,9 +47,9 @@ class ResultsStep(Step):
         self._is_correcting = self._is_asking = False
         self._how_found: HowFoundDesk | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
-        self._strides = StrideChoice(visit.takes, self)
+        self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
-        visit.takes.changed.connect(self._on_takes_changed)
+        visit.recordings.changed.connect(self._on_recordings_changed)
         visit.changed.connect(self._on_visit_changed)
         visit.evaluation.done.connect(self._on_evaluated)
         visit.evaluation.progressed.connect(self._on_progressed)
@@ -81,7 +81,7 @@ class ResultsStep(Step):
 
     @property
     def _kept_walks(self) -> list[object]:
-        return [take for take in self._visit.takes.walks if take.told.is_kept]
+        return [recording for recording in self._visit.recordings.walks if recording.told.is_kept]
 
     def prepare(self) -> bool:
         return self.page.prepare()
@@ -140,7 +140,7 @@ class ResultsStep(Step):
 
     def _evaluate_if_stale(self) -> None:
         evaluation = self._visit.evaluation
-        recordings = self._visit.takes.recordings()
+        recordings = self._visit.recordings.counted()
         is_stale = evaluation.session is None or not _are_same(evaluation.session.recordings, recordings)
         if recordings and is_stale and not evaluation.is_busy:
             self._visit.evaluate()
@@ -239,11 +239,13 @@ class ResultsStep(Step):
         page = self._correct_page()
         visit = self._visit
         walks = []
-        for take in visit.takes.walks:
-            strides = visit.evaluation.strides(take.told.name)
+        for recording in visit.recordings.walks:
+            strides = visit.evaluation.strides(recording.told.name)
             counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
             told = tr("strides {counts}").format(counts=counted) if counted else tr("not evaluated")
-            walks.append(WalkLine(str(take.id), take.told.name, told, take.told.condition, take.told.is_kept))
+            walks.append(
+                WalkLine(str(recording.id), recording.told.name, told, recording.told.condition, recording.told.is_kept)
+            )
         page.show_walks(walks)
         found = visit.evaluation.calibration
         joints = []
@@ -269,37 +271,37 @@ class ResultsStep(Step):
             page.closed.connect(self._on_corrected)
         return page
 
-    def _take(self, key: str) -> "Take | None":
-        return next((take for take in self._visit.takes.walks if str(take.id) == key), None)
+    def _recording(self, key: str) -> "SessionRecording | None":
+        return next((recording for recording in self._visit.recordings.walks if str(recording.id) == key), None)
 
     def _on_condition_typed(self, key: str, condition: str) -> None:
-        take = self._take(key)
-        if take is None or take.told.condition == condition:
+        recording = self._recording(key)
+        if recording is None or recording.told.condition == condition:
             return
-        before = take.told.condition
+        before = recording.told.condition
         self._change_condition(key, condition)
         self._offer(
             tr("{walk} is {condition} now.").format(
-                walk=take.told.name, condition=condition or tr("without condition")
+                walk=recording.told.name, condition=condition or tr("without condition")
             ),
             lambda: self._change_condition(key, before),
         )
 
     def _change_condition(self, key: str, condition: str) -> None:
-        if (take := self._take(key)) is not None:
-            self._visit.takes.change(take, lambda told: replace(told, condition=condition))
+        if (recording := self._recording(key)) is not None:
+            self._visit.recordings.change(recording, lambda told: replace(told, condition=condition))
 
     def _on_kept_turned(self, key: str, is_kept: bool) -> None:
-        take = self._take(key)
-        if take is None or take.told.is_kept == is_kept:
+        recording = self._recording(key)
+        if recording is None or recording.told.is_kept == is_kept:
             return
         self._keep(key, is_kept)
         said = tr("{walk} counts.") if is_kept else tr("{walk} is left out.")
-        self._offer(said.format(walk=capitalised(take.told.name)), lambda: self._keep(key, not is_kept))
+        self._offer(said.format(walk=capitalised(recording.told.name)), lambda: self._keep(key, not is_kept))
 
     def _keep(self, key: str, is_kept: bool) -> None:
-        if (take := self._take(key)) is not None:
-            self._visit.takes.keep(take, is_kept)
+        if (recording := self._recording(key)) is not None:
+            self._visit.recordings.keep(recording, is_kept)
 
     def _on_sign_turned(self, name: str, is_turned: bool) -> None:
         joint = Joint(name)
@@ -335,7 +337,7 @@ class ResultsStep(Step):
     def _is_in_sight(self) -> bool:
         return self._frame is not None and self._frame.isVisible()
 
-    def _on_takes_changed(self) -> None:
+    def _on_recordings_changed(self) -> None:
         if self._is_in_sight():
             was_busy = self._visit.evaluation.is_busy
             self._evaluate_if_stale()
@@ -356,7 +358,7 @@ class ResultsStep(Step):
         if frame is None or analysis is None:
             return
         has_walk = any(one.kind is RecordingKind.WALKING for one in analysis.recordings)
-        if has_walk and frame.has_results and not self._visit.takes.is_recording:
+        if has_walk and frame.has_results and not self._visit.recordings.is_recording:
             self._hold(frame.results(), analysis)  # before somebody comes, who would wait for it then
         if frame.isVisible() and frame.currentWidget() is frame.working:
             QTimer.singleShot(0, self, self._show)  # filling the page and painting it would hold up the screen together

@@ -12,65 +12,65 @@ from core.body import Side
 
 if TYPE_CHECKING:
     from app.widgets.stride_list import StrideLine
-    from app.wizard.takes import Take, Takes
+    from app.wizard.recordings import SessionRecording, SessionRecordings
 
 LeftOut = Mapping[Side, tuple[float, ...]]
 
 
 class StrideChoice(QObject):
-    """Says at once what is wanted; the library follows, and `Takes.changed` tells when it has."""
+    """Says at once what is wanted; the library follows, and `SessionRecordings.changed` tells when it has."""
 
     offered = Signal(str, object)  # what was done, and what undoes it
 
-    def __init__(self, takes: "Takes", parent: QObject) -> None:
+    def __init__(self, recordings: "SessionRecordings", parent: QObject) -> None:
         super().__init__(parent)
-        self._takes = takes
+        self._recordings = recordings
         self._wanted: dict[UUID, LeftOut] = {}  # until the library has it
-        takes.changed.connect(self._on_takes_changed)
-        takes.refused.connect(self._on_refused)
+        recordings.changed.connect(self._on_recordings_changed)
+        recordings.refused.connect(self._on_refused)
 
     def turn(self, walk: str, line: "StrideLine", is_left_out: bool) -> None:
         """Leave one stride out, or take it in again."""
-        take = self._take(walk)
-        if take is None:
+        recording = self._recording(walk)
+        if recording is None:
             return
-        before = self._left_out(take)
+        before = self._left_out(recording)
         others = tuple(time_s for time_s in before.get(line.side, ()) if not line.start_s <= time_s < line.end_s)
         middle_s = (line.start_s + line.end_s) / 2
         times_s = tuple(sorted((*others, middle_s))) if is_left_out else others
         told = tr("{stride} of {walk} is left out.") if is_left_out else tr("{stride} of {walk} counts again.")
-        self._change(take, {**before, line.side: times_s}, told.format(stride=line.name, walk=walk))
+        self._change(recording, {**before, line.side: times_s}, told.format(stride=line.name, walk=walk))
 
     def take_all_in(self, walk: str) -> None:
         """Let all strides of a walk count that were left out by hand."""
-        if (take := self._take(walk)) is not None:
-            self._change(take, {}, tr("All strides of {walk} count that can be used.").format(walk=walk))
+        if (recording := self._recording(walk)) is not None:
+            self._change(recording, {}, tr("All strides of {walk} count that can be used.").format(walk=walk))
 
-    def _change(self, take: "Take", left_out_s: LeftOut, told: str) -> None:
-        before = self._left_out(take)
-        self._set(take.id, left_out_s)
-        self.offered.emit(told[:1].upper() + told[1:], self._undoing(take.id, before))
+    def _change(self, recording: "SessionRecording", left_out_s: LeftOut, told: str) -> None:
+        before = self._left_out(recording)
+        self._set(recording.id, left_out_s)
+        self.offered.emit(told[:1].upper() + told[1:], self._undoing(recording.id, before))
 
     def _undoing(self, take_id: UUID, before: LeftOut) -> Callable[[], None]:
         return lambda: self._set(take_id, before)
 
     def _set(self, take_id: UUID, left_out_s: LeftOut) -> None:
-        take = next((take for take in self._takes.walks if take.id == take_id), None)
-        if take is not None:
+        recording = next((recording for recording in self._recordings.walks if recording.id == take_id), None)
+        if recording is not None:
             wanted = {side: left_out_s[side] for side in Side if left_out_s.get(side)}
             self._wanted[take_id] = wanted
-            self._takes.change(take, lambda told: replace(told, left_out_s=wanted))
+            self._recordings.change(recording, lambda told: replace(told, left_out_s=wanted))
 
-    def _take(self, walk: str) -> "Take | None":
-        return next((take for take in self._takes.walks if take.told.name == walk), None)
+    def _recording(self, walk: str) -> "SessionRecording | None":
+        return next((recording for recording in self._recordings.walks if recording.told.name == walk), None)
 
-    def _left_out(self, take: "Take") -> LeftOut:
-        return self._wanted.get(take.id, take.told.left_out_s)
+    def _left_out(self, recording: "SessionRecording") -> LeftOut:
+        return self._wanted.get(recording.id, recording.told.left_out_s)
 
-    def _on_takes_changed(self) -> None:
-        for take in self._takes.walks:
-            if self._wanted.get(take.id) == take.told.left_out_s:
-                del self._wanted[take.id]
+    def _on_recordings_changed(self) -> None:
+        for recording in self._recordings.walks:
+            if self._wanted.get(recording.id) == recording.told.left_out_s:
+                del self._wanted[recording.id]
 
     def _on_refused(self) -> None:
         self._wanted.clear()

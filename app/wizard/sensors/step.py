@@ -140,7 +140,7 @@ class SensorsStep(Step):
         self._estimator = None
         if sensors.site_of and sensors.site_of != self._known_places and not self._visit.cannot_record:
             # other places of the same sensors: they were told wrongly; other sensors: strapped on since
-            if self._visit.takes.since_strapped and sensors.site_of.keys() == self._known_places.keys():
+            if self._visit.recordings.since_strapped and sensors.site_of.keys() == self._known_places.keys():
                 self._visit.correct_placement()
             else:
                 self._visit.place_sensors()

@@ -13,10 +13,10 @@ from app.widgets.action_bar import BarState, Verb
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
+from app.wizard.recordings import SessionRecording
 from app.wizard.standing.estimator import StandingEstimator
 from app.wizard.standing.page import StandPhase, StandStillPage, StandStillView
 from app.wizard.step import Step
-from app.wizard.takes import Take
 from app.wording import tr
 from core.body import Joint
 from core.live.standing import WANTED_S
@@ -45,9 +45,9 @@ class StandStillStep(Step):
         self._shown.setSingleShot(True)
         self._shown.setInterval(SHOWN_MS)
         self._shown.timeout.connect(self._go_on)
-        visit.takes.begun.connect(self._on_begun)
-        visit.takes.ended.connect(self._on_ended)
-        visit.takes.refused.connect(self._on_refused)
+        visit.recordings.begun.connect(self._on_begun)
+        visit.recordings.ended.connect(self._on_ended)
+        visit.recordings.refused.connect(self._on_refused)
 
     @property
     def page(self) -> StandStillPage:
@@ -68,14 +68,14 @@ class StandStillStep(Step):
             return tr("skipped, printed")
         if not self._has_stood:
             return ""
-        said = tr("{seconds:.1f} s, zero set") if self._visit.takes.standing is not None else tr("being read back")
+        said = tr("{seconds:.1f} s, zero set") if self._visit.recordings.standing is not None else tr("being read back")
         return said.format(seconds=self._stood_s)
 
     @property
     def state(self) -> StepState:
         if self._visit.has_skipped_standing:
             return StepState.SKIPPED
-        is_read = self._has_stood and self._visit.takes.standing is not None
+        is_read = self._has_stood and self._visit.recordings.standing is not None
         return StepState.DONE if is_read else StepState.TODO
 
     @property
@@ -104,7 +104,7 @@ class StandStillStep(Step):
     def leave(self) -> None:
         self._shown.stop()
         if self._is_recording:  # not to its end
-            self._visit.takes.stop(is_kept=False)
+            self._visit.recordings.stop(is_kept=False)
         if (acquisition := self._visit.sensors.acquisition) is not None:
             acquisition.set_estimator(None)
         self._estimator = None
@@ -116,7 +116,7 @@ class StandStillStep(Step):
             self._moved = standing.moved or self._moved
             self._sound(standing.wanted_s - standing.still_s)
             is_counting = self._phase is StandPhase.COUNTING
-            if is_counting and standing.is_done and self._is_recording and self._visit.takes.has_begun:
+            if is_counting and standing.is_done and self._is_recording and self._visit.recordings.has_begun:
                 self._finish()
             self._show()
 
@@ -151,15 +151,15 @@ class StandStillStep(Step):
 
     @property
     def _is_recording(self) -> bool:
-        ongoing = self._visit.takes.ongoing
+        ongoing = self._visit.recordings.ongoing
         return ongoing is not None and ongoing.told.kind is RecordingKind.STANDING
 
     @property
     def _has_stood(self) -> bool:
         """For as long as it takes, and recorded: what a crash cut short was recovered, and is not enough."""
-        takes = self._visit.takes
-        is_kept = takes.standing is not None or takes.awaits(RecordingKind.STANDING)
-        return is_kept and self._stood_s > WANTED_S - SLACK_S and not takes.is_restrapped
+        recordings = self._visit.recordings
+        is_kept = recordings.standing is not None or recordings.awaits(RecordingKind.STANDING)
+        return is_kept and self._stood_s > WANTED_S - SLACK_S and not recordings.is_restrapped
 
     @property
     def _stood_s(self) -> float:
@@ -172,17 +172,17 @@ class StandStillStep(Step):
 
     def _start(self) -> None:
         """Begin to count, anew if need be; what is being recorded goes on."""
-        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
-        if acquisition is None or self._visit.session is None or takes.is_stopping:
+        acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
+        if acquisition is None or self._visit.session is None or recordings.is_stopping:
             return
-        if takes.is_recording and not self._is_recording:
+        if recordings.is_recording and not self._is_recording:
             return  # what another step began is still being closed
         self._shown.stop()
         self._phase = StandPhase.COUNTING
         self._watch()
-        if not takes.is_recording:
+        if not recordings.is_recording:
             acquisition.ask(RecordingKind.STANDING)
-            takes.begin(acquisition, RecordingKind.STANDING)
+            recordings.begin(acquisition, RecordingKind.STANDING)
         self._show()
         self.changed.emit()
 
@@ -206,13 +206,13 @@ class StandStillStep(Step):
         assert self._estimator is not None
         self._visit.rests = dict(self._estimator.state.standing.rest)
         self._phase = StandPhase.DONE
-        self._visit.takes.stop()
+        self._visit.recordings.stop()
         sounds.play(Sound.READY)
         self._shown.start()
         self.changed.emit()
 
     def _go_on(self) -> None:
-        if self._phase in (StandPhase.DONE, StandPhase.SKIPPED) and not self._visit.takes.is_recording:
+        if self._phase in (StandPhase.DONE, StandPhase.SKIPPED) and not self._visit.recordings.is_recording:
             self._shown.stop()
             self.done.emit()
 
@@ -237,7 +237,7 @@ class StandStillStep(Step):
                 moved=placed(self._moved),
                 silent=placed(standing.silent),
                 restarts=standing.restarts if is_counting else 0,
-                is_read_back=self._visit.takes.standing is not None,
+                is_read_back=self._visit.recordings.standing is not None,
             )
         )
 
@@ -247,8 +247,8 @@ class StandStillStep(Step):
         if self._is_recording:
             self._watch()  # only what is recorded counts
 
-    def _on_ended(self, take: Take) -> None:
-        if take.told.kind is not RecordingKind.STANDING:
+    def _on_ended(self, recording: SessionRecording) -> None:
+        if recording.told.kind is not RecordingKind.STANDING:
             return
         if self._phase is StandPhase.DONE and not self._shown.isActive() and self._estimator is not None:
             self._go_on()  # the check mark has been seen while the journal was closed
@@ -270,9 +270,9 @@ class StandStillStep(Step):
         self._visit.set_limits(replace(self._visit.limits, cannot_stand=True))
         self._phase = StandPhase.SKIPPED
         if self._is_recording:
-            self._visit.takes.stop(is_kept=False)
-        if (standing := self._visit.takes.standing) is not None:
-            self._visit.takes.keep(standing, is_kept=False)
+            self._visit.recordings.stop(is_kept=False)
+        if (standing := self._visit.recordings.standing) is not None:
+            self._visit.recordings.keep(standing, is_kept=False)
         self._visit.rests = {}
         self._show()
         self.changed.emit()

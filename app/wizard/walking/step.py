@@ -34,7 +34,7 @@ from core.live.walking import STRIDES_FOR_ANKLE
 from core.samples import Recording, RecordingKind
 
 if TYPE_CHECKING:
-    from app.wizard.takes import Take
+    from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
     from app.wizard.walking.page import WalkingPage
     from app.wizard.walking.readout import WalkingReadout
@@ -58,10 +58,10 @@ class WalkingStep(Step):
         self._losses = Losses()
         self._is_troubled = False
         self._discarded: UUID | None = None
-        visit.takes.begun.connect(self._on_begun)
-        visit.takes.ended.connect(self._on_ended)
-        visit.takes.changed.connect(self._show)
-        visit.takes.troubled.connect(self._on_troubled)
+        visit.recordings.begun.connect(self._on_begun)
+        visit.recordings.ended.connect(self._on_ended)
+        visit.recordings.changed.connect(self._show)
+        visit.recordings.troubled.connect(self._on_troubled)
         visit.evaluation.done.connect(self._on_evaluated)
 
     # the frame of the wizard
@@ -85,26 +85,30 @@ class WalkingStep(Step):
 
     @property
     def note(self) -> str:
-        if self._visit.takes.is_recording and self._visit.takes.ongoing is not None:
-            if self._visit.takes.ongoing.told.kind is RecordingKind.WALKING:
-                return tr("Recording walk {number}").format(number=len(self._visit.takes.walks) + 1)
+        if self._visit.recordings.is_recording and self._visit.recordings.ongoing is not None:
+            if self._visit.recordings.ongoing.told.kind is RecordingKind.WALKING:
+                return tr("Recording walk {number}").format(number=len(self._visit.recordings.walks) + 1)
             return ""
         if self._asked is not None:
             return tr("keep or discard?")
-        kept = sum(take.told.is_kept for take in self._visit.takes.walks)
+        kept = sum(recording.told.is_kept for recording in self._visit.recordings.walks)
         return tr("{count} kept").format(count=kept) if kept else ""
 
     @property
     def state(self) -> StepState:
         if self._asked is not None:
             return StepState.ATTENTION
-        return StepState.DONE if any(take.told.is_kept for take in self._visit.takes.walks) else StepState.TODO
+        return (
+            StepState.DONE
+            if any(recording.told.is_kept for recording in self._visit.recordings.walks)
+            else StepState.TODO
+        )
 
     @property
     def cannot_enter(self) -> str:
         if self._visit.session is None:
             return tr("Type the patient's code first.")
-        if self._visit.takes.walks:
+        if self._visit.recordings.walks:
             return ""  # they can be kept or discarded whatever is missing for the next
         return self._cannot_start
 
@@ -118,14 +122,14 @@ class WalkingStep(Step):
             return self._visit.cannot_record
         if not sensors.site_of:
             return tr("Say first which sensor is worn where.")
-        if self._visit.takes.must_move:
+        if self._visit.recordings.must_move:
             return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
         return ""
 
     @property
     def cannot_leave(self) -> str:
-        takes = self._visit.takes
-        if takes.is_recording or takes.is_stopping:
+        recordings = self._visit.recordings
+        if recordings.is_recording or recordings.is_stopping:
             return tr("A walk is being recorded. Stop it first.")
         return ""
 
@@ -152,7 +156,7 @@ class WalkingStep(Step):
         if self._ticks % WATCH_TICKS == 0:
             self._watch_sensors()
         self._ticks += 1
-        if self._estimator is None or not self._visit.takes.is_recording:
+        if self._estimator is None or not self._visit.recordings.is_recording:
             return
         view = self._estimator.state
         if view is self._shown or math.isnan(view.now_s):
@@ -163,14 +167,14 @@ class WalkingStep(Step):
         self._ask_for_ankles(strides)
 
     def bar(self) -> BarState:
-        takes = self._visit.takes
-        if takes.ongoing is not None and not takes.is_stopping:
+        recordings = self._visit.recordings
+        if recordings.ongoing is not None and not recordings.is_stopping:
             acquisition = self._visit.sensors.acquisition
-            elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - takes.ongoing.began_s)
+            elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - recordings.ongoing.began_s)
             return BarState(
                 primary=Verb(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
-                    tr("Recording {label}").format(label=takes.ongoing.told.condition),
+                    tr("Recording {label}").format(label=recordings.ongoing.told.condition),
                     " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
                     elapsed_s,
                     sounds.is_on(),
@@ -178,30 +182,30 @@ class WalkingStep(Step):
                 has_back=False,
             )
         start = Verb(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
-        if takes.is_stopping:
+        if recordings.is_stopping:
             return BarState(primary=start, note=tr("The walk is being read back."))
         if self._asked is not None:
             both = Verb(tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start)
             return BarState(primary=both, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
-        if any(take.told.is_kept for take in takes.walks):
+        if any(recording.told.is_kept for recording in recordings.walks):
             again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
             return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
         note = tr("Next: {label}").format(label=self._label)
-        if not takes.has_moved:
+        if not recordings.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")
         return BarState(primary=start, note=self._cannot_start or note)
 
     def _saved(self) -> str:
         """Say that what comes in is saved, only while the journal has it so."""
-        takes = self._visit.takes
-        if not takes.has_begun:
+        recordings = self._visit.recordings
+        if not recordings.has_begun:
             return tr("It begins in a moment.")
-        return tr("Saved as it comes in.") if takes.is_written else ""
+        return tr("Saved as it comes in.") if recordings.is_written else ""
 
     def on_primary(self) -> None:
-        takes = self._visit.takes
-        is_settled = not takes.is_recording and not takes.is_stopping and self._asked is None
-        if is_settled and any(take.told.is_kept for take in takes.walks):
+        recordings = self._visit.recordings
+        is_settled = not recordings.is_recording and not recordings.is_stopping and self._asked is None
+        if is_settled and any(recording.told.is_kept for recording in recordings.walks):
             self.done.emit()
         else:
             self._run()
@@ -225,21 +229,21 @@ class WalkingStep(Step):
         return True
 
     def undo(self) -> None:
-        if (take := self._take(self._discarded)) is not None:
-            self._keep(take, is_kept=True)
+        if (recording := self._recording(self._discarded)) is not None:
+            self._keep(recording, is_kept=True)
         self._discarded = None
 
     # recording
 
     @property
     def _can_start(self) -> bool:
-        takes = self._visit.takes
-        is_free = self._visit.session is not None and not takes.is_recording and not takes.is_stopping
+        recordings = self._visit.recordings
+        is_free = self._visit.session is not None and not recordings.is_recording and not recordings.is_stopping
         return is_free and not self._cannot_start
 
     def _run(self) -> None:
         """Start, or stop; between walks, keep the last one and start the next."""
-        if self._visit.takes.is_recording:
+        if self._visit.recordings.is_recording:
             self._stop()
         elif self._can_start:
             if self._asked is not None:
@@ -247,31 +251,31 @@ class WalkingStep(Step):
             self._start()
 
     def _start(self) -> None:
-        acquisition, takes = self._visit.sensors.acquisition, self._visit.takes
+        acquisition, recordings = self._visit.sensors.acquisition, self._visit.recordings
         assert acquisition is not None
         self._is_ankle_asked = False
         self._is_troubled = False
         self._shown = self._at_stop = None
         self._counted_before = {}
         acquisition.ask(RecordingKind.WALKING)
-        takes.begin(acquisition, RecordingKind.WALKING, self._label)
-        if self._estimator is not None and takes.ongoing is not None:
-            self._estimator.count_from(takes.ongoing.began_s)
+        recordings.begin(acquisition, RecordingKind.WALKING, self._label)
+        if self._estimator is not None and recordings.ongoing is not None:
+            self._estimator.count_from(recordings.ongoing.began_s)
         self.page.focus()
 
     def _stop(self) -> None:
         acquisition, view = self._visit.sensors.acquisition, self._shown
         self._at_stop = view
-        self._visit.takes.stop(None if view is None else self._strides(view))
+        self._visit.recordings.stop(None if view is None else self._strides(view))
         if acquisition is not None:
             acquisition.ask(None)
         sounds.play(Sound.STOP)
 
-    def _keep(self, take: "Take", is_kept: bool) -> None:
-        self._visit.takes.keep(take, is_kept)
+    def _keep(self, recording: "SessionRecording", is_kept: bool) -> None:
+        self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
-            self._discarded = take.id
-            self.offered.emit(tr("{label} discarded.").format(label=take.told.condition))
+            self._discarded = recording.id
+            self.offered.emit(tr("{label} discarded.").format(label=recording.told.condition))
         self._show()
 
     # what is live
@@ -283,8 +287,8 @@ class WalkingStep(Step):
             return
         calibration = self._visit.evaluation.calibration
         self._estimator = WalkingEstimator(self._visit.sensors.site_of, self._visit.live_sensors(), calibration)
-        if self._visit.takes.ongoing is not None:
-            self._estimator.count_from(self._visit.takes.ongoing.began_s)
+        if self._visit.recordings.ongoing is not None:
+            self._estimator.count_from(self._visit.recordings.ongoing.began_s)
         acquisition.set_estimator(self._estimator)
 
     def _strides(self, view: "WalkingReadout") -> dict[Side, int]:
@@ -293,16 +297,16 @@ class WalkingStep(Step):
 
     def _ask_for_ankles(self, strides: dict[Side, int]) -> None:
         """Find the ankles' axes anew, once, from free motion and this walk together."""
-        takes, acquisition = self._visit.takes, self._visit.sensors.acquisition
-        if self._is_ankle_asked or takes.ongoing is None or acquisition is None or not strides:
+        recordings, acquisition = self._visit.recordings, self._visit.sensors.acquisition
+        if self._is_ankle_asked or recordings.ongoing is None or acquisition is None or not strides:
             return
         if min(strides.values()) < STRIDES_FOR_ANKLE or self._visit.evaluation.is_busy:
             return
         self._is_ankle_asked = True
-        seconds = min(acquisition.now_s - takes.ongoing.began_s, LOOKED_BACK_S)
+        seconds = min(acquisition.now_s - recordings.ongoing.began_s, LOOKED_BACK_S)
         worn = self._visit.sensors.site_of
         imu = {site: acquisition.latest(sensor, seconds) for sensor, site in worn.items()}
-        told = takes.ongoing.told
+        told = recordings.ongoing.told
         self._visit.evaluate(
             Recording(told.name, told.kind, told.folder, {site: block for site, block in imu.items() if len(block)})
         )
@@ -337,23 +341,23 @@ class WalkingStep(Step):
         status = sensors.status
         silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}
         news = self._losses.update(silent_s, acquisition.now_s)
-        if news and self._visit.takes.is_recording:
+        if news and self._visit.recordings.is_recording:
             sounds.play(Sound.LOSS)
             for site in news:
-                self._visit.takes.mark(f"{site} silent")
+                self._visit.recordings.mark(f"{site} silent")
         message = self._message(acquisition.now_s)
-        if message == NOTHING and self._visit.takes.is_recording:
+        if message == NOTHING and self._visit.recordings.is_recording:
             self.page.show_message(*no_foot_message(sensors.sensor_at), is_caution=False)
         else:
             self.page.show_message(*message)
 
     def _message(self, now_s: float) -> Message:
         """Give the gravest of what is to be said."""
-        takes = self._visit.takes
-        is_recording = takes.is_recording
-        lost = self._losses.message(takes.has_begun, self._visit.sensors.joints, now_s)
-        trouble = takes.trouble_message() if self._is_troubled else NOTHING
-        for message in (trouble, takes.standstill_message(self._visit.sensors.site_of), lost):
+        recordings = self._visit.recordings
+        is_recording = recordings.is_recording
+        lost = self._losses.message(recordings.has_begun, self._visit.sensors.joints, now_s)
+        trouble = recordings.trouble_message() if self._is_troubled else NOTHING
+        for message in (trouble, recordings.standstill_message(self._visit.sensors.site_of), lost):
             if message != NOTHING:
                 return message
         if is_recording:
@@ -364,7 +368,7 @@ class WalkingStep(Step):
         return self._few_strides_message()
 
     def _message_of_ongoing(self) -> Message:
-        ongoing, view, sensors = self._visit.takes.ongoing, self._shown, self._visit.sensors
+        ongoing, view, sensors = self._visit.recordings.ongoing, self._shown, self._visit.sensors
         if ongoing is None or view is None:
             return NOTHING
         message = slip_message(view.slips, ongoing.began_s)
@@ -374,14 +378,14 @@ class WalkingStep(Step):
 
     def _few_strides_message(self) -> Message:
         """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
-        walks = [take for take in self._visit.takes.walks if take.told.is_kept]
+        walks = [recording for recording in self._visit.recordings.walks if recording.told.is_kept]
         if not walks:
             return NOTHING
         condition = walks[-1].told.condition
         counts: dict[Side, int] = {}
-        for take in walks:
-            if take.told.condition == condition:
-                for side, count in self._strides_of(take).items():
+        for recording in walks:
+            if recording.told.condition == condition:
+                for side, count in self._strides_of(recording).items():
                     counts[side] = counts.get(side, 0) + count
         return few_strides_message(counts)
 
@@ -389,45 +393,49 @@ class WalkingStep(Step):
 
     @property
     def _used(self) -> list[str]:
-        return [take.told.condition for take in self._visit.takes.walks]
+        return [recording.told.condition for recording in self._visit.recordings.walks]
 
     @property
-    def _asked(self) -> "Take | None":
+    def _asked(self) -> "SessionRecording | None":
         """The walk that waits for somebody to say whether it is kept: the newest, or one that was recovered."""
-        undecided = [take for take in self._visit.takes.walks if not take.is_decided]
-        new = [take for take in undecided if take.stored.state is not RecordingState.RECOVERED]
+        undecided = [recording for recording in self._visit.recordings.walks if not recording.is_decided]
+        new = [recording for recording in undecided if recording.stored.state is not RecordingState.RECOVERED]
         return new[-1] if new else undecided[0] if undecided else None
 
-    def _take(self, identity: UUID | None) -> "Take | None":
-        return next((take for take in self._visit.takes.walks if take.id == identity), None)
+    def _recording(self, identity: UUID | None) -> "SessionRecording | None":
+        return next((recording for recording in self._visit.recordings.walks if recording.id == identity), None)
 
-    def _strides_of(self, take: "Take") -> dict[Side, int]:
+    def _strides_of(self, recording: "SessionRecording") -> dict[Side, int]:
         """As the analysis has counted them, or else as they were counted live: amid a walk it saw a part only."""
         session = self._visit.evaluation.session
         seen = {recording.name: recording for recording in session.recordings} if session is not None else {}
-        same = seen.get(take.told.name)
-        if same is None or take.recording is None or same.imu is not take.recording.imu:
-            return dict(take.strides or {})
-        return self._visit.evaluation.strides(take.told.name)
+        same = seen.get(recording.told.name)
+        if same is None or recording.read_back is None or same.imu is not recording.read_back.imu:
+            return dict(recording.strides or {})
+        return self._visit.evaluation.strides(recording.told.name)
 
     @Slot()
     def _show(self) -> None:
         if self._page is None or not self._is_in_sight:
             self.changed.emit()
             return
-        takes, asked = self._visit.takes, self._asked
-        ongoing = takes.ongoing if takes.ongoing and takes.ongoing.told.kind is RecordingKind.WALKING else None
+        recordings, asked = self._visit.recordings, self._asked
+        ongoing = (
+            recordings.ongoing if recordings.ongoing and recordings.ongoing.told.kind is RecordingKind.WALKING else None
+        )
         conditions = [*self._used, *([ongoing.told.condition] if ongoing is not None else [])]
         letters = letters_of(conditions)
         rows = []
-        for take in takes.walks:
-            state = WalkState.KEPT if take.told.is_kept else WalkState.DISCARDED
-            if not take.is_decided:
-                is_recovered = take.stored.state is RecordingState.RECOVERED
+        for recording in recordings.walks:
+            state = WalkState.KEPT if recording.told.is_kept else WalkState.DISCARDED
+            if not recording.is_decided:
+                is_recovered = recording.stored.state is RecordingState.RECOVERED
                 state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
-            strides = max(self._strides_of(take).values(), default=None)
-            letter = letters.get(take.told.condition, "")
-            rows.append(WalkRow(str(take.id), letter, take.told.condition or take.told.name, state, strides))
+            strides = max(self._strides_of(recording).values(), default=None)
+            letter = letters.get(recording.told.condition, "")
+            rows.append(
+                WalkRow(str(recording.id), letter, recording.told.condition or recording.told.name, state, strides)
+            )
         if ongoing is not None:
             label = ongoing.told.condition
             rows.append(WalkRow("", letters.get(label, ""), label or ongoing.told.name, WalkState.RECORDING))
@@ -435,16 +443,18 @@ class WalkingStep(Step):
         self._page.show_labels(labels_for(self._visit.patient.told, conditions), self._label)
         self.changed.emit()
 
-    def _facts(self, take: "Take") -> str:
-        strides = self._strides_of(take)
+    def _facts(self, recording: "SessionRecording") -> str:
+        strides = self._strides_of(recording)
         said = []
         if strides:
             counts = ", ".join(f"{letter} {strides[side]}" for side, letter in _LETTERS.items() if side in strides)
             said.append(tr("Strides: {counts}").format(counts=counts))
-        cadence = self._at_stop.cadence_steps_min if self._at_stop is not None and not take.is_decided else math.nan
+        cadence = (
+            self._at_stop.cadence_steps_min if self._at_stop is not None and not recording.is_decided else math.nan
+        )
         if math.isfinite(cadence):
             said.append(tr("{cadence:.0f} steps/min").format(cadence=cadence))
-        said.append(clock(_length_s(take)))
+        said.append(clock(_length_s(recording)))
         return " · ".join(said)
 
     # what the page and the visit tell
@@ -455,8 +465,8 @@ class WalkingStep(Step):
             sounds.play(Sound.START)
 
     @Slot(object)
-    def _on_ended(self, take: "Take") -> None:
-        if take.told.kind is RecordingKind.WALKING:
+    def _on_ended(self, recording: "SessionRecording") -> None:
+        if recording.told.kind is RecordingKind.WALKING:
             self._label = label_after(self._visit.patient.told, self._used)
             self._show()
 
@@ -471,13 +481,13 @@ class WalkingStep(Step):
 
     @Slot(str)
     def _on_keep_pressed(self, identity: str) -> None:
-        if (take := self._take(UUID(identity))) is not None:
-            self._keep(take, is_kept=True)
+        if (recording := self._recording(UUID(identity))) is not None:
+            self._keep(recording, is_kept=True)
 
     @Slot(str)
     def _on_discard_pressed(self, identity: str) -> None:
-        if (take := self._take(UUID(identity))) is not None:
-            self._keep(take, is_kept=False)
+        if (recording := self._recording(UUID(identity))) is not None:
+            self._keep(recording, is_kept=False)
 
     @Slot(str)
     def _on_undo_pressed(self, identity: str) -> None:
@@ -485,16 +495,16 @@ class WalkingStep(Step):
 
     @Slot()
     def _on_restrapped_pressed(self) -> None:
-        self._visit.takes.say_restrapped()
+        self._visit.recordings.say_restrapped()
         self.jumped.emit(STAND_STILL)
 
 
 _LETTERS = {Side.LEFT: "L", Side.RIGHT: "R"}
 
 
-def _length_s(take: "Take") -> float:
+def _length_s(recording: "SessionRecording") -> float:
     """How long a recording lasts, as its sensors have it."""
-    if take.recording is None:
+    if recording.read_back is None:
         return 0.0
-    blocks = [block.time_s for block in take.recording.imu.values() if len(block)]
+    blocks = [block.time_s for block in recording.read_back.imu.values() if len(block)]
     return max((float(time_s[-1] - time_s[0]) for time_s in blocks), default=0.0)

@@ -111,9 +111,9 @@ def place_of(wizard: Wizard) -> int:
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
     return {
-        take.told.name: {str(site): len(block) for site, block in take.recording.imu.items()}
-        for take in visit.takes.every
-        if take.recording is not None
+        recording.told.name: {str(site): len(block) for site, block in recording.read_back.imu.items()}
+        for recording in visit.recordings.every
+        if recording.read_back is not None
     }
 
 
@@ -126,12 +126,12 @@ def test_amid_a_walk(qtbot: QtBot, start_again: Start, untouched_library: Path, 
     home, wizard = start_again(told["session"])
     assert "of walk 1 was recovered" in home.banner.text
     visit = visit_of(wizard)
-    (walk,) = visit.takes.walks
+    (walk,) = visit.recordings.walks
     assert walk.stored.state is RecordingState.RECOVERED
     assert place_of(wizard) == WALKING
-    assert walk.recording is not None
-    assert set(walk.recording.imu) == set(Site)
-    for block in walk.recording.imu.values():
+    assert walk.read_back is not None
+    assert set(walk.read_back.imu) == set(Site)
+    for block in walk.read_back.imu.values():
         assert float(block.time_s[-1] - block.time_s[0]) > told["heard_s"] - LOST_S * SPEED
     assert {name: count for name, count in samples_of(visit).items() if name != "walk 1"} == told["takes"]
     assert "was recovered" in page_notice(qtbot, wizard)
@@ -152,13 +152,13 @@ def test_before_a_walk_was_kept_or_discarded(
     _, wizard = start_again(told["session"])
     visit = visit_of(wizard)
     assert samples_of(visit) == told["takes"]
-    assert visit.takes.walks[0].stored.state is RecordingState.CLOSED
+    assert visit.recordings.walks[0].stored.state is RecordingState.CLOSED
     assert place_of(wizard) == WALKING
     step = wizard.current
     assert isinstance(step, WalkingStep)
     assert (step.state, step.note) == (StepState.ATTENTION, "keep or discard?")
-    step._on_keep_pressed(str(visit.takes.walks[0].id))
-    qtbot.waitUntil(lambda: visit.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
+    step._on_keep_pressed(str(visit.recordings.walks[0].id))
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     wizard.show_session(UUID(told["session"]))
     qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
     assert place_of(wizard) == RESULTS
@@ -168,7 +168,7 @@ def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> Non
     """All that was put right holds, in the library and in what is computed of it."""
     visit = visit_of(wizard)
     assert samples_of(visit) == told["takes"]
-    first, second = visit.takes.walks
+    first, second = visit.recordings.walks
     assert (first.told.condition, dict(first.told.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
     assert (first.told.is_kept, second.told.is_kept) == (True, False)
     assert visit.told.turned_sign == {Joint.LEFT_KNEE: -1}

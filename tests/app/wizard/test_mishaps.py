@@ -16,11 +16,11 @@ from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
 from app.theme import Look
-from app.wizard import takes as takes_module
+from app.wizard import recordings as recordings_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
-from app.wizard.takes import Ongoing
+from app.wizard.recordings import Ongoing
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
@@ -40,9 +40,9 @@ def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: py
     monkeypatch.setattr(visit, "evaluate", lambda: None)
     begin(qtbot, visit, worn)
     yield visit
-    if visit.takes.is_recording:
-        with qtbot.waitSignal(visit.takes.ended, timeout=WAIT_MS):
-            visit.takes.stop()
+    if visit.recordings.is_recording:
+        with qtbot.waitSignal(visit.recordings.ended, timeout=WAIT_MS):
+            visit.recordings.stop()
 
 
 def failing(times: int, error: Exception, otherwise: Callable[..., object]) -> Callable[..., object]:
@@ -72,31 +72,31 @@ def failing_once_halted(times: int) -> Callable[..., object]:
 def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     monkeypatch.setattr(Recordings, "decide", failing(1, LibraryError("Changed meanwhile", "Look"), Recordings.decide))
-    with qtbot.waitSignals([takes.refused, takes.begun], timeout=WAIT_MS):
-        takes.keep(walk, is_kept=False)
-        takes.begin(acquisition, RecordingKind.WALKING)
-    assert takes.is_recording
-    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS):
-        takes.stop()
-    assert [take.told.name for take in takes.walks] == ["walk 1", "walk 2"]
+    with qtbot.waitSignals([recordings.refused, recordings.begun], timeout=WAIT_MS):
+        recordings.keep(walk, is_kept=False)
+        recordings.begin(acquisition, RecordingKind.WALKING)
+    assert recordings.is_recording
+    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+        recordings.stop()
+    assert [recording.told.name for recording in recordings.walks] == ["walk 1", "walk 2"]
 
 
 def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(takes_module, "READ_AGAIN_MS", 20)
-    looked_at.takes._again.setInterval(20)
+    monkeypatch.setattr(recordings_module, "READ_AGAIN_MS", 20)
+    looked_at.recordings._again.setInterval(20)
     monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
     told: list[tuple[str, str]] = []
-    looked_at.takes.refused.connect(lambda *words: told.append(words))
+    looked_at.recordings.refused.connect(lambda *words: told.append(words))
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    assert walk.recording is not None
-    assert len(walk.recording.imu) == len(Site)
-    assert not looked_at.takes.is_recording
+    assert walk.read_back is not None
+    assert len(walk.read_back.imu) == len(Site)
+    assert not looked_at.recordings.is_recording
     assert len(told) == 1
     assert "safe on the disk" in told[0][1]
 
@@ -104,16 +104,16 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
 def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    takes._again.setInterval(1)
+    recordings._again.setInterval(1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
-    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
-        takes.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+        recordings.begin(acquisition, RecordingKind.WALKING)
     told: list[tuple[str, str]] = []
-    takes.refused.connect(lambda *words: told.append(words))
-    takes.stop()
-    qtbot.waitUntil(lambda: takes.is_idle, timeout=WAIT_MS)
+    recordings.refused.connect(lambda *words: told.append(words))
+    recordings.stop()
+    qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
     assert "when Gaitwright starts again" in told[-1][1]
     with pytest.raises(RuntimeError):
         acquisition.stop_recording()  # it has been, at once
@@ -123,36 +123,36 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
 def test_a_full_disk_ends_the_recording_on_the_screen_too(
     qtbot: QtBot, looked_at: Visit, trouble: Trouble, ends: bool
 ) -> None:
-    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
-        takes.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as told:
-        threading.Thread(target=takes._on_trouble, args=(trouble,)).start()  # as the journal's writer tells it
+    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+        recordings.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
+        threading.Thread(target=recordings._on_trouble, args=(trouble,)).start()  # as the journal's writer tells it
     assert all(sentence.endswith(".") for sentence in told.args)
-    assert takes.is_stopping is ends
+    assert recordings.is_stopping is ends
     if ends:
-        qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
-        assert len(takes.walks) == 1
+        qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
+        assert len(recordings.walks) == 1
 
 
 def test_what_is_said_of_a_late_disk_follows_its_counters(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
-    takes, acquisition = looked_at.takes, looked_at.sensors.acquisition
+    recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
     step = WalkingStep(Look(), looked_at)
     qtbot.addWidget(step.page)
     step.enter()
-    with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
-        takes.begin(acquisition, RecordingKind.WALKING)
-    assert takes._latest is not None
-    fine = takes._latest.status
+    with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+        recordings.begin(acquisition, RecordingKind.WALKING)
+    assert recordings._latest is not None
+    fine = recordings._latest.status
     now = [replace(fine, stuck_s=3.0)]
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
-    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as told:
-        takes._on_trouble(Trouble.DISK_SLOW)
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
+        recordings._on_trouble(Trouble.DISK_SLOW)
     assert told.args == ["The disk answers late.", "Nothing is lost yet. Close programs that copy or download to it."]
 
     def said() -> str:
@@ -174,8 +174,8 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     assert recording is not None
     assert "Saved as it comes in." in recording.note
     step.leave()
-    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS):
-        takes.stop()
+    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
+        recordings.stop()
     step.deleteLater()
 
 
@@ -192,11 +192,11 @@ def test_a_standstill_amid_a_recording_is_said_on_every_step_that_records(
         standstills=(standstill,), now_s=125.0, lost=lambda: {"a": 9}, status=dict, trouble=None, is_simulated=False
     )
     told = Recording("free motion", RecordingKind.FREE_MOTION, "free_motion", {})
-    monkeypatch.setattr(visit.takes, "ongoing", Ongoing(told, 100.0))
-    monkeypatch.setattr(visit.takes, "_acquisition", acquisition)
+    monkeypatch.setattr(visit.recordings, "ongoing", Ongoing(told, 100.0))
+    monkeypatch.setattr(visit.recordings, "_acquisition", acquisition)
     wizard._watch_recording()
     assert ("Gaitwright stood still for 20 s, 0:01 into the recording." in wizard.shell.banner.text) is is_said
-    monkeypatch.setattr(visit.takes, "ongoing", None)
+    monkeypatch.setattr(visit.recordings, "ongoing", None)
 
 
 def test_a_free_motion_that_is_refused_waits_for_a_word(
@@ -214,7 +214,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     monkeypatch.setattr(Recorder, "begin", refused_once)
     step = FreeMotionStep(Look(), looked_at)
     qtbot.addWidget(step.page)
-    with qtbot.waitSignal(looked_at.takes.refused, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.refused, timeout=WAIT_MS):
         step.enter()
     for _ in range(30):
         step.tick()
@@ -223,21 +223,21 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
     primary = step.bar().primary
     assert primary is not None
     assert primary.text == "Begin the free motion"
-    with qtbot.waitSignal(looked_at.takes.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.begun, timeout=WAIT_MS):
         step.on_intent(Intent(KeyAction.RUN))
-    with qtbot.waitSignal(looked_at.takes.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(looked_at.recordings.ended, timeout=WAIT_MS):
         step.leave()
 
 
 def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, looked_at: Visit) -> None:
-    takes = looked_at.takes
+    recordings = looked_at.recordings
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
-        takes.keep(record(qtbot, looked_at, kind, 1.0), is_kept=True)
-    takes.say_restrapped()
+        recordings.keep(record(qtbot, looked_at, kind, 1.0), is_kept=True)
+    recordings.say_restrapped()
     broken_off = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
     assert broken_off.told.is_restrapped_before
-    takes.keep(broken_off, is_kept=False)
-    assert takes.is_restrapped
+    recordings.keep(broken_off, is_kept=False)
+    assert recordings.is_restrapped
     standing = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
     assert standing.told.is_restrapped_before
     step = WalkingStep(Look(), looked_at)
@@ -248,14 +248,14 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
 
 
 def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: QtBot, looked_at: Visit) -> None:
-    takes = looked_at.takes
+    recordings = looked_at.recordings
     record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
-    takes.say_restrapped()
+    recordings.say_restrapped()
     discarded = record(qtbot, looked_at, RecordingKind.STANDING, 0.5)
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
-    takes.keep(discarded, is_kept=False)
-    qtbot.waitUntil(lambda: len(takes.recordings()) == 2, timeout=WAIT_MS)
-    assert [recording.is_restrapped_before for recording in takes.recordings()] == [False, True]
+    recordings.keep(discarded, is_kept=False)
+    qtbot.waitUntil(lambda: len(recordings.counted()) == 2, timeout=WAIT_MS)
+    assert [recording.is_restrapped_before for recording in recordings.counted()] == [False, True]
 
 
 def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
@@ -266,8 +266,8 @@ def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Vi
 
 
 def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looked_at: Visit) -> None:
-    looked_at.takes.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
-    qtbot.waitUntil(lambda: looked_at.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
+    looked_at.recordings.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
+    qtbot.waitUntil(lambda: looked_at.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert looked_at.session is not None
     again = Visit(desk, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
@@ -278,13 +278,13 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looke
     step.enter()
     assert not step.bar().others[0].is_enabled
     assert step.bar().note == "Choose the source of the sensors first."
-    (walk,) = again.takes.walks
+    (walk,) = again.recordings.walks
     recovered = replace(walk.stored, state=RecordingState.RECOVERED)
-    again.takes.every = (replace(walk, stored=recovered, is_decided=False),)
+    again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
     assert "was recovered, up to the last record on the disk" in step.page.notice.text
     step._on_discard_pressed(str(walk.id))
-    qtbot.waitUntil(lambda: not again.takes.walks[0].told.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not again.recordings.walks[0].told.is_kept, timeout=WAIT_MS)
     step.leave()
     again.finish()
 
@@ -299,12 +299,12 @@ def test_sensors_of_another_day_were_strapped_anew(
     again = Visit(desk, looked_at._choices)
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
-    assert again.takes.has_moved
+    assert again.recordings.has_moved
     looked_at.sensors.close()
     with qtbot.waitSignal(again.refused, timeout=WAIT_MS) as told:
         again.sensors.search(again.choices[0])
     assert "another day" in told.args[0]
-    assert again.takes.must_move
+    assert again.recordings.must_move
     again.close()
     again.finish()
 
@@ -312,7 +312,7 @@ def test_sensors_of_another_day_were_strapped_anew(
 def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.WALKING, 0.5)
-    visit.takes.session = visit.session
+    visit.recordings.session = visit.session
     for code, is_taken in (("DEMO-8", True), ("P-8", False)):
         visit.patient.edit(replace(visit.patient.told, code=code))
         with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused], timeout=WAIT_MS):

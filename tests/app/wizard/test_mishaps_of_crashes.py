@@ -63,8 +63,8 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     assert landed(qtbot, wizard, left) == SENSORS
     walk = record(qtbot, left, RecordingKind.WALKING, 0.5)
     assert landed(qtbot, wizard, left) == WALKING  # nobody has said yet whether it is kept
-    left.takes.keep(walk, is_kept=True)
-    qtbot.waitUntil(lambda: left.takes.walks[0].stored.is_decided, timeout=WAIT_MS)
+    left.recordings.keep(walk, is_kept=True)
+    qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert landed(qtbot, wizard, left) == RESULTS
     assert left.desk.state is not None
     library = left.desk.state.library.library
@@ -76,8 +76,8 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
 def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     standing = record(qtbot, left, RecordingKind.STANDING, 6.0)
     moved = record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
-    assert standing.recording is not None
-    imu = standing.recording.imu
+    assert standing.read_back is not None
+    imu = standing.read_back.imu
     stands, moves = StandStillStep(Look(), left), FreeMotionStep(Look(), left)
 
     def rest(seconds: float) -> None:
@@ -90,7 +90,9 @@ def test_what_a_crash_cut_short_is_not_done(qtbot: QtBot, left: Visit) -> None:
     assert (stands.state, stands.note) == (StepState.DONE, "3.0 s, zero set")
     assert moves.state is StepState.DONE
     recovered = replace(moved, stored=replace(moved.stored, state=RecordingState.RECOVERED))
-    left.takes.every = tuple(recovered if take.id == moved.id else take for take in left.takes.every)
+    left.recordings.every = tuple(
+        recovered if recording.id == moved.id else recording for recording in left.recordings.every
+    )
     assert (moves.state, moves.note) == (StepState.ATTENTION, "cut short")
 
 
@@ -107,5 +109,5 @@ def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_or
     again = Visit(left.desk, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(left.session.id)
-    assert [take.told.name for take in again.takes.every] == ["standing", "free motion", "walk 1"]
+    assert [recording.told.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     again.finish()

@@ -36,7 +36,7 @@ def swap_thighs(qtbot: QtBot, visit: Visit, step: SensorsStep) -> None:
 
 def left_thighs(visit: Visit) -> list[str]:
     """Which sensor each recording has at the left thigh, by its name."""
-    placements = [take.stored.placement for take in visit.takes.every]
+    placements = [recording.stored.placement for recording in visit.recordings.every]
     return [placement.sensors[Site.LEFT_THIGH].name for placement in placements if placement is not None]
 
 
@@ -53,7 +53,7 @@ def test_sensors_that_were_strapped_on_otherwise_leave_what_was_recorded_before(
     qtbot: QtBot, visit: Visit, sensors_step: SensorsStep
 ) -> None:
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
-    visit.takes.say_restrapped()
+    visit.recordings.say_restrapped()
     swap_thighs(qtbot, visit, sensors_step)
     record(qtbot, visit, RecordingKind.STANDING, 0.5)
     assert left_thighs(visit) == ["DEMO-left_thigh", "DEMO-right_thigh"]

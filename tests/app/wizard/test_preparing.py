@@ -76,8 +76,8 @@ def test_a_whole_session_never_holds_up_the_screen(
     qtbot.waitUntil(lambda: wizard.is_recording, timeout=WAIT_MS)
     qtbot.wait(12_000)
     wizard._on_primary()
-    qtbot.waitUntil(lambda: bool(visit.takes.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
-    visit.takes.keep(visit.takes.walks[-1], True)
+    qtbot.waitUntil(lambda: bool(visit.recordings.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    visit.recordings.keep(visit.recordings.walks[-1], True)
     for step in (RESULTS, REPORT, PATIENT):
         wizard.go_to(step)
         qtbot.wait(3 * LOOK_MS)

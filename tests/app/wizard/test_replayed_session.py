@@ -44,10 +44,10 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
 def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
     visit = wizard.visit
     assert visit is not None
-    with qtbot.waitSignal(visit.takes.begun, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=WAIT_MS):
         wizard._on_primary()
     qtbot.wait(round(1000 * seconds))
-    with qtbot.waitSignal(visit.takes.ended, timeout=WAIT_MS):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=WAIT_MS):
         wizard._on_primary()
 
 
@@ -59,7 +59,7 @@ def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
     analysis = visit.evaluation.analysis
     assert analysis is not None
     assert analysis.is_simulated, "nobody was measured now"
-    assert all(take.stored.is_simulated for take in visit.takes.every)
+    assert all(recording.stored.is_simulated for recording in visit.recordings.every)
     return analysis
 
 

@@ -17,7 +17,7 @@ from app.settings import Settings
 from app.storage.stored import RecordingState
 from app.theme import Look, load_fonts
 from app.wizard import wizard as wizard_module
-from app.wizard.takes import Take
+from app.wizard.recordings import SessionRecording
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
@@ -41,7 +41,7 @@ def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
     """A visit with sensors on, whose recordings nobody evaluates."""
     monkeypatch.setattr(visit, "evaluate", lambda: None)
-    visit.takes._again.setInterval(50)
+    visit.recordings._again.setInterval(50)
     begin(qtbot, visit, worn)
     return visit
 
@@ -50,14 +50,14 @@ def start_walk(qtbot: QtBot, visit: Visit) -> None:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(RecordingKind.WALKING)
-    with qtbot.waitSignal(visit.takes.begun, timeout=WAIT_MS):
-        visit.takes.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=WAIT_MS):
+        visit.recordings.begin(acquisition, RecordingKind.WALKING)
 
 
-def is_whole(take: Take, seconds: float) -> bool:
+def is_whole(recording: SessionRecording, seconds: float) -> bool:
     """Whether each sensor has that much without a gap longer than two samples."""
-    assert take.recording is not None
-    blocks = take.recording.imu.values()
+    assert recording.read_back is not None
+    blocks = recording.read_back.imu.values()
     steps_s = [float((block.time_s[1:] - block.time_s[:-1]).max()) for block in blocks]
     return len(steps_s) == len(Site) and max(steps_s) < 0.05 and all(block.time_s[-1] >= seconds for block in blocks)
 
@@ -65,30 +65,30 @@ def is_whole(take: Take, seconds: float) -> bool:
 def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
 ) -> None:
-    takes, folder, elsewhere = looked_at.takes, tmp_path / "library", tmp_path / "renamed"
+    recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     start_walk(qtbot, looked_at)
     qtbot.wait(200)
     said: list[tuple[str, str]] = []
-    takes.troubled.connect(lambda *words: said.append(words))
-    with qtbot.waitSignals([takes.troubled, desk.gone], timeout=WAIT_MS):
+    recordings.troubled.connect(lambda *words: said.append(words))
+    with qtbot.waitSignals([recordings.troubled, desk.gone], timeout=WAIT_MS):
         folder.rename(elsewhere)
-    assert takes.is_recording
+    assert recordings.is_recording
     qtbot.waitUntil(lambda: len(said) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
     assert desk.state is not None
     assert desk.state.library.shelter is not None
     assert all(str(desk.state.library.shelter.folder) in then for _, then in said)
     qtbot.wait(200)
     refused: list[tuple[str, str]] = []
-    takes.refused.connect(lambda *words: refused.append(words))
-    takes.stop()
+    recordings.refused.connect(lambda *words: refused.append(words))
+    recordings.stop()
     qtbot.waitUntil(lambda: bool(refused), timeout=WAIT_MS)
     assert refused[0][0] == f"The library is gone from {folder}."
     qtbot.wait(100)
-    assert not takes.is_idle
+    assert not recordings.is_idle
     assert not folder.exists()
-    with qtbot.waitSignals([takes.ended, desk.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.ended, desk.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
-    (walk,) = takes.walks
+    (walk,) = recordings.walks
     assert (walk.stored.state, len(walk.stored.journals)) == (RecordingState.CLOSED, 2)
     assert is_whole(walk, 0.4 * SPEED)
     assert not list((tmp_path / "data").rglob("*.journal"))
@@ -98,27 +98,27 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
 def test_renamed_between_two_walks_the_next_begins_all_the_same(
     qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
 ) -> None:
-    takes, folder, elsewhere = looked_at.takes, tmp_path / "library", tmp_path / "renamed"
+    recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
     with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
-    with qtbot.waitSignal(takes.troubled, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as said:
         start_walk(qtbot, looked_at)
     assert said.args is not None
     assert said.args[0] == "The library can no longer be written where it was, and the recording goes on."
     qtbot.wait(200)
-    takes.stop()
-    qtbot.waitUntil(lambda: takes._readings > 16, timeout=WAIT_MS)  # more than it is patient with a busy library
-    assert not takes.is_idle
-    with qtbot.waitSignals([takes.ended, desk.back], timeout=WAIT_MS):
+    recordings.stop()
+    qtbot.waitUntil(lambda: recordings._readings > 16, timeout=WAIT_MS)  # more than it is patient with a busy library
+    assert not recordings.is_idle
+    with qtbot.waitSignals([recordings.ended, desk.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
-    assert [(take.told.name, take.stored.state) for take in takes.walks] == [
+    assert [(recording.told.name, recording.stored.state) for recording in recordings.walks] == [
         ("walk 1", RecordingState.CLOSED),
         ("walk 2", RecordingState.CLOSED),
     ]
-    assert is_whole(takes.walks[1], 0.2 * SPEED)
+    assert is_whole(recordings.walks[1], 0.2 * SPEED)
     files = sorted(path.name for path in (folder / "recordings").iterdir())
-    assert files == sorted(journal.file for take in takes.walks for journal in take.stored.journals)
+    assert files == sorted(journal.file for recording in recordings.walks for journal in recording.stored.journals)
 
 
 Opened = Callable[[], MainWindow]
@@ -183,7 +183,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     assert wizard is not None
     visit = wizard.visit
     assert visit is not None
-    visit.takes._again.setInterval(100)
+    visit.recordings._again.setInterval(100)
     begin(qtbot, visit, worn)
     wizard._go_to(WALKING)
     start_walk(qtbot, visit)
@@ -193,8 +193,8 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     qtbot.waitUntil(lambda: "encrypted as always" in notice_of(wizard), timeout=WAIT_MS)
     assert time.monotonic() - began_s < 2.0
     qtbot.wait(300)
-    visit.takes.stop()
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=WAIT_MS)
+    visit.recordings.stop()
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=WAIT_MS)
     start_walk(qtbot, visit)
     qtbot.wait(300)
     window.close()  # amid the second walk, with the library gone

@@ -13,8 +13,8 @@ from app.storage.stored import Limits, RecordingState
 from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.patient.step import PatientStep
+from app.wizard.recordings import SessionRecording
 from app.wizard.standing.step import StandStillStep
-from app.wizard.takes import Take
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.analysis import analyse
@@ -37,19 +37,19 @@ def begin(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
         visit.place_sensors()
 
 
-def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> Take:
+def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, condition: str = "") -> SessionRecording:
     acquisition = visit.sensors.acquisition
     assert acquisition is not None
     acquisition.ask(kind)
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
-        visit.takes.begin(acquisition, kind, condition)
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+        visit.recordings.begin(acquisition, kind, condition)
     until_s = acquisition.now_s + seconds
     qtbot.waitUntil(lambda: acquisition.now_s > until_s, timeout=10_000)
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000) as ended:
-        visit.takes.stop()
-    take = ended.args[0]
-    assert isinstance(take, Take)
-    return take
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000) as ended:
+        visit.recordings.stop()
+    recording = ended.args[0]
+    assert isinstance(recording, SessionRecording)
+    return recording
 
 
 def test_whole_session_is_evaluated_and_stored(
@@ -75,7 +75,7 @@ def test_whole_session_is_evaluated_and_stored(
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
         again.resume(stored.id)
     assert computed == []  # it was kept
-    assert [take.told.name for take in again.takes.every] == ["standing", "free motion", "walk 1"]
+    assert [recording.told.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     assert set(again.rests) == set(worn)
     one, other = visit.evaluation.analysis, again.evaluation.analysis
     assert one is not None
@@ -92,13 +92,13 @@ def test_whole_session_is_evaluated_and_stored(
 def test_discarded_walk_is_not_evaluated_and_comes_back(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
     walk = record(qtbot, visit, RecordingKind.WALKING, 6.0)
-    with qtbot.waitSignal(visit.takes.changed):
-        visit.takes.keep(walk, is_kept=False)
-    qtbot.waitUntil(lambda: not visit.takes.walks[0].told.is_kept)
-    assert visit.takes.recordings() == ()
-    visit.takes.keep(visit.takes.walks[0], is_kept=True)
-    qtbot.waitUntil(lambda: visit.takes.walks[0].told.is_kept)
-    assert [recording.name for recording in visit.takes.recordings()] == ["walk 1"]
+    with qtbot.waitSignal(visit.recordings.changed):
+        visit.recordings.keep(walk, is_kept=False)
+    qtbot.waitUntil(lambda: not visit.recordings.walks[0].told.is_kept)
+    assert visit.recordings.counted() == ()
+    visit.recordings.keep(visit.recordings.walks[0], is_kept=True)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].told.is_kept)
+    assert [recording.name for recording in visit.recordings.counted()] == ["walk 1"]
 
 
 def test_code_of_another_patient_is_told(qtbot: QtBot, visit: Visit) -> None:
@@ -182,14 +182,14 @@ def test_who_judged_a_recovered_walk_is_noted_once_for_all(
         return again
 
     first = resumed()
-    assert not first.takes.walks[0].is_decided
-    first.takes.keep(first.takes.walks[0], is_kept=True)
-    qtbot.waitUntil(lambda: first.takes.walks[0].stored.judged_by == "hk")
+    assert not first.recordings.walks[0].is_decided
+    first.recordings.keep(first.recordings.walks[0], is_kept=True)
+    qtbot.waitUntil(lambda: first.recordings.walks[0].stored.judged_by == "hk")
     audited = library.audit.entries(about("recording", walk.id))[-1]
     assert (audited.operator, audited.details) == ("hk", '{"is_kept":true,"is_recovered":true}')
     second = resumed()
-    assert second.takes.walks[0].is_decided
-    assert second.takes.walks[0].told.is_kept
+    assert second.recordings.walks[0].is_decided
+    assert second.recordings.walks[0].told.is_kept
     first.finish()
     second.finish()
 
@@ -211,16 +211,16 @@ def test_closing_in_mid_walk_loses_nothing(
     acquisition, session = visit.sensors.acquisition, visit.session
     assert acquisition is not None
     assert session is not None
-    with qtbot.waitSignal(visit.takes.begun):
-        visit.takes.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(visit.recordings.begun):
+        visit.recordings.begin(acquisition, RecordingKind.WALKING)
     qtbot.wait(500)
     visit.close()
     again = Visit(desk, [])
     with qtbot.waitSignal(again.resumed, timeout=10_000):
         again.resume(session.id)
-    (walk,) = again.takes.walks
-    assert walk.recording is not None
-    assert all(np.ptp(block.time_s) > 0.8 * 0.5 * SPEED for block in walk.recording.imu.values())
+    (walk,) = again.recordings.walks
+    assert walk.read_back is not None
+    assert all(np.ptp(block.time_s) > 0.8 * 0.5 * SPEED for block in walk.read_back.imu.values())
     again.finish()
 
 
@@ -231,7 +231,7 @@ def test_what_has_hardly_begun_when_the_program_ends_is_ended_too(
     acquisition, session = visit.sensors.acquisition, visit.session
     assert acquisition is not None
     assert session is not None
-    visit.takes.begin(acquisition, RecordingKind.STANDING)
+    visit.recordings.begin(acquisition, RecordingKind.STANDING)
     visit.close()
     desk.finish()  # no event loop runs in between
     with open_library(tmp_path / "library", PASSPHRASE) as opened:

@@ -56,10 +56,10 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     step = WalkingStep(Look(), visit)
     qtbot.addWidget(step.page)
     step.enter()
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_primary()
     step.tick()
     assert step.page.notice.text.startswith("No foot sensors: strides are counted after the walk.")
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_primary()
     step.leave()

@@ -38,7 +38,7 @@ def step(
     step.page.show()
     yield step
     step.leave()
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
     visit.evaluation.finish()
 
 
@@ -73,10 +73,10 @@ def test_it_records_at_once_and_goes_on_by_itself_when_all_gauges_are_closed(
         verb = step.bar().primary
         assert verb is not None
         assert (verb.text, verb.is_wished) == ("Go on to walking", True)
-    moved = visit.takes.free_motion
+    moved = visit.recordings.free_motion
     assert moved is not None
-    assert moved.recording is not None
-    assert set(moved.recording.imu) == set(Site)
+    assert moved.read_back is not None
+    assert set(moved.read_back.imu) == set(Site)
     assert (step.state, step.note) == (StepState.DONE, "All 4 ready")
 
 
@@ -84,7 +84,7 @@ def test_a_plateau_is_said_and_left_to_the_therapist(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit, worn: dict[str, Site]
 ) -> None:
     step.enter()
-    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
     ticks(qtbot, step, lambda: step._estimator is not None)
     joints = {joint: state(0.8, 6.0, None, is_closed=True) for joint in Joint}
     joints[Joint.LEFT_KNEE] = state(3.8, 6.0, is_plateau=True)
@@ -105,7 +105,7 @@ def test_stopping_early_says_its_price_and_goes_on(qtbot: QtBot, step: FreeMotio
     assert bar.note
     with qtbot.waitSignal(step.done, timeout=10_000):
         assert step.on_intent(SPACE)
-    assert visit.takes.free_motion is not None
+    assert visit.recordings.free_motion is not None
     assert step.state is StepState.ATTENTION
 
 
@@ -123,8 +123,8 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     assert [verb.text for verb in bar.others] == ["Record again"]
     assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
     step.on_other(0)
-    ticks(qtbot, step, lambda: len(visit.takes.every) == 1 and visit.takes.has_begun)
-    assert not visit.takes.every[0].told.is_kept
+    ticks(qtbot, step, lambda: len(visit.recordings.every) == 1 and visit.recordings.has_begun)
+    assert not visit.recordings.every[0].told.is_kept
     assert step.page.band.hint.sentence != "The replay has ended"
     ticks(qtbot, step, lambda: knows(step))
 
@@ -140,8 +140,8 @@ def test_a_replay_without_free_motion_says_so_and_what_did_not_move_does_not_cou
     assert [verb.text for verb in step.bar().others] == []
     with qtbot.waitSignals([step.done, step.told], timeout=10_000, order="strict"):
         step.on_primary()
-    qtbot.waitUntil(lambda: visit.takes.free_motion is None, timeout=10_000)
-    assert len(visit.takes.every) == 1  # nothing is deleted
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=10_000)
+    assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
 
@@ -165,14 +165,14 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
         step.on_primary()
     left = step.page.gauges[Joint.LEFT_KNEE].face.centre
     step.on_quiet(1)
-    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     assert step.page.gauges[Joint.LEFT_KNEE].face.centre == left
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_primary()
-    repeated = visit.takes.free_motion
+    repeated = visit.recordings.free_motion
     assert repeated is not None
-    assert repeated.recording is not None
-    assert {site.side for site in repeated.recording.imu} == {Side.RIGHT}
+    assert repeated.read_back is not None
+    assert {site.side for site in repeated.read_back.imu} == {Side.RIGHT}
     qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.told.sensors) == set(Site))
 
 
@@ -180,12 +180,12 @@ def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     step.enter()
-    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
     with qtbot.waitSignal(step.told, timeout=10_000) as told:
         step.leave()
     assert told.args[0] == "Free motion was left before a leg had moved, so it does not count."
-    qtbot.waitUntil(lambda: visit.takes.free_motion is None, timeout=10_000)
-    assert len(visit.takes.every) == 1  # nothing is deleted
+    qtbot.waitUntil(lambda: visit.recordings.free_motion is None, timeout=10_000)
+    assert len(visit.recordings.every) == 1  # nothing is deleted
     assert step.state is StepState.TODO
 
 
@@ -197,21 +197,21 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     with qtbot.waitSignal(step.told, timeout=10_000) as told:
         step.leave()
     assert told.args[0].startswith("Free motion was left before its end and is kept: ")
-    kept, note = visit.takes.free_motion, step.note
+    kept, note = visit.recordings.free_motion, step.note
     assert kept is not None
-    assert kept.recording is not None
-    assert len(kept.recording.imu) == len(Site)
+    assert kept.read_back is not None
+    assert len(kept.read_back.imu) == len(Site)
     assert note.endswith("of 4 ready")
     step.enter()
-    assert not visit.takes.is_recording
+    assert not visit.recordings.is_recording
     step.on_other(0)
-    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     with qtbot.waitSignal(step.told, timeout=10_000) as told:
         step.leave()
     assert told.args[0] == "Free motion was left before its end: the one before it stays in force."
-    qtbot.waitUntil(lambda: not visit.takes.every[1].told.is_kept, timeout=10_000)
-    assert visit.takes.free_motion is not None
-    assert visit.takes.free_motion.id == kept.id
+    qtbot.waitUntil(lambda: not visit.recordings.every[1].told.is_kept, timeout=10_000)
+    assert visit.recordings.free_motion is not None
+    assert visit.recordings.free_motion.id == kept.id
     assert step.note == note
 
 
@@ -220,7 +220,7 @@ def test_a_free_motion_that_holds_is_not_recorded_again_unasked(
 ) -> None:
     record(qtbot, visit, RecordingKind.FREE_MOTION, 2.0)
     step.enter()
-    assert not visit.takes.is_recording
+    assert not visit.recordings.is_recording
     assert step.page.band.hint.sentence == "Free motion is recorded"
     with qtbot.waitSignal(step.done):
         step.on_primary()
@@ -234,7 +234,7 @@ def test_a_missing_foot_sensor_and_a_foot_without_joint_have_no_gauge(
     step.enter()
     assert step.page.gauges[Joint.RIGHT_ANKLE].face.note == "R foot without sensor: no right ankle angle."
     assert step.page.gauges[Joint.LEFT_ANKLE].face.note.startswith("Foot without ankle joint")
-    ticks(qtbot, step, lambda: visit.takes.is_recording and step.page.band.hint.sentence != "Move any leg")
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and step.page.band.hint.sentence != "Move any leg")
     assert step.page.gauges[Joint.LEFT_ANKLE].face.state is GaugeState.ABSENT
 
 
@@ -255,7 +255,7 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
     qtbot: QtBot, step: FreeMotionStep, visit: Visit
 ) -> None:
     step.enter()
-    ticks(qtbot, step, lambda: visit.takes.is_recording and knows(step))
+    ticks(qtbot, step, lambda: visit.recordings.is_recording and knows(step))
     step._doubt(((Site.LEFT_THIGH, Site.LEFT_SHANK),))
     step.page.answered.emit(0)
     assert visit.sensors.sensor_at[Site.LEFT_THIGH] == f"DEMO-{Site.LEFT_SHANK}"
@@ -263,8 +263,8 @@ def test_swapped_labels_change_places_and_what_was_recorded_is_corrected(
         step.on_primary()
 
     def is_corrected() -> bool:
-        take = visit.takes.free_motion
-        placement = take.stored.placement if take is not None else None
+        recording = visit.recordings.free_motion
+        placement = recording.stored.placement if recording is not None else None
         return placement is not None and placement.sensors[Site.LEFT_THIGH].name == f"DEMO-{Site.LEFT_SHANK}"
 
     qtbot.waitUntil(is_corrected, timeout=10_000)

@@ -32,7 +32,7 @@ def step(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> Iterator[StandSti
     step.enter()
     yield step
     step.leave()
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
 
 
 def ticks(qtbot: QtBot, step: StandStillStep, until: Callable[[], bool]) -> None:
@@ -61,10 +61,10 @@ def test_three_seconds_are_recorded_and_the_wizard_goes_on_by_itself(
     with qtbot.waitSignal(step.done, timeout=10_000):
         assert step.on_intent(SPACE)
         ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
-    standing = visit.takes.standing
+    standing = visit.recordings.standing
     assert standing is not None
-    assert standing.recording is not None
-    for block in standing.recording.imu.values():
+    assert standing.read_back is not None
+    for block in standing.read_back.imu.values():
         assert block.time_s[-1] - block.time_s[0] >= 3.0
     assert set(visit.rests) == set(worn)
     assert step.state is StepState.DONE
@@ -81,13 +81,13 @@ def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
         raise LibraryError("This session is not in the library any more", "Reload the session")
 
     monkeypatch.setattr(Recorder, "stop", refusing)
-    monkeypatch.setattr("app.wizard.takes.MOST_READINGS", 2)
-    visit.takes._again.setInterval(200)
+    monkeypatch.setattr("app.wizard.recordings.MOST_READINGS", 2)
+    visit.recordings._again.setInterval(200)
     assert step.on_intent(SPACE)
     ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
     assert (step.state, step.note) == (StepState.TODO, "being read back")
-    qtbot.waitUntil(lambda: visit.takes.is_idle, timeout=10_000)
-    assert visit.takes.standing is None
+    qtbot.waitUntil(lambda: visit.recordings.is_idle, timeout=10_000)
+    assert visit.recordings.standing is None
     assert (step.state, step.note) == (StepState.TODO, "")
     assert phase(step) is StandPhase.READY
 
@@ -96,7 +96,7 @@ def test_who_moves_makes_the_count_begin_again(
     qtbot: QtBot, step: StandStillStep, source: ReplaySource, visit: Visit
 ) -> None:
     step.on_intent(SPACE)
-    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
 
     def is_seen_to_move() -> bool:
         source.shake(f"DEMO-{Site.LEFT_THIGH}")  # its two seconds are soon over, at this speed
@@ -120,11 +120,11 @@ def test_a_silent_sensor_holds_the_count(
 
 def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, visit: Visit) -> None:
     step.on_intent(SPACE)
-    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
     step.page.cannot_stand_pressed.emit()
     assert step.state is StepState.SKIPPED
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
-    qtbot.waitUntil(lambda: visit.takes.standing is None, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
     with qtbot.waitSignal(step.done):
         step.on_primary()
     step.page.can_stand_pressed.emit()
@@ -134,10 +134,10 @@ def test_who_cannot_stand_is_not_recorded(qtbot: QtBot, step: StandStillStep, vi
 
 def test_leaving_during_the_count_keeps_nothing(qtbot: QtBot, step: StandStillStep, visit: Visit) -> None:
     step.on_intent(SPACE)
-    qtbot.waitUntil(lambda: visit.takes.is_recording)
+    qtbot.waitUntil(lambda: visit.recordings.is_recording)
     step.leave()
-    qtbot.waitUntil(lambda: not visit.takes.is_recording, timeout=10_000)
-    qtbot.waitUntil(lambda: visit.takes.standing is None, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.is_recording, timeout=10_000)
+    qtbot.waitUntil(lambda: visit.recordings.standing is None, timeout=10_000)
     assert not visit.rests
 
 

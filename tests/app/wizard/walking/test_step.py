@@ -67,18 +67,18 @@ def calibrate(qtbot: QtBot, visit: Visit) -> None:
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         for kind, seconds in ((RecordingKind.STANDING, 4.0), (RecordingKind.FREE_MOTION, 14.0)):
             acquisition.ask(kind)
-            with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
-                visit.takes.begin(acquisition, kind)
+            with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
+                visit.recordings.begin(acquisition, kind)
             qtbot.wait(round(seconds / SPEED * 1000))
-            with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
-                visit.takes.stop()
+            with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
+                visit.recordings.stop()
 
 
 def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, seconds: float) -> None:
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         assert step.on_intent(RUN)
     qtbot.wait(round(seconds / SPEED * 1000))
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
 
 
@@ -91,7 +91,7 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     primary = step.bar().primary
     assert primary is not None
     assert (primary.text, primary.is_wished) == ("Start walk", True)
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)
     recording = step.bar().recording
     assert recording is not None
@@ -100,27 +100,27 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     qtbot.waitUntil(lambda: max(step.page._live.strides.values(), default=0) >= 5, timeout=10_000)
     assert set(step.page._live.knees) == set(step.page._live.ankles)
     assert step.page._live.cadence_steps_min > 60
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
     assert step.page.stopped.isVisible()
     assert not step.cannot_leave
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)  # keeps it, and starts the next
     assert states(step) == [("A", "Alignment A", WalkState.KEPT), ("B", "Alignment B", WalkState.RECORDING)]
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
 def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: WalkingStep, visit: Visit) -> None:
     calibrate(qtbot, visit)
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)
     qtbot.waitUntil(lambda: bool(step.page._live.ankles), timeout=10_000)
     assert any(ankle.is_provisional for ankle in step.page._live.ankles.values())
     qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page._live.ankles.values()), timeout=20_000)
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     results = ResultsStep(look, visit)
     qtbot.addWidget(results.page)
@@ -133,10 +133,10 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
     assert offered.args == ["Alignment A discarded."]
-    qtbot.waitUntil(lambda: not visit.takes.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: not visit.recordings.walks[0].told.is_kept)
     assert [state for _, _, state in states(step)] == [WalkState.DISCARDED]
     step.undo()
-    qtbot.waitUntil(lambda: visit.takes.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].told.is_kept)
     assert [state for _, _, state in states(step)] == [WalkState.KEPT]
     assert step.bar().primary is not None
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
@@ -145,21 +145,21 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
 def test_digits_choose_what_the_next_walk_is_called(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(Intent(KeyAction.LABEL, 4))
     walk(qtbot, step, visit, 2.0)
-    assert visit.takes.walks[0].told.condition == "Barefoot"
+    assert visit.recordings.walks[0].told.condition == "Barefoot"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
 def test_a_silent_sensor_is_said_and_so_is_its_return(
     qtbot: QtBot, step: WalkingStep, visit: Visit, source: ReplaySource
 ) -> None:
-    with qtbot.waitSignal(visit.takes.begun, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)
     source.silence("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot has been silent" in step.page.notice.text, timeout=10_000)
     assert "right ankle, right phases" in step.page.notice.text
     source.wake("DEMO-right_foot")
     qtbot.waitUntil(lambda: "R foot is back after" in step.page.notice.text, timeout=10_000)
-    with qtbot.waitSignal(visit.takes.ended, timeout=10_000):
+    with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
@@ -168,7 +168,7 @@ def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingSt
     with qtbot.waitSignal(step.jumped) as jumped:
         step.page.walks.restrapped.click()
     assert jumped.args == [2]
-    assert visit.takes.is_restrapped
+    assert visit.recordings.is_restrapped
     assert step.cannot_enter
     assert not step.on_intent(Intent(KeyAction.KEEP))
 

@@ -45,14 +45,14 @@ class Ongoing:
 
 
 @dataclass(frozen=True, slots=True)
-class Take:
-    """A recording that has ended. `recording` holds what its journal holds; None until it has been read.
+class SessionRecording:
+    """A recording that has ended. `read_back` holds what its journal holds; None until it has been read.
 
     `strides` are those counted live. `is_decided`: somebody has said whether it is kept; until then it is.
     """
 
     stored: StoredRecording
-    recording: Recording | None = None
+    read_back: Recording | None = None
     strides: Mapping[Side, int] | None = None
     is_decided: bool = True
 
@@ -66,7 +66,7 @@ class Take:
 
 
 class _Unread(NamedTuple):
-    """What was stopped and is not read back yet; `strides` as in `Take`. Not kept: it was broken off."""
+    """What was stopped and is not read back yet; `strides` as in `SessionRecording`. Not kept: it was broken off."""
 
     recorder: Recorder
     name: str
@@ -74,14 +74,14 @@ class _Unread(NamedTuple):
     is_kept: bool
 
 
-class Takes(QObject):
+class SessionRecordings(QObject):
     """A recording begins and ends at once, whatever the library is doing; what it holds is read back when it answers.
 
     All calls to the library are made by the desk's thread; this lives on the screen's."""
 
     changed = Signal()
     begun = Signal()
-    ended = Signal(object)  # Take
+    ended = Signal(object)  # SessionRecording
     refused = Signal(str, str)
     troubled = Signal(str, str)  # of the disk, or of the library's folder: what happened, and what to do
     _met = Signal(str)  # Trouble; emitted by whichever thread meets it
@@ -91,7 +91,7 @@ class Takes(QObject):
         self._desk = desk
         self.session: StoredSession | None = None
         self.ongoing: Ongoing | None = None
-        self.every: tuple[Take, ...] = ()
+        self.every: tuple[SessionRecording, ...] = ()
         self._recorder: Recorder | None = None
         self._latest: Recorder | None = None  # the same, also once it has been stopped
         self._trouble: Trouble | None = None  # of the latest
@@ -138,17 +138,21 @@ class Takes(QObject):
         return self.ongoing is None and not self._unread
 
     @property
-    def walks(self) -> tuple[Take, ...]:
+    def walks(self) -> tuple[SessionRecording, ...]:
         return self._of(RecordingKind.WALKING)
 
     @property
-    def standing(self) -> Take | None:
+    def standing(self) -> SessionRecording | None:
         """The one in force."""
-        return next((take for take in reversed(self._of(RecordingKind.STANDING)) if take.told.is_kept), None)
+        return next(
+            (recording for recording in reversed(self._of(RecordingKind.STANDING)) if recording.told.is_kept), None
+        )
 
     @property
-    def free_motion(self) -> Take | None:
-        return next((take for take in reversed(self._of(RecordingKind.FREE_MOTION)) if take.told.is_kept), None)
+    def free_motion(self) -> SessionRecording | None:
+        return next(
+            (recording for recording in reversed(self._of(RecordingKind.FREE_MOTION)) if recording.told.is_kept), None
+        )
 
     @property
     def is_restrapped(self) -> bool:
@@ -160,10 +164,10 @@ class Takes(QObject):
         """Whether a free motion holds: kept, and made since sensors were strapped last."""
         if self._is_restrapped:
             return False
-        for take in reversed(self.every):
-            if take.told.kind is RecordingKind.FREE_MOTION and take.told.is_kept:
+        for recording in reversed(self.every):
+            if recording.told.kind is RecordingKind.FREE_MOTION and recording.told.is_kept:
                 return True
-            if take.told.is_restrapped_before:
+            if recording.told.is_restrapped_before:
                 return False
         return False
 
@@ -171,24 +175,24 @@ class Takes(QObject):
     def must_move(self) -> bool:
         """Whether sensors were strapped anew, and the free motion that this asks for is still to come."""
         return not self.has_moved and (
-            self._is_restrapped or any(take.told.is_restrapped_before for take in self.every)
+            self._is_restrapped or any(recording.told.is_restrapped_before for recording in self.every)
         )
 
     @property
-    def since_strapped(self) -> tuple[Take, ...]:
+    def since_strapped(self) -> tuple[SessionRecording, ...]:
         """All recordings since sensors were strapped last: what is said now of who wears what holds for these."""
         if self._is_restrapped:
             return ()
-        strapped = [number for number, take in enumerate(self.every) if take.told.is_restrapped_before]
+        strapped = [number for number, recording in enumerate(self.every) if recording.told.is_restrapped_before]
         return self.every[strapped[-1] if strapped else 0 :]
 
     def awaits(self, kind: RecordingKind) -> bool:
         """Whether one of a kind that counts has been stopped, and is still to be read back."""
         return any(unread.recorder.kind is kind and unread.is_kept for unread in self._unread)
 
-    def take_over(self, session: StoredSession, takes: tuple[Take, ...]) -> None:
+    def take_over(self, session: StoredSession, recordings: tuple[SessionRecording, ...]) -> None:
         """Go on with a session of the library."""
-        self.session, self.every = session, takes
+        self.session, self.every = session, recordings
         self.changed.emit()
 
     def begin(self, acquisition: "Acquisition", kind: RecordingKind, condition: str = "") -> None:
@@ -313,57 +317,57 @@ class Takes(QObject):
         self._is_restrapped = True
         self.changed.emit()
 
-    def keep(self, take: Take, is_kept: bool) -> None:
+    def keep(self, recording: SessionRecording, is_kept: bool) -> None:
         """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
-        if take.told.is_restrapped_before and not is_kept and take.id == self.every[-1].id:
+        if recording.told.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
-        self._put(replace(take, is_decided=True))
-        if take.stored.state is RecordingState.RECOVERED or not take.stored.is_decided:
-            self._decide(take, is_kept)
+        self._put(replace(recording, is_decided=True))
+        if recording.stored.state is RecordingState.RECOVERED or not recording.stored.is_decided:
+            self._decide(recording, is_kept)
         else:  # also where it seems to be so already: what was said a moment before may still be on its way
-            self.change(take, lambda told: replace(told, is_kept=is_kept))
+            self.change(recording, lambda told: replace(told, is_kept=is_kept))
 
-    def change(self, take: Take, corrected: Callable[[Recording], Recording]) -> None:
+    def change(self, recording: SessionRecording, corrected: Callable[[Recording], Recording]) -> None:
         """Correct what was told of a recording; `changed` follows.
 
         `corrected` is given what the library holds by then: what was put right a moment before stays so.
         """
 
         def save(opened: "OpenedLibrary") -> StoredRecording:
-            current = opened.library.recordings.find(take.id) or take.stored
+            current = opened.library.recordings.find(recording.id) or recording.stored
             return opened.library.recordings.change(current, corrected(current.told))
 
         self._desk.run(save, self._on_changed, self._on_not_changed, self)
 
-    def _decide(self, take: Take, is_kept: bool) -> None:
+    def _decide(self, recording: SessionRecording, is_kept: bool) -> None:
         """Give the answer that was asked for: nobody is asked again, at the next start either."""
 
         def decide(opened: "OpenedLibrary") -> StoredRecording:
-            current = opened.library.recordings.find(take.id)
-            return opened.library.recordings.decide(current or take.stored, is_kept)
+            current = opened.library.recordings.find(recording.id)
+            return opened.library.recordings.decide(current or recording.stored, is_kept)
 
         self._desk.run(decide, self._on_changed, self._on_not_changed, self)
 
-    def recordings(self) -> tuple[Recording, ...]:
+    def counted(self) -> tuple[Recording, ...]:
         """Those that count and have been read, in order of time, as an analysis takes them.
 
         That sensors were strapped anew before one that does not count is told of the next.
         """
         return counted(self.every)
 
-    def _of(self, kind: RecordingKind) -> tuple[Take, ...]:
-        return tuple(take for take in self.every if take.told.kind is kind)
+    def _of(self, kind: RecordingKind) -> tuple[SessionRecording, ...]:
+        return tuple(recording for recording in self.every if recording.told.kind is kind)
 
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
         word = {RecordingKind.STANDING: "standing", RecordingKind.FREE_MOTION: "free motion"}.get(kind, "walk")
-        taken = {take.told.name for take in self.every} | {unread.name for unread in self._unread}
+        taken = {recording.told.name for recording in self.every} | {unread.name for unread in self._unread}
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
-    def _put(self, take: Take) -> None:
+    def _put(self, recording: SessionRecording) -> None:
         known = {other.id: other for other in self.every}
-        self.every = tuple((known | {take.id: take}).values())
+        self.every = tuple((known | {recording.id: recording}).values())
         self.changed.emit()
 
     def _read_back(self) -> None:
@@ -417,16 +421,16 @@ class Takes(QObject):
         return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
 
     def _on_read_back(self, result: tuple[StoredRecording, Recording]) -> None:
-        stored, recording = result
+        stored, read_back = result
         unread = self._unread.pop(0)
         self._is_reading, self._readings = False, 0
-        take = Take(stored, recording, unread.strides, stored.is_decided)
+        recording = SessionRecording(stored, read_back, unread.strides, stored.is_decided)
         if not self._unread:
             self._go_on()
-        self._put(take)
-        self.ended.emit(take)
+        self._put(recording)
+        self.ended.emit(recording)
         if not unread.is_kept:
-            self.keep(take, is_kept=False)
+            self.keep(recording, is_kept=False)
         self._read_back()
 
     def _on_waited(self) -> None:
@@ -438,7 +442,7 @@ class Takes(QObject):
         """Whoever reads it back meets the same, and tells."""
 
     def _on_changed(self, stored: StoredRecording) -> None:
-        before = next(take for take in self.every if take.id == stored.id)
+        before = next(recording for recording in self.every if recording.id == stored.id)
         self._put(replace(before, stored=stored))
 
     def _on_not_changed(self, what: str, remedy: str) -> None:
@@ -473,13 +477,13 @@ class Takes(QObject):
         return unread_message(self._unread[0].recorder.status, is_tried_again=is_tried_again)
 
 
-def counted(takes: Sequence[Take]) -> tuple[Recording, ...]:
-    """Those of one session's recordings that count, with their samples, as `Takes.recordings` tells them."""
+def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
+    """Those of one session's recordings that count, with their samples, as `SessionRecordings.counted` tells them."""
     found = []
     is_restrapped = False
-    for take in takes:
-        is_restrapped |= take.told.is_restrapped_before
-        if take.told.is_kept and take.recording is not None:
-            found.append(replace(take.told, imu=take.recording.imu, is_restrapped_before=is_restrapped))
+    for recording in recordings:
+        is_restrapped |= recording.told.is_restrapped_before
+        if recording.told.is_kept and recording.read_back is not None:
+            found.append(replace(recording.told, imu=recording.read_back.imu, is_restrapped_before=is_restrapped))
             is_restrapped = False
     return tuple(found)

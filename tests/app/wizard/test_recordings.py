@@ -12,7 +12,7 @@ from app.acquisition.recorder import ROW_WAIT_S
 from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryFaultError, RecordingState
-from app.wizard.takes import Take
+from app.wizard.recordings import SessionRecording
 from app.wizard.visit import Visit
 from app.workers.library_desk import LibraryDesk
 from core.body import Side, Site
@@ -38,24 +38,24 @@ def test_no_call_of_the_library_holds_up_a_recording(
 ) -> None:
     """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was said before."""
     begin(qtbot, visit, worn)
-    takes, acquisition, over = visit.takes, visit.sensors.acquisition, Event()
-    takes._waited.setInterval(200)
+    recordings, acquisition, over = visit.recordings, visit.sensors.acquisition, Event()
+    recordings._waited.setInterval(200)
     assert acquisition is not None
     desk.run(hanging(over), None, None, desk)
     visit.place_sensors()  # behind it, and before the walk
     told: list[tuple[str, str]] = []
-    takes.troubled.connect(lambda *words: told.append(words))
-    takes.refused.connect(lambda *words: told.append(words))
-    ended: list[Take] = []
-    takes.ended.connect(ended.append)
+    recordings.troubled.connect(lambda *words: told.append(words))
+    recordings.refused.connect(lambda *words: told.append(words))
+    ended: list[SessionRecording] = []
+    recordings.ended.connect(ended.append)
     try:
         for _ in range(2):
             asked_s = time.monotonic()
-            with qtbot.waitSignal(takes.begun, timeout=WAIT_MS):
-                takes.begin(acquisition, RecordingKind.WALKING)
+            with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
+                recordings.begin(acquisition, RecordingKind.WALKING)
             assert time.monotonic() - asked_s < ROW_WAIT_S + 3.0  # on a busy machine; alone it is a second
-            takes.stop()
-            qtbot.waitUntil(lambda: not takes.is_recording, timeout=WAIT_MS)
+            recordings.stop()
+            qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
             assert acquisition._writer is None
         assert ended == []
         assert [what for what, _ in told] == ["The library does not answer.", "The library does not answer yet."] * 2
@@ -63,14 +63,14 @@ def test_no_call_of_the_library_holds_up_a_recording(
         assert ["safe on the disk" in then for _, then in told] == [False, True] * 2
     finally:
         over.set()
-    qtbot.waitUntil(lambda: takes.is_idle, timeout=WAIT_MS)
-    assert [take.told.name for take in ended] == ["walk 1", "walk 2"]
-    assert [take.stored.state for take in ended] == [RecordingState.CLOSED] * 2
-    for take in ended:
-        assert take.recording is not None
-        assert set(take.recording.imu) == set(Site)
+    qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
+    assert [recording.told.name for recording in ended] == ["walk 1", "walk 2"]
+    assert [recording.stored.state for recording in ended] == [RecordingState.CLOSED] * 2
+    for recording in ended:
+        assert recording.read_back is not None
+        assert set(recording.read_back.imu) == set(Site)
     assert visit.session is not None
-    assert [take.stored.placement for take in ended] == [visit.session.placements[-1]] * 2
+    assert [recording.stored.placement for recording in ended] == [visit.session.placements[-1]] * 2
 
 
 def test_a_database_that_fails_in_whatever_way_costs_no_recording(
@@ -87,17 +87,17 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
             return whole(*arguments, **named)
 
         monkeypatch.setattr(Recordings, name, call)
-    takes, acquisition = visit.takes, visit.sensors.acquisition
-    takes._again.setInterval(50)
+    recordings, acquisition = visit.recordings, visit.sensors.acquisition
+    recordings._again.setInterval(50)
     assert acquisition is not None
-    with qtbot.waitSignals([takes.begun, takes.troubled], timeout=WAIT_MS):
-        takes.begin(acquisition, RecordingKind.WALKING)
-    with qtbot.waitSignal(takes.refused, timeout=WAIT_MS) as told:
-        takes.stop()
+    with qtbot.waitSignals([recordings.begun, recordings.troubled], timeout=WAIT_MS):
+        recordings.begin(acquisition, RecordingKind.WALKING)
+    with qtbot.waitSignal(recordings.refused, timeout=WAIT_MS) as told:
+        recordings.stop()
     assert told.args == [f"{FAULT.what}.", "The recording is safe on the disk; it is read back as soon as that can be."]
-    assert not takes.is_recording
+    assert not recordings.is_recording
     is_broken[0] = False
-    with qtbot.waitSignal(takes.ended, timeout=WAIT_MS) as ended:
+    with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:
         pass
     assert ended.args[0].told.name == "walk 1"
 
@@ -106,33 +106,33 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     """The second is made before the library has answered the first."""
     begin(qtbot, visit, worn)
     walk = record(qtbot, visit, RecordingKind.WALKING, 0.5)
-    takes = visit.takes
-    takes.keep(walk, is_kept=True)
-    takes.change(walk, lambda told: replace(told, condition="barefoot"))
-    takes.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
-    takes.keep(walk, is_kept=False)
-    qtbot.waitUntil(lambda: not takes.walks[0].told.is_kept, timeout=WAIT_MS)
-    told = takes.walks[0].told
+    recordings = visit.recordings
+    recordings.keep(walk, is_kept=True)
+    recordings.change(walk, lambda told: replace(told, condition="barefoot"))
+    recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
+    recordings.keep(walk, is_kept=False)
+    qtbot.waitUntil(lambda: not recordings.walks[0].told.is_kept, timeout=WAIT_MS)
+    told = recordings.walks[0].told
     assert (told.condition, dict(told.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
-        takes.keep(takes.walks[0], is_kept)
+        recordings.keep(recordings.walks[0], is_kept)
     assert visit.desk.state is not None
-    recordings = visit.desk.state.library.library.recordings
+    library = visit.desk.state.library.library
     passed = Event()
     visit.desk.run(lambda _opened: passed.set(), None, None, visit)
     assert passed.wait(20)
-    stored = recordings.find(walk.id)
+    stored = library.recordings.find(walk.id)
     assert stored is not None
     assert not stored.told.is_kept
 
 
 def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
     begin(qtbot, visit, worn)
-    takes, acquisition = visit.takes, visit.sensors.acquisition
+    recordings, acquisition = visit.recordings, visit.sensors.acquisition
     assert acquisition is not None
-    takes.begin(acquisition, RecordingKind.STANDING)
-    takes.stop(is_kept=False)  # before it has begun
-    qtbot.waitUntil(lambda: bool(takes.every) and not takes.every[0].told.is_kept, timeout=WAIT_MS)
-    assert takes.standing is None
+    recordings.begin(acquisition, RecordingKind.STANDING)
+    recordings.stop(is_kept=False)  # before it has begun
+    qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].told.is_kept, timeout=WAIT_MS)
+    assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)
-    assert takes.standing is not None
+    assert recordings.standing is not None
