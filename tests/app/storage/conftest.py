@@ -39,7 +39,8 @@ def postgres_url() -> Iterator[str]:
     shutil.rmtree(folder, ignore_errors=True)
 
 
-@pytest.fixture(params=["sqlite", "postgres"])
+# what stations share is in no program yet, and takes a tenth of the default run
+@pytest.fixture(params=["sqlite", pytest.param("postgres", marks=pytest.mark.endurance)])
 def make_engine(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[MakeEngine]:
     """Makes engines on one new, empty database, as many stations as are wanted."""
     made: list[Engine] = []
