@@ -134,6 +134,11 @@ def chains_in_steps(
     -------
     Chains or None
         When the steps are over.
+
+    Raises
+    ------
+    ValueError
+        Fewer than two sensors, or more than six.
     """
     if len(tracks) not in USUAL_SITES:
         raise ValueError(f"{len(tracks)} sensors, expected 2 to 6")

@@ -96,7 +96,13 @@ def details_of_block(block: ImuBlock, arrays: list[Array]) -> Details:
 
 
 def block_from(details: Details, arrays: Sequence[Array]) -> ImuBlock:
-    """The block that `told_of_block` told of; raises `BrokenAnswerError`."""
+    """The block that `details_of_block` wrote.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
     with _whatever_is_wrong():
         samples = {name: _samples(arrays[details[name]]) for name in OF_BLOCK if details[name] is not None}
         columns = {
@@ -120,7 +126,13 @@ def details_of_findings(findings: Sequence[Finding]) -> list[Details]:
 
 
 def findings_from(details: list[Details]) -> tuple[Finding, ...]:
-    """What `details_of_findings` wrote, checked."""
+    """What `details_of_findings` wrote, checked.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
     with _whatever_is_wrong():
         return tuple(_finding(one) for one in details)
 
@@ -138,7 +150,13 @@ def details_of_import(imported: ImportedFiles, arrays: list[Array]) -> Details:
 
 
 def import_from(details: Details, arrays: Sequence[Array]) -> ImportedFiles:
-    """What `details_of_import` wrote, checked."""
+    """What `details_of_import` wrote, checked.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
     with _whatever_is_wrong():
         return ImportedFiles(
             {Site(site): block_from(block, arrays) for site, block in details["imu"].items()},
@@ -160,7 +178,13 @@ def details_of_document(value: object) -> object:
 
 
 def document_from(details: object) -> object:
-    """What `details_of_document` wrote, checked."""
+    """What `details_of_document` wrote, checked.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
     with _whatever_is_wrong():
         match details:
             case ["table", dict(inner)]:
@@ -180,7 +204,13 @@ def details_of_refusal(refusal: FileRefusedError) -> Details:
 
 
 def refusal_from(details: Details) -> FileRefusedError:
-    """The refusal as it was raised; only plain names stand in its braces, so that filling them can do nothing else."""
+    """The refusal as it was raised; only plain names stand in its braces, so that filling them can do nothing else.
+
+    Raises
+    ------
+    BrokenAnswerError
+        It is something else.
+    """
     with _whatever_is_wrong():
         where, what, remedy = (_text(details[name]) for name in ("where", "what", "remedy"))
         values = {str(name): _text(value) for name, value in details["values"].items()}

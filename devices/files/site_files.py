@@ -76,7 +76,13 @@ def read_site(
 
 
 def write_site(block: ImuBlock, path: Path) -> None:
-    """Write a CSV file that `read_site` reads back to the same samples, bit for bit."""
+    """Write a CSV file that `read_site` reads back to the same samples, bit for bit.
+
+    Raises
+    ------
+    ValueError
+        An unknown column has the name of one of the block's own.
+    """
     import pyarrow as pa  # here, not above: the window starts without it
     import pyarrow.csv as pcsv
 
