@@ -34,7 +34,7 @@ from app.theme import Look, load_fonts
 from app.widgets.focus_ring import FocusRing
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 from app.workers.preload import preload
 
@@ -74,7 +74,7 @@ class MainWindow(QWidget):
     def __init__(self, look: Look, settings: Settings, library: Path | None = None, seen: Path | None = None) -> None:
         super().__init__()
         self._look, self._settings = look, settings
-        self.desk = LibraryDesk(self, seen)
+        self.controller = LibraryController(self, seen)
         self._home: Home | None = None
         self._wizard: Wizard | None = None
         self.preparing = Background(self)
@@ -89,7 +89,7 @@ class MainWindow(QWidget):
         self.setMinimumSize(*SMALLEST_SIZE)
         self.resize(QSize(*FIRST_SIZE).boundedTo(self.screen().availableSize() - QSize(*FRAME)))
         self.session = SessionScreen(look)
-        self.entry = Entry(look, self.desk, settings, library, self) if library is not None else None
+        self.entry = Entry(look, self.controller, settings, library, self) if library is not None else None
         self.screens = QStackedWidget()
         self.idle = IdleLock(time.time, self._lock)
         self._poll = QTimer(self)
@@ -135,7 +135,7 @@ class MainWindow(QWidget):
         """Wait for the threads of what was running when the window was closed."""
         self.preparing.finish()
         self.session.finish()
-        self.desk.finish()
+        self.controller.finish()
         if self._wizard is not None:
             self._wizard.finish()
 
@@ -201,9 +201,9 @@ class MainWindow(QWidget):
         self.entry.left.connect(self._log_out)
         self.entry.first_start.demonstration_wished.connect(self.open_demonstration)
         self.entry.log_in.demonstration_wished.connect(self.open_demonstration)
-        self.desk.refused.connect(self._on_told)
-        self.desk.gone.connect(self._on_library_gone)
-        self.desk.back.connect(self._on_library_back)
+        self.controller.refused.connect(self._on_told)
+        self.controller.gone.connect(self._on_library_gone)
+        self.controller.back.connect(self._on_library_back)
         self._poll.timeout.connect(self._on_poll)
         app = QApplication.instance()
         if isinstance(app, QApplication):
@@ -269,7 +269,7 @@ class MainWindow(QWidget):
         if self._home is None:
             from app.home.home import Home
 
-            self._home = Home(self._look, self.desk, self._settings)
+            self._home = Home(self._look, self.controller, self._settings)
             self.screens.addWidget(self._home)
             self._home.session_wished.connect(self._on_session_wished)
             self._home.session_opened.connect(self._on_session_opened)
@@ -303,7 +303,7 @@ class MainWindow(QWidget):
         if self._wizard is None:
             from app.wizard.wizard import Wizard
 
-            self._wizard = Wizard(self._look, self.desk, self._settings)
+            self._wizard = Wizard(self._look, self.controller, self._settings)
             self.screens.addWidget(self._wizard)
             self._wizard.left.connect(self._on_wizard_left)
             self._wizard.settings_wanted.connect(self._on_settings_wanted)
@@ -331,18 +331,18 @@ class MainWindow(QWidget):
             self._wizard.close_visit()
         if self._home is not None:
             self._home.clear()
-        self.desk.close()
+        self.controller.close()
         if self.entry is not None:
             self.entry.begin()
 
     def _on_session_left(self) -> None:
-        if self._home is not None and self.desk.state is not None:
+        if self._home is not None and self.controller.state is not None:
             self._show(self._home)
         elif self.entry is not None:
             self.entry.begin()
 
     def _on_told(self, what: str, remedy: str) -> None:
-        if self._home is not None and self.desk.state is not None:
+        if self._home is not None and self.controller.state is not None:
             self._home.banner.tell(what, remedy)
         elif self.entry is not None:
             self.entry.tell(what, remedy)
@@ -383,15 +383,15 @@ class MainWindow(QWidget):
 
     def _lock(self) -> None:
         """Cover what the library shows; a recording goes on under it."""
-        state = self.desk.state
+        state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration or self.entry.is_showing_key:
             self.idle.unlock()
             return
         self._covered = self.screens.currentWidget()
         self.entry.cover(state.operator.code, self._is_recording)
-        if self.desk.gone_words is not None:
-            self.entry.tell(*self.desk.gone_words)
-        self.desk.lock()
+        if self.controller.gone_words is not None:
+            self.entry.tell(*self.controller.gone_words)
+        self.controller.lock()
 
     def _on_uncovered(self) -> None:
         covered, self._covered = self._covered, None

@@ -8,7 +8,7 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Signal
 
 from app.wording import tr
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 
 if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
@@ -37,9 +37,9 @@ class Deleting(QObject):
     undone = Signal(object)
     refused = Signal(str, str)
 
-    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
-        self._desk = desk
+        self._controller = controller
         self._asked: deque[_Asked] = deque()  # and not answered yet, oldest first
         self._restore: Call | None = None
 
@@ -71,7 +71,7 @@ class Deleting(QObject):
     def undo(self) -> None:
         restore, self._restore = self._restore, None
         if restore is not None:
-            self._desk.run(restore, self._on_restored, self._on_not_restored, self)
+            self._controller.run(restore, self._on_restored, self._on_not_restored, self)
 
     def forget(self) -> None:
         """Another library is open, or none."""
@@ -79,7 +79,7 @@ class Deleting(QObject):
 
     def _ask(self, words: str, delete: Call, restore: Call) -> None:
         self._asked.append(_Asked(words, restore))
-        self._desk.run(delete, self._on_deleted, self._on_not_deleted, self)
+        self._controller.run(delete, self._on_deleted, self._on_not_deleted, self)
 
     def _on_deleted(self, _patient_id: UUID) -> None:
         words, self._restore = self._asked.popleft()

@@ -1,4 +1,4 @@
-"""Who opens the library? The pages before it is open and over it, and what the desk answers them."""
+"""Who opens the library? The pages before it is open and over it, and what the controller answers them."""
 
 import time
 from collections.abc import Callable
@@ -15,7 +15,7 @@ from app.storage.layout import KEYS
 from app.theme import Look
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import LibraryPlace, OpenedState
 
 if TYPE_CHECKING:
@@ -35,9 +35,11 @@ class Entry(QObject):
     left = Signal()  # from the cover, for another operator
     shown = Signal(object)  # the page that is wanted now
 
-    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings, folder: Path, parent: QObject) -> None:
+    def __init__(
+        self, look: Look, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
+    ) -> None:
         super().__init__(parent)
-        self._desk, self._settings, self._folder = desk, settings, folder
+        self._controller, self._settings, self._folder = controller, settings, folder
         self._place: LibraryPlace | None = None
         self._new: OpenedState | None = None  # whose recovery key is shown or asked for
         self._key = ""  # as long as it is shown
@@ -81,7 +83,7 @@ class Entry(QObject):
         self.log_in.forget_typed()
         self.log_in.show_operators(())
         self._show(self.log_in)
-        self._desk.look(self._folder, self._on_looked, self._on_look_failed, self)
+        self._controller.look(self._folder, self._on_looked, self._on_look_failed, self)
 
     def look_again(self) -> None:
         """Go on where a library that was missing is there now."""
@@ -108,7 +110,7 @@ class Entry(QObject):
         self._tried, self._awaits_demonstration = "", True
         self.waiting.begin(tr("Opening the demonstration"))
         self._show(self.waiting)
-        self._desk.open_demonstration()
+        self._controller.open_demonstration()
 
     def focus(self, page: QWidget) -> None:
         if isinstance(page, FirstStartPage | LogInPage):
@@ -124,7 +126,7 @@ class Entry(QObject):
         self.shown.emit(page)
 
     def _connect(self) -> None:
-        first, log_in, desk = self.first_start, self.log_in, self._desk
+        first, log_in, controller = self.first_start, self.log_in, self._controller
         first.made.connect(self._on_made)
         first.look_wished.connect(self._on_look_wished)
         first.done.connect(self._on_key_kept)
@@ -137,8 +139,8 @@ class Entry(QObject):
         log_in.recovered.connect(self._on_recovery_wished)
         log_in.remembered.connect(self._on_remembered_wished)
         log_in.left.connect(self.left)
-        desk.opened.connect(self._on_opened)
-        desk.not_opened.connect(self._on_not_opened)
+        controller.opened.connect(self._on_opened)
+        controller.not_opened.connect(self._on_not_opened)
 
     def _on_looked(self, place: LibraryPlace) -> None:
         self._place = place
@@ -159,7 +161,7 @@ class Entry(QObject):
 
     def _on_made(self, code: str, name: str, passphrase: str) -> None:
         self.first_start.show_busy(True)
-        self._desk.create(self._folder, code, name, passphrase)
+        self._controller.create(self._folder, code, name, passphrase)
 
     def _on_open_wished(self, code: str, passphrase: str, must_remember: bool) -> None:
         self._tried = code
@@ -169,19 +171,19 @@ class Entry(QObject):
         self.log_in.show_busy(True)
         delay = self._delay
         if not self.is_covering:
-            self._desk.open(self._folder, passphrase, code, must_remember, delay)
+            self._controller.open(self._folder, passphrase, code, must_remember, delay)
             return
-        self._desk.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
+        self._controller.unlock(code, passphrase, delay, self._on_checked, self._on_check_failed, self)
 
     def _on_remembered_wished(self, code: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._desk.open_remembered(self._folder, code)
+        self._controller.open_remembered(self._folder, code)
 
     def _on_recovery_wished(self, code: str, recovery_key: str, passphrase: str) -> None:
         self._tried = code
         self.log_in.show_busy(True)
-        self._desk.open_recovered(self._folder, recovery_key, code, passphrase)
+        self._controller.open_recovered(self._folder, recovery_key, code, passphrase)
 
     def _on_checked(self, _nothing: object) -> None:
         self._cover_of = ""
@@ -224,11 +226,11 @@ class Entry(QObject):
 
     def _on_key_kept(self) -> None:
         key, self._key = self._key, ""
-        self._desk.run(_confirming(key), None, None, self)  # where that fails it is asked for again
+        self._controller.run(_confirming(key), None, None, self)  # where that fails it is asked for again
         self._enter()
 
     def _confirm(self, typed: str) -> None:
-        self._desk.run(_confirming(typed), self._on_confirmed, self._on_confirm_failed, self)
+        self._controller.run(_confirming(typed), self._on_confirmed, self._on_confirm_failed, self)
 
     def _on_confirmed(self, _nothing: object) -> None:
         self._enter()
@@ -244,7 +246,7 @@ class Entry(QObject):
 
             return slots_of(opened.folder).renew_recovery_key(opened.data_key)
 
-        self._desk.run(renew, self._on_renewed, self._on_confirm_failed, self)
+        self._controller.run(renew, self._on_renewed, self._on_confirm_failed, self)
 
     def _on_renewed(self, key: str) -> None:
         self._key = key

@@ -14,7 +14,7 @@ from app.foreign_files import read_foreign_session
 from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
 from app.home.recovering import Recovering
-from app.home.settings_desk import SettingsDesk
+from app.home.settings_controller import SettingsController
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
@@ -32,7 +32,7 @@ from app.widgets.step_rail import StepRail, home_below
 from app.widgets.toast import Toast
 from app.wording import place, tr
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 
 if TYPE_CHECKING:
@@ -72,9 +72,9 @@ class Home(QWidget):
     help_wished = Signal(str)
     settings_left = Signal()
 
-    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings) -> None:
+    def __init__(self, look: Look, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
-        self._look, self._desk, self._settings = look, desk, settings
+        self._look, self._controller, self._settings = look, controller, settings
         self._state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
@@ -85,33 +85,33 @@ class Home(QWidget):
         self.rollback_banner = Banner(look)
         self._rollback: Rollback | None = None
         self.rollback_banner.acted.connect(self._on_rollback_accepted)
-        self.recovering = Recovering(desk, self.banner, self)
+        self.recovering = Recovering(controller, self.banner, self)
         self.page = HomePage(look)
         self.import_page = ImportPage(look)
-        self._settings_desk: SettingsDesk | None = None
+        self._settings_controller: SettingsController | None = None
         self.working = WorkingPage(look)
         self.bar = ActionBar(look)
         self.toast = Toast(look, self)
-        self.deleting = Deleting(desk, self)
+        self.deleting = Deleting(controller, self)
         self._build()
         self._connect()
         self._go_to(self.page)
         self._on_look_changed()
 
     @property
-    def settings(self) -> SettingsDesk:
+    def settings(self) -> SettingsController:
         """The settings, made when they are first asked for: beside the rest of home they would hold up the screen."""
-        return self._settings_desk or self._make_settings()
+        return self._settings_controller or self._make_settings()
 
     def prepare(self) -> bool:
         """Make the next part before somebody asks for it; whether there was one."""
-        if self._settings_desk is not None:
+        if self._settings_controller is not None:
             return False
         self._make_settings()
         return True
 
-    def _make_settings(self) -> SettingsDesk:
-        made = self._settings_desk = SettingsDesk(self._look, self._desk, self._settings, self)
+    def _make_settings(self) -> SettingsController:
+        made = self._settings_controller = SettingsController(self._look, self._controller, self._settings, self)
         self._add_page(made.page)
         made.told.connect(self.banner.tell)
         made.restored.connect(self.refresh)
@@ -125,8 +125,8 @@ class Home(QWidget):
         self.banner.hide()
         self.page.search.clear()
         self.page.forget_patients()
-        if self._settings_desk is not None:
-            self._settings_desk.show_library(state)
+        if self._settings_controller is not None:
+            self._settings_controller.show_library(state)
         if state.is_end_lost:
             self.banner.tell(
                 tr("The library was not closed well, and what was saved last is damaged."),
@@ -156,7 +156,7 @@ class Home(QWidget):
 
     def _on_rollback_accepted(self) -> None:
         if self._rollback is not None:
-            self._desk.accept_rollback(self._rollback, self._on_rollback_noted, self._on_refused, self)
+            self._controller.accept_rollback(self._rollback, self._on_rollback_noted, self._on_refused, self)
 
     def _on_rollback_noted(self, _nothing: object) -> None:
         self._rollback = None
@@ -177,7 +177,7 @@ class Home(QWidget):
     def refresh(self, chosen: UUID | None = None) -> None:
         """Read the patients anew, and choose one of them, else the one that was chosen."""
         self._chosen = chosen or self.page.patient_id
-        self._desk.run(_patients_in, self._on_patients, self._on_refused, self)
+        self._controller.run(_patients_in, self._on_patients, self._on_refused, self)
 
     def show_settings(self) -> None:
         self.settings.read_deleted()
@@ -364,7 +364,7 @@ class Home(QWidget):
         def read(opened: "OpenedLibrary") -> _Sessions:
             return _sessions_of(opened, own)
 
-        self._desk.run(read, self._on_sessions, self._on_refused, self)
+        self._controller.run(read, self._on_sessions, self._on_refused, self)
 
     def _on_sessions(self, sessions: _Sessions) -> None:
         if sessions.patient_id != self.page.patient_id:
@@ -447,7 +447,7 @@ class Home(QWidget):
 
         self._folder = folder
         self._work(tr("Reading {folder}").format(folder=folder.name))
-        self._desk.run_long(read, self._on_folder_read, self._on_work_refused, self._on_progressed, self)
+        self._controller.run_long(read, self._on_folder_read, self._on_work_refused, self._on_progressed, self)
 
     def _on_folder_read(self, session: "Session") -> None:
         self._to_import = session
@@ -470,7 +470,7 @@ class Home(QWidget):
             return import_session(opened, session, report, code)
 
         self._work(tr("Importing {folder}").format(folder=self._folder.name))
-        self._desk.run_long(work, self._on_imported, self._on_import_refused, self._on_progressed, self)
+        self._controller.run_long(work, self._on_imported, self._on_import_refused, self._on_progressed, self)
 
     def _on_imported(self, imported: "Imported") -> None:
         self._to_import = None
@@ -500,11 +500,11 @@ class Home(QWidget):
 
     def _on_stop(self) -> None:
         if self._to_import is None:  # a folder was being read, and no more
-            self._desk.stop_long()
+            self._controller.stop_long()
             self._go_to(self.page)
             self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
         else:
-            self._desk.stop_long(self._on_import_stopped)
+            self._controller.stop_long(self._on_import_stopped)
             self._go_to(self.import_page)
             self.banner.tell(tr("The import is being stopped."), tr("What was added of it is taken back."))
 

@@ -21,7 +21,7 @@ from app.widgets.folder_dialog import ask_for_folder
 from app.wizard.walk_messages import recovery_costs
 from app.wording import capitalised, tr, tr_n
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 from devices.decoders import DECODERS
 
@@ -55,9 +55,9 @@ class Recovering(QObject):
 
     recovered = Signal()
 
-    def __init__(self, desk: LibraryDesk, banner: Banner, parent: QWidget) -> None:
+    def __init__(self, controller: LibraryController, banner: Banner, parent: QWidget) -> None:
         super().__init__(parent)
-        self._desk, self._banner, self._window = desk, banner, parent
+        self._controller, self._banner, self._window = controller, banner, parent
         self._waiting: list[_Message] = []
         self._lost: list[Interrupted] = []
         self._brought_home: frozenset[UUID] = frozenset()
@@ -71,9 +71,9 @@ class Recovering(QObject):
         self._waiting, self._lost, self._brought_home = [], [], state.brought_home
         interrupted = state.interrupted
         if not interrupted:
-            self._desk.run(_still_undecided, self._say_outcome, self._on_refused, self)
+            self._controller.run(_still_undecided, self._say_outcome, self._on_refused, self)
             return
-        self._desk.run_long(
+        self._controller.run_long(
             lambda opened, report: _recover(opened, interrupted, report),
             self._on_recovered,
             self._on_refused,
@@ -87,7 +87,7 @@ class Recovering(QObject):
         def work(opened: "OpenedLibrary", report: Report) -> _Outcome:
             return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
 
-        self._desk.run_long(work, self._on_come_home, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_come_home, self._on_refused, None, self)
 
     def export(self, folder: Path) -> None:
         """Write what belongs to no session into `folder`, each recording into a folder of its own."""
@@ -99,7 +99,7 @@ class Recovering(QObject):
                 export_orphan(opened, one, folder / f"{number}{began}", DECODERS, report)
             return str(folder)
 
-        self._desk.run_long(work, self._on_exported, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_exported, self._on_refused, None, self)
 
     def _say(self, messages: Sequence[_Message]) -> None:
         self._waiting += messages

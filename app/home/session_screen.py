@@ -37,7 +37,7 @@ from devices.files.refusal import FileRefusedError
 if TYPE_CHECKING:  # their imports take a second; the window must not wait for them
     from app.pages.found_page import FoundPage
     from app.pages.result_page import ResultPage
-    from app.workers.how_found_desk import HowFoundDesk
+    from app.workers.diagnostics_controller import DiagnosticsController
     from app.workers.opening import Opened
     from core.samples import Patient
 
@@ -71,7 +71,7 @@ class SessionScreen(Themed):
         self._results: ResultPage | None = None
         self._opened: Opened | None = None
         self._found: FoundPage | None = None
-        self._how_found: HowFoundDesk | None = None
+        self._how_found: DiagnosticsController | None = None
         self._saved_in = Path()
         self._dialog: QFileDialog | None = None
         self.header = Header(look)
@@ -244,11 +244,11 @@ class SessionScreen(Themed):
             return
         if self._found is None or self._how_found is None:
             from app.pages.found_page import FoundPage
-            from app.workers.how_found_desk import HowFoundDesk
+            from app.workers.diagnostics_controller import DiagnosticsController
 
             self._found = FoundPage(self._look)
             self.pages.addWidget(self._found)
-            self._how_found = HowFoundDesk(self._found, self._looking, self)
+            self._how_found = DiagnosticsController(self._found, self._looking, self)
             self._how_found.refused.connect(self.banner.tell)
             self._how_found.writing.connect(self._on_figures_wished)
             self._found.closed.connect(self.leave)
@@ -264,7 +264,7 @@ class SessionScreen(Themed):
             self._found.show_saved(self._saved_in.name)
 
     def _on_figures_not_saved(self, error: Exception) -> None:
-        from app.workers.how_found_desk import cannot_write
+        from app.workers.diagnostics_controller import cannot_write
 
         if not isinstance(error, OSError):
             _log.error("the figures were not saved", exc_info=error)

@@ -16,8 +16,8 @@ from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import AuditRow
-from app.storage.desk import END, Desk
 from app.storage.stored import BEGINNING, Action, AuditEntry, AuditFault, AuditReport, Checkpoint, Role
+from app.storage.unit_of_work import END, UnitOfWork
 
 MANY = 1000  # rows held at a time
 
@@ -25,20 +25,20 @@ MANY = 1000  # rows held at a time
 class Audit:
     """The library's record of what was done."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
-        with desk.database.reading() as session:
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
+        with unit.database.reading() as session:
             first = session.get(AuditRow, 1)
             self.library_id = first.hash[:32] if first is not None else ""
 
     @property
     def end(self) -> Checkpoint:
         """How far it has come, as far as this program was told."""
-        return self._desk.end_of_audit
+        return self._unit.end_of_audit
 
     def holds(self, checkpoint: Checkpoint) -> bool:
         """Whether the entry that a checkpoint tells of is there. The chain is not followed; see `verify`."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             row = session.get(AuditRow, checkpoint.number)
             return row is not None and hmac.compare_digest(row.hash, checkpoint.hash)
 
@@ -50,8 +50,8 @@ class Audit:
         NotAllowedError
             The operator is not an administrator.
         """
-        with self._desk.writing(Role.ADMINISTRATOR) as session:
-            note(self._desk, session, Action.EDIT, "library", accepted_without_entries=[first, last])
+        with self._unit.writing(Role.ADMINISTRATOR) as session:
+            note(self._unit, session, Action.EDIT, "library", accepted_without_entries=[first, last])
 
     def note(self, action: Action, subject: str, **details: str | float | bool) -> None:
         """Record what was done outside of the library: an export, a print, a backup. No names in `details`.
@@ -61,25 +61,25 @@ class Audit:
         LibraryError
             It cannot be recorded; then it must not be done either.
         """
-        with self._desk.writing(Role.VIEWER) as session:
-            note(self._desk, session, action, subject, **details)
+        with self._unit.writing(Role.VIEWER) as session:
+            note(self._unit, session, action, subject, **details)
 
     def entries(self, subject: str = "", last: int = 1000) -> tuple[AuditEntry, ...]:
         """The latest entries, oldest first; all of them or those about one `subject`."""
         wanted = select(AuditRow).order_by(AuditRow.number.desc()).limit(last)
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             rows = session.scalars(wanted.where(AuditRow.subject == subject) if subject else wanted)
             return tuple(entry_of(row) for row in rows)[::-1]
 
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
         """Check every link, and that the chain still holds what `checkpoint` tells of."""
-        with self._desk.reading() as session:
-            return verify_rows(session, self._desk.audit_key, checkpoint)
+        with self._unit.reading() as session:
+            return verify_rows(session, self._unit.audit_key, checkpoint)
 
 
-def note(desk: Desk, session: OrmSession, action: Action, subject: str, **details: object) -> None:
+def note(unit: UnitOfWork, session: OrmSession, action: Action, subject: str, **details: object) -> None:
     """Add an entry in the same transaction as what it tells of."""
-    append(session, desk.audit_key, desk.now(), desk.code, action, subject, details)
+    append(session, unit.audit_key, unit.now(), unit.code, action, subject, details)
 
 
 def end_of_audit(session: OrmSession) -> Checkpoint:

@@ -15,8 +15,8 @@ from app.storage.audit import about, note
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
 from app.storage.database.models import CorrectionRow, JointRow, PatientRow, RecordingRow, SessionRow
-from app.storage.desk import Desk
 from app.storage.stored import Action, Change, Correction, LibraryError, Role
+from app.storage.unit_of_work import UnitOfWork
 
 CORRECTED: Mapping[str, type[DeclarativeBase]] = {
     row.__tablename__: row for row in (PatientRow, SessionRow, JointRow, RecordingRow)
@@ -27,17 +27,17 @@ Value = str | float | bool | None
 class Corrections:
     """The history of patients and sessions."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def of_patient(self, patient_id: UUID) -> tuple[Correction, ...]:
         """All that was corrected about a patient and the patient's sessions, latest first."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return corrections_of_patient(session, patient_id)
 
     def of_session(self, session_id: UUID) -> tuple[Correction, ...]:
         """Latest first."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return _listed(session, CorrectionRow.session_id == session_id)
 
     def undo(self, correction_id: UUID) -> None:
@@ -50,14 +50,14 @@ class Corrections:
         LibraryError
             It was undone already, or what it was about is gone.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = session.get(CorrectionRow, correction_id)
             if row is None:
                 raise LibraryError("This correction is not there any more", "Reload what is shown")
             if session.scalar(select(CorrectionRow.id).where(CorrectionRow.undoes_id == row.id)):
                 raise LibraryError("This correction was undone already", "Reload what is shown")
             back = [Change(c.table, c.row, c.field, old=c.new, new=c.old) for c in reversed(_changes(row))]
-            apply(self._desk, session, back, row.patient_id, row.session_id, undoes=row.id)
+            apply(self._unit, session, back, row.patient_id, row.session_id, undoes=row.id)
 
 
 def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Correction, ...]:
@@ -66,7 +66,7 @@ def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Corre
 
 
 def apply(
-    desk: Desk,
+    unit: UnitOfWork,
     session: OrmSession,
     changes: Sequence[Change],
     patient_id: UUID,
@@ -95,15 +95,15 @@ def apply(
         number=last + 1,
         patient_id=patient_id,
         session_id=session_id,
-        at=desk.now(),
-        operator=desk.code,
+        at=unit.now(),
+        operator=unit.code,
         changes=[_record(change) for change in changes],
         undoes_id=undoes,
     )
     session.add(correction)
     details: dict[str, object] = {"fields": sorted({change.field for change in changes}), "correction": correction.id}
     subject = about("patient", patient_id) if session_id is None else about("session", session_id)
-    note(desk, session, Action.EDIT, subject, **{key: plain(value) for key, value in details.items()})
+    note(unit, session, Action.EDIT, subject, **{key: plain(value) for key, value in details.items()})
 
 
 def differences(row: Any, wanted: Mapping[str, object]) -> list[Change]:

@@ -47,12 +47,12 @@ class Library:
         from app.storage.corrections import Corrections
         from app.storage.database.schema import bring_up_to_date
         from app.storage.derived_keys import derived_keys
-        from app.storage.desk import Desk
         from app.storage.operators import Operators, Settings
         from app.storage.patients import Patients
         from app.storage.recordings import Recordings
         from app.storage.results import Results
         from app.storage.sessions import Sessions
+        from app.storage.unit_of_work import UnitOfWork
 
         self.is_end_lost = is_end_lost
         self.root: LibraryRoot | None = None  # of a library in a folder
@@ -61,15 +61,15 @@ class Library:
         with database.reading() as session:
             keys = derived_keys(session, data_key)
         self.pseudonyms_key = keys.pseudonyms
-        self._desk = Desk(database, keys.audit, now, is_demonstration=data_key is None)
-        self.patients = Patients(self._desk)
-        self.sessions = Sessions(self._desk)
-        self.recordings = Recordings(self._desk)
-        self.results = Results(self._desk)
-        self.corrections = Corrections(self._desk)
-        self.operators = Operators(self._desk)
-        self.settings = Settings(self._desk)
-        self.audit = Audit(self._desk)
+        self._unit = UnitOfWork(database, keys.audit, now, is_demonstration=data_key is None)
+        self.patients = Patients(self._unit)
+        self.sessions = Sessions(self._unit)
+        self.recordings = Recordings(self._unit)
+        self.results = Results(self._unit)
+        self.corrections = Corrections(self._unit)
+        self.operators = Operators(self._unit)
+        self.settings = Settings(self._unit)
+        self.audit = Audit(self._unit)
 
     @classmethod
     def create(
@@ -139,11 +139,11 @@ class Library:
 
     @property
     def operator(self) -> Operator | None:
-        return self._desk.operator
+        return self._unit.operator
 
     @property
     def is_demonstration(self) -> bool:
-        return self._desk.is_demonstration
+        return self._unit.is_demonstration
 
     def begin(self, operator: Operator) -> Operator:
         """Log the first operator of an empty library in, as its administrator.
@@ -162,8 +162,8 @@ class Library:
         with self._database.writing() as session:
             if session.scalars(select(OperatorRow.code).limit(1)).first() is not None:
                 raise NotAllowedError("There is a library already", "Log in to it, or choose another folder")
-            self._desk.operator = first
-            add_operator(session, self._desk, first)
+            self._unit.operator = first
+            add_operator(session, self._unit, first)
         return self.log_in(first.code)
 
     def log_in(self, code: str, failed_before: int = 0) -> Operator:
@@ -187,13 +187,13 @@ class Library:
             if self.is_end_lost:
                 details["is_end_lost"] = True
             subject = about("operator", row.code)
-            append(session, self._desk.audit_key, self._desk.now(), row.code, Action.LOGIN, subject, details)
-        self._desk.note_end(session)
-        self._desk.operator = operator
+            append(session, self._unit.audit_key, self._unit.now(), row.code, Action.LOGIN, subject, details)
+        self._unit.note_end(session)
+        self._unit.operator = operator
         return operator
 
     def log_out(self) -> None:
-        self._desk.operator = None
+        self._unit.operator = None
 
     def faults(self) -> tuple[str, ...]:
         """Read every page of the database and check it; what is wrong, for a report. Nothing: it is whole."""

@@ -10,18 +10,18 @@ from app.storage.audit import about, note
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.models import OperatorRow, SettingRow, folded
 from app.storage.database.values import operator_of
-from app.storage.desk import Desk
 from app.storage.stored import Action, LibraryError, Operator, Role
+from app.storage.unit_of_work import UnitOfWork
 
 
 class Operators:
     """Administrators' business. Key slots are made and removed beside it, under the same codes (`app.storage.keys`)."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def list(self) -> tuple[Operator, ...]:
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return tuple(operator_of(row) for row in session.scalars(select(OperatorRow).order_by(OperatorRow.code)))
 
     def add(self, operator: Operator) -> Operator:
@@ -32,10 +32,10 @@ class Operators:
         LibraryError
             The code is taken.
         """
-        with self._desk.writing(Role.ADMINISTRATOR) as session:
+        with self._unit.writing(Role.ADMINISTRATOR) as session:
             if session.get(OperatorRow, folded(operator.code)) is not None:
                 raise LibraryError("Another operator has this code", "Choose another code")
-            row = add_operator(session, self._desk, operator)
+            row = add_operator(session, self._unit, operator)
             return operator_of(row)
 
     def change(self, operator: Operator) -> Operator:
@@ -48,7 +48,7 @@ class Operators:
         LibraryError
             Nobody would be administrator any more.
         """
-        with self._desk.writing(Role.ADMINISTRATOR) as session:
+        with self._unit.writing(Role.ADMINISTRATOR) as session:
             row = session.get(OperatorRow, folded(operator.code))
             if row is None or row.version != operator.version:
                 raise changed_meanwhile()
@@ -60,7 +60,7 @@ class Operators:
             if session.scalars(administrators).first() is None:
                 raise LibraryError("A library needs an administrator", "Give somebody else the role first")
             details = {"role": row.role.value, "is_active": row.is_active}
-            note(self._desk, session, Action.EDIT, about("operator", row.code), **details)
+            note(self._unit, session, Action.EDIT, about("operator", row.code), **details)
             return operator_of(row)
 
 
@@ -70,28 +70,28 @@ CLINIC = "clinic"  # its name, as reports print it
 class Settings:
     """What holds for the whole clinic. Values are whatever JSON holds."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def get(self, name: str, default: Any = None) -> Any:
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             row = session.get(SettingRow, name)
             return default if row is None else row.value
 
     def put(self, name: str, value: Any) -> None:
-        with self._desk.writing(Role.ADMINISTRATOR) as session:
+        with self._unit.writing(Role.ADMINISTRATOR) as session:
             row = session.get(SettingRow, name)
             if row is None:
                 session.add(SettingRow(name=name, value=value))
             else:
                 row.value = value
-            note(self._desk, session, Action.EDIT, about("setting", name))
+            note(self._unit, session, Action.EDIT, about("setting", name))
 
 
-def add_operator(session: OrmSession, desk: Desk, operator: Operator) -> OperatorRow:
+def add_operator(session: OrmSession, unit: UnitOfWork, operator: Operator) -> OperatorRow:
     own = replace(operator, code=folded(operator.code))
-    row = OperatorRow(code=own.code, name=own.name, role=own.role, is_active=own.is_active, created_at=desk.now())
+    row = OperatorRow(code=own.code, name=own.name, role=own.role, is_active=own.is_active, created_at=unit.now())
     session.add(row)
     session.flush()
-    note(desk, session, Action.CREATE, about("operator", own.code), role=own.role.value)
+    note(unit, session, Action.CREATE, about("operator", own.code), role=own.role.value)
     return row

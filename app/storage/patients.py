@@ -12,9 +12,9 @@ from app.storage.corrections import apply, corrections_of_patient, differences
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
 from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_patients, stored_result, stored_session
-from app.storage.desk import Desk
 from app.storage.sessions import refuse_early
 from app.storage.stored import Action, LibraryError, PatientFile, Role, StoredPatient
+from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
 from core.samples import Patient
 from devices.files.session_toml import PATIENT
@@ -25,8 +25,8 @@ CORRECTABLE = tuple(name for name in PATIENT_FIELDS if name != "unknown")
 class Patients:
     """One row for each person, by a code that the clinic gives."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def create(self, told: Patient) -> StoredPatient:
         """Add a patient.
@@ -36,13 +36,13 @@ class Patients:
         LibraryError
             The code is empty or another patient's, or a value is out of range.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             told = _checked(told)
             _refuse_taken(session, told.code)
-            row = PatientRow(created_at=self._desk.now(), **{name: getattr(told, name) for name in PATIENT_FIELDS})
+            row = PatientRow(created_at=self._unit.now(), **{name: getattr(told, name) for name in PATIENT_FIELDS})
             session.add(row)
             session.flush()
-            note(self._desk, session, Action.CREATE, about("patient", row.id))
+            note(self._unit, session, Action.CREATE, about("patient", row.id))
             return stored_patient(session, row)
 
     def get(self, patient_id: UUID) -> StoredPatient:
@@ -53,12 +53,12 @@ class Patients:
         LibraryError
             There is no such patient.
         """
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return stored_patient(session, _existing(session, patient_id))
 
     def find(self, code: str) -> StoredPatient | None:
         """The patient with this code, however it is typed, or the one whom that patient was merged into."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             row = session.scalars(select(PatientRow).where(PatientRow.code_folded == folded(code))).first()
             if row is not None and row.merged_into_id is not None:
                 row = session.get_one(PatientRow, row.merged_into_id)
@@ -66,7 +66,7 @@ class Patients:
 
     def search(self, text: str = "", is_deleted: bool = False) -> tuple[StoredPatient, ...]:
         """Those whose code holds `text`, the latest seen first; or those that are deleted and can be restored."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             found = stored_patients(
                 session,
                 PatientRow.code_folded.contains(folded(text), autoescape=True),
@@ -85,13 +85,13 @@ class Patients:
         LibraryError
             As in `create`.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
             told = _checked(told)
             if folded(told.code) != row.code_folded:
                 _refuse_taken(session, told.code)
             apply(
-                self._desk, session, differences(row, {name: getattr(told, name) for name in CORRECTABLE}), patient.id
+                self._unit, session, differences(row, {name: getattr(told, name) for name in CORRECTABLE}), patient.id
             )
             session.flush()
             return stored_patient(session, row)
@@ -108,7 +108,7 @@ class Patients:
         LibraryError
             They are the same, or one was deleted.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row, other = _current(session, kept), _current(session, double)
             if row is other or row.deleted_at or other.deleted_at:
                 raise LibraryError("These two cannot be merged", "Choose two patients that are not deleted")
@@ -122,13 +122,13 @@ class Patients:
             changes += [change for visit in moved for change in differences(visit, {"patient_id": row.id})]
             doubles = [*session.scalars(select(PatientRow).where(PatientRow.merged_into_id == other.id)), other]
             changes += [change for one in doubles for change in differences(one, {"merged_into_id": row.id})]
-            apply(self._desk, session, changes, row.id)
+            apply(self._unit, session, changes, row.id)
             session.flush()
             return stored_patient(session, row)
 
     def delete(self, patient: StoredPatient) -> StoredPatient:
         """Take a patient and all sessions out of sight; they can be restored for 30 days."""
-        return self._set_deleted(patient, self._desk.now(), Action.DELETE)
+        return self._set_deleted(patient, self._unit.now(), Action.DELETE)
 
     def restore(self, patient: StoredPatient) -> StoredPatient:
         return self._set_deleted(patient, None, Action.EDIT)
@@ -141,15 +141,15 @@ class Patients:
         LibraryError
             The patient was not deleted, or less than 30 days ago.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, patient_id)
-            refuse_early(row.deleted_at, self._desk.now())
+            refuse_early(row.deleted_at, self._unit.now())
             gone = [row.id, *session.scalars(select(PatientRow.id).where(PatientRow.merged_into_id == row.id))]
             session.execute(delete(SessionRow).where(SessionRow.patient_id.in_(gone)))
             # the doubles before the one that they refer to
             session.execute(delete(PatientRow).where(PatientRow.merged_into_id == row.id))
             session.execute(delete(PatientRow).where(PatientRow.id == row.id))
-            note(self._desk, session, Action.DELETE, about("patient", patient_id), is_final=True)
+            note(self._unit, session, Action.DELETE, about("patient", patient_id), is_final=True)
 
     def everything(self, patient_id: UUID) -> PatientFile:
         """All that the library holds of one patient, for an export; it is noted as one.
@@ -159,9 +159,9 @@ class Patients:
         LibraryError
             There is no such patient, or the export cannot be noted.
         """
-        with self._desk.writing(Role.VIEWER) as session:
+        with self._unit.writing(Role.VIEWER) as session:
             patient = stored_patient(session, _existing(session, patient_id))
-            note(self._desk, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
+            note(self._unit, session, Action.EXPORT, about("patient", patient_id), is_everything=True)
             rows = session.scalars(
                 select(SessionRow).where(SessionRow.patient_id == patient_id).order_by(SessionRow.started)
             )
@@ -180,10 +180,10 @@ class Patients:
             )
 
     def _set_deleted(self, patient: StoredPatient, at: datetime.datetime | None, action: Action) -> StoredPatient:
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _current(session, patient)
             row.deleted_at = at
-            note(self._desk, session, action, about("patient", patient.id), is_deleted=at is not None)
+            note(self._unit, session, action, about("patient", patient.id), is_deleted=at is not None)
             session.flush()
             return stored_patient(session, row)
 

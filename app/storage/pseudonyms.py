@@ -17,7 +17,7 @@ from dataclasses import replace
 from enum import StrEnum
 from uuid import UUID
 
-from app.storage.desk import DEMO
+from app.storage.unit_of_work import DEMO
 from core.samples import Patient, Recording, SensorInfo, Session
 from devices.files.imports import folder_for, free_name
 

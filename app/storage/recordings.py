@@ -13,7 +13,6 @@ from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
 from app.storage.database.models import JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
-from app.storage.desk import Desk
 from app.storage.stored import (
     Action,
     LibraryError,
@@ -23,6 +22,7 @@ from app.storage.stored import (
     StoredRecording,
     UndecidedWalk,
 )
+from app.storage.unit_of_work import UnitOfWork
 from core.samples import Recording, RecordingKind
 
 CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_restrapped_before")
@@ -31,8 +31,8 @@ CORRECTABLE = ("name", "kind", "condition", "started", "is_kept", "note", "is_re
 class Recordings:
     """One row for each start and stop. The row comes first, then the journal; the samples are there, not here."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def new_id(self) -> UUID:
         """For a recording whose row may come later than its journal."""
@@ -64,7 +64,7 @@ class Recordings:
         LibraryError
             There is no such session, it has a recording of this name, or `is_simulated` and its patient is not.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             visit = session.get(SessionRow, session_id)
             if visit is None:
                 raise LibraryError("This session is not in the library any more", "Reload the list")
@@ -83,7 +83,7 @@ class Recordings:
             session.add(row)
             visit.is_simulated = visit.is_simulated or is_simulated
             session.flush()
-            note(self._desk, session, Action.CREATE, about("recording", row.id))
+            note(self._unit, session, Action.CREATE, about("recording", row.id))
             return stored_recording(row)
 
     def add_journal(self, recording_id: UUID, journal: StoredJournal) -> None:
@@ -94,7 +94,7 @@ class Recordings:
         LibraryError
             There is no such recording, or it has this segment.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
                 raise LibraryError("The recording has this segment already", "Recover it first")
@@ -115,7 +115,7 @@ class Recordings:
         LibraryError
             There is no such recording, or a segment is missing.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, recording_id)
             if {journal.segment for journal in row.journals} != set(sha256):
                 raise LibraryError("The recording has other files than the library knows of", "Recover it first")
@@ -123,7 +123,7 @@ class Recordings:
                 journal.sha256 = sha256[journal.segment]
             row.state = state
             session.flush()
-            note(self._desk, session, Action.EDIT, about("recording", row.id), state=state.value)
+            note(self._unit, session, Action.EDIT, about("recording", row.id), state=state.value)
             return stored_recording(row)
 
     def withdraw(self, recording_id: UUID) -> None:
@@ -134,12 +134,12 @@ class Recordings:
         LibraryError
             There is no such recording, or it has journals.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, recording_id)
             if row.journals:
                 raise LibraryError("This recording has begun", "Stop it, and do not keep it")
             session.delete(row)
-            note(self._desk, session, Action.DELETE, about("recording", row.id), is_final=True)
+            note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def discard(self, recording_id: UUID) -> None:
         """Forget a recording's keys, once those in its files are destroyed: nothing opens it any more.
@@ -149,12 +149,12 @@ class Recordings:
         LibraryError
             There is no such recording.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, recording_id)
             for journal in row.journals:
                 journal.wrapped_key = None
             row.state = RecordingState.DISCARDED
-            note(self._desk, session, Action.DELETE, about("recording", row.id), is_final=True)
+            note(self._unit, session, Action.DELETE, about("recording", row.id), is_final=True)
 
     def change(self, recording: StoredRecording, told: Recording) -> StoredRecording:
         """Correct what was told of a recording: condition, kept, strides left out and so on; undone from the history.
@@ -166,14 +166,14 @@ class Recordings:
         LibraryError
             Another recording of the session has this name.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
             if told.name != row.name:
                 _refuse_taken(visit, told.name)
             wanted = {name: getattr(told, name) for name in CORRECTABLE}
             changes = differences(row, wanted | {"left_out": left_out_in_row(told.left_out_s)})
-            apply(self._desk, session, changes, visit.patient_id, visit.id)
+            apply(self._unit, session, changes, visit.patient_id, visit.id)
             session.flush()
             return stored_recording(row)
 
@@ -185,29 +185,29 @@ class Recordings:
         ChangedMeanwhileError
             `recording` is not what the library holds any more.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = current_recording(session, recording)
             visit = session.get_one(SessionRow, row.session_id)
             is_recovered = row.state is RecordingState.RECOVERED
             wanted: dict[str, object] = {"is_kept": is_kept}
             if is_recovered:
-                wanted["judged_by"] = self._desk.code
-            apply(self._desk, session, differences(row, wanted), visit.patient_id, visit.id)
+                wanted["judged_by"] = self._unit.code
+            apply(self._unit, session, differences(row, wanted), visit.patient_id, visit.id)
             row.is_decided = True
             session.flush()
             details = {"is_recovered": is_recovered, "is_kept": is_kept}
-            note(self._desk, session, Action.EDIT, about("recording", row.id), **details)
+            note(self._unit, session, Action.EDIT, about("recording", row.id), **details)
             return stored_recording(row)
 
     def find(self, recording_id: UUID) -> StoredRecording | None:
         """The recording that a journal says it is; None: an orphan."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             row = session.get(RecordingRow, recording_id)
             return None if row is None else stored_recording(row)
 
     def known(self) -> Mapping[UUID, frozenset[int]]:
         """All that have a row, and which segments it knows of: a journal of any other recording is an orphan."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             segments: dict[UUID, set[int]] = {one: set() for one in session.scalars(select(RecordingRow.id))}
             for recording_id, segment in session.execute(select(JournalRow.recording_id, JournalRow.segment)):
                 segments[recording_id].add(segment)
@@ -227,7 +227,7 @@ class Recordings:
             .where(SessionRow.deleted_at.is_(None), PatientRow.deleted_at.is_(None))
             .order_by(RecordingRow.id)
         )
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return tuple(
                 UndecidedWalk(stored_recording(row), patient_id, code)
                 for row, patient_id, code in session.execute(wanted)
@@ -235,7 +235,7 @@ class Recordings:
 
     def still_open(self) -> tuple[StoredRecording, ...]:
         """Those that nobody stopped: they are to be recovered, unless they are being recorded now."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             rows = session.scalars(
                 select(RecordingRow).where(RecordingRow.state == RecordingState.OPEN).order_by(RecordingRow.id)
             )

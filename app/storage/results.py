@@ -11,8 +11,8 @@ from sqlalchemy.orm import Session as OrmSession
 from app.storage.audit import canonical
 from app.storage.database.models import ResultRow, SessionRow
 from app.storage.database.values import stored_result
-from app.storage.desk import Desk
 from app.storage.stored import AnalysisInputs, LibraryError, ResultKind, Role, StoredResult
+from app.storage.unit_of_work import UnitOfWork
 
 MOST_KEPT = 2  # of a session and kind: what holds, and what did before the last correction, should that be undone
 
@@ -20,12 +20,12 @@ MOST_KEPT = 2  # of a session and kind: what holds, and what did before the last
 class Results:
     """Calibrations and analyses. They can all be computed again from the journals."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def find(self, session_id: UUID, kind: ResultKind, inputs: AnalysisInputs) -> StoredResult | None:
         """What was computed from these very inputs; None: not yet."""
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             row = session.scalars(_wanted(session_id, kind, key_of(inputs))).first()
             return None if row is None else stored_result(row)
 
@@ -42,7 +42,7 @@ class Results:
             There is no such session.
         """
         key = key_of(inputs)
-        with self._desk.writing(Role.VIEWER) as session:
+        with self._unit.writing(Role.VIEWER) as session:
             _existing(session, session_id)
             row = session.scalars(_wanted(session_id, kind, key)).first()
             if row is not None and (row.format, row.content) != (content_format, content):
@@ -58,7 +58,7 @@ class Results:
                     algorithm=inputs.algorithm,
                     format=content_format,
                     content=content,
-                    created_at=self._desk.now(),
+                    created_at=self._unit.now(),
                 )
                 session.add(row)
                 session.flush()

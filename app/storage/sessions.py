@@ -21,7 +21,6 @@ from app.storage.database.models import (
     SessionRow,
 )
 from app.storage.database.values import SENSOR_FIELDS, SESSION_FIELDS, placement_of, stored_recording, stored_session
-from app.storage.desk import Desk
 from app.storage.recordings import current_recording
 from app.storage.stored import (
     Action,
@@ -34,6 +33,7 @@ from app.storage.stored import (
     StoredRecording,
     StoredSession,
 )
+from app.storage.unit_of_work import UnitOfWork
 from app.wording import tr
 from core.body import Joint, Site
 from core.samples import Session
@@ -48,8 +48,8 @@ SEARCHED = (SessionRow.notes, SessionRow.operator, SessionRow.surface, SessionRo
 class Sessions:
     """One row for each visit; its recordings are `Recordings`' business."""
 
-    def __init__(self, desk: Desk) -> None:
-        self._desk = desk
+    def __init__(self, unit: UnitOfWork) -> None:
+        self._unit = unit
 
     def create(self, patient_id: UUID, told: Session, limits: Limits = NO_LIMITS) -> StoredSession:
         """Add a visit that has no recordings yet; who the patient is stands in the patient's own row.
@@ -62,7 +62,7 @@ class Sessions:
         if told.recordings or told.sensors:
             raise ValueError("a session is created without recordings and sensors: place and start them")
         _refuse_wrong_joints(told)
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             patient = session.get(PatientRow, patient_id)
             if patient is None or patient.deleted_at or patient.merged_into_id:
                 raise LibraryError("This patient is not in the library any more", "Reload the list")
@@ -71,7 +71,7 @@ class Sessions:
                 comment="",
                 cannot_stand=limits.cannot_stand,
                 findings=[asdict(finding) for finding in told.findings],
-                created_at=self._desk.now(),
+                created_at=self._unit.now(),
                 joints=[
                     JointRow(
                         joint=joint,
@@ -85,7 +85,7 @@ class Sessions:
             )
             session.add(row)
             session.flush()
-            note(self._desk, session, Action.CREATE, about("session", row.id))
+            note(self._unit, session, Action.CREATE, about("session", row.id))
             return stored_session(row)
 
     def get(self, session_id: UUID) -> StoredSession:
@@ -96,7 +96,7 @@ class Sessions:
         LibraryError
             There is no such visit.
         """
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return stored_session(_existing(session, session_id))
 
     def view(self, session_id: UUID) -> StoredSession:
@@ -107,9 +107,9 @@ class Sessions:
         LibraryError
             There is no such visit, or it cannot be noted.
         """
-        with self._desk.writing(Role.VIEWER) as session:
+        with self._unit.writing(Role.VIEWER) as session:
             row = _existing(session, session_id)
-            note(self._desk, session, Action.VIEW, about("session", session_id))
+            note(self._unit, session, Action.VIEW, about("session", session_id))
             return stored_session(row)
 
     def list(self, patient_id: UUID | None = None, text: str = "", is_deleted: bool = False) -> tuple[SessionLine, ...]:
@@ -129,7 +129,7 @@ class Sessions:
             )
             in_words = [func.lower(column).contains(text, autoescape=True) for column in SEARCHED]
             is_wanted.append(or_(*in_words, SessionRow.id.in_(in_condition)))
-        with self._desk.reading() as session:
+        with self._unit.reading() as session:
             return _lines(session, is_wanted)
 
     def change(
@@ -147,7 +147,7 @@ class Sessions:
             A zero or sign is out of range.
         """
         _refuse_wrong_joints(told)
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, visit.id)
             if row.version != visit.version:
                 raise changed_meanwhile()
@@ -165,7 +165,7 @@ class Sessions:
                 if limits is not None:
                     said["is_absent"] = _is_absent(joint.joint, limits)
                 changes += differences(joint, said)
-            apply(self._desk, session, changes, row.patient_id, row.id)
+            apply(self._unit, session, changes, row.patient_id, row.id)
             session.flush()
             return stored_session(row)
 
@@ -177,9 +177,9 @@ class Sessions:
         LibraryError
             One sensor at two sites, or there is no such visit.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = self._placed(session, _existing(session, session_id), sensors)
-            note(self._desk, session, Action.EDIT, about("session", session_id), fields=["placement"])
+            note(self._unit, session, Action.EDIT, about("session", session_id), fields=["placement"])
             return placement_of(row)
 
     def correct_placement(
@@ -195,27 +195,27 @@ class Sessions:
             One sensor at two sites.
         """
         (session_id,) = {recording.session_id for recording in recordings}
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             visit = _existing(session, session_id)
             rows = [current_recording(session, recording) for recording in recordings]
             placement = self._placed(session, visit, sensors)
             changes = [change for row in rows for change in differences(row, {"placement_id": placement.id})]
-            apply(self._desk, session, changes, visit.patient_id, session_id)
+            apply(self._unit, session, changes, visit.patient_id, session_id)
             session.flush()
             session.expire_all()
             return tuple(stored_recording(row) for row in rows)
 
     def delete(self, visit: StoredSession) -> None:
         """Take a visit out of sight; it can be restored for 30 days."""
-        self._set_deleted(visit, self._desk.now(), Action.DELETE)
+        self._set_deleted(visit, self._unit.now(), Action.DELETE)
 
     def restore(self, visit: StoredSession) -> None:
         self._set_deleted(visit, None, Action.EDIT)
 
     def overdue(self) -> tuple[StoredSession, ...]:
         """Visits that were deleted, or their patient was, more than 30 days ago: their keys are to be destroyed."""
-        before = self._desk.now() - KEPT_DELETED
-        with self._desk.reading() as session:
+        before = self._unit.now() - KEPT_DELETED
+        with self._unit.reading() as session:
             wanted = select(SessionRow).join(PatientRow)
             rows = session.scalars(wanted.where(or_(SessionRow.deleted_at <= before, PatientRow.deleted_at <= before)))
             return tuple(stored_session(row) for row in rows)
@@ -228,12 +228,12 @@ class Sessions:
         LibraryError
             Neither it nor its patient was deleted, or less than 30 days ago.
         """
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, session_id)
             deleted = [at for at in (row.deleted_at, row.patient.deleted_at) if at is not None]
-            refuse_early(min(deleted, default=None), self._desk.now())
+            refuse_early(min(deleted, default=None), self._unit.now())
             session.execute(delete(SessionRow).where(SessionRow.id == session_id))
-            note(self._desk, session, Action.DELETE, about("session", session_id), is_final=True)
+            note(self._unit, session, Action.DELETE, about("session", session_id), is_final=True)
 
     def _placed(self, session: OrmSession, visit: SessionRow, sensors: Mapping[Site, PlacedSensor]) -> PlacementRow:
         if len({sensor.name for sensor in sensors.values()}) < len(sensors):
@@ -241,8 +241,8 @@ class Sessions:
         row = PlacementRow(
             session_id=visit.id,
             number=len(visit.placements) + 1,
-            made_at=self._desk.now(),
-            made_by=self._desk.code,
+            made_at=self._unit.now(),
+            made_by=self._unit.code,
             sensors=[
                 PlacedSensorRow(site=site, name=one.name, **{name: getattr(one.info, name) for name in SENSOR_FIELDS})
                 for site, one in sensors.items()
@@ -253,12 +253,12 @@ class Sessions:
         return row
 
     def _set_deleted(self, visit: StoredSession, at: datetime.datetime | None, action: Action) -> None:
-        with self._desk.writing(Role.CLINICIAN) as session:
+        with self._unit.writing(Role.CLINICIAN) as session:
             row = _existing(session, visit.id)
             if row.version != visit.version:
                 raise changed_meanwhile()
             row.deleted_at = at
-            note(self._desk, session, action, about("session", visit.id), is_deleted=at is not None)
+            note(self._unit, session, action, about("session", visit.id), is_deleted=at is not None)
 
 
 def refuse_early(deleted_at: datetime.datetime | None, now: datetime.datetime) -> None:

@@ -7,7 +7,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import StoredPatient
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
 SAVED_AFTER_MS = 500  # without a key pressed
@@ -26,10 +26,12 @@ class PatientRecord(QObject):
     code_taken = Signal(str)
     refused = Signal(str, str)
 
-    def __init__(self, desk: LibraryDesk, parent: QObject, refuses: Callable[[str], tuple[str, str]]) -> None:
+    def __init__(
+        self, controller: LibraryController, parent: QObject, refuses: Callable[[str], tuple[str, str]]
+    ) -> None:
         """`refuses` says why a code cannot take the place of the patient's, and what to do; empty where it can."""
         super().__init__(parent)
-        self._desk, self._refuses = desk, refuses
+        self._controller, self._refuses = controller, refuses
         self.has_this_session_only = False
         """So another code is a correction of this patient's."""
         self.told = Patient()
@@ -91,11 +93,13 @@ class PatientRecord(QObject):
             assert stored is not None
             return patients.change(stored, told)
 
-        self._desk.run(save, self._on_saved, self._on_refused, self)
+        self._controller.run(save, self._on_saved, self._on_refused, self)
 
     def _read(self, listed: StoredPatient) -> None:
         self._is_busy = True
-        self._desk.run(lambda opened: opened.library.patients.get(listed.id), self._on_read, self._on_refused, self)
+        self._controller.run(
+            lambda opened: opened.library.patients.get(listed.id), self._on_read, self._on_refused, self
+        )
 
     def _on_read(self, stored: StoredPatient) -> None:
         self._is_busy = self._is_to_be_read = False

@@ -22,7 +22,7 @@ from app.wizard.journal_words import (
 )
 from app.wizard.losses import NOTHING, Message
 from app.wording import tr
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Side
 from core.samples import Recording, RecordingKind
 
@@ -77,7 +77,7 @@ class _Unread(NamedTuple):
 class SessionRecordings(QObject):
     """A recording begins and ends at once, whatever the library is doing; what it holds is read back when it answers.
 
-    All calls to the library are made by the desk's thread; this lives on the screen's."""
+    All calls to the library are made by the controller's thread; this lives on the screen's."""
 
     changed = Signal()
     begun = Signal()
@@ -86,9 +86,9 @@ class SessionRecordings(QObject):
     troubled = Signal(str, str)  # of the disk, or of the library's folder: what happened, and what to do
     _met = Signal(str)  # Trouble; emitted by whichever thread meets it
 
-    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
-        self._desk = desk
+        self._controller = controller
         self.session: StoredSession | None = None
         self.ongoing: Ongoing | None = None
         self.every: tuple[SessionRecording, ...] = ()
@@ -115,8 +115,8 @@ class SessionRecordings(QObject):
         self._waited.setInterval(WAITED_MS)
         self._waited.timeout.connect(self._on_waited)
         self._met.connect(self._on_met)
-        desk.gone.connect(self.troubled)
-        desk.back.connect(self.troubled)
+        controller.gone.connect(self.troubled)
+        controller.back.connect(self.troubled)
 
     @property
     def is_recording(self) -> bool:
@@ -229,7 +229,7 @@ class SessionRecordings(QObject):
                 begun.set_exception(error)
             return begun.result()
 
-        self._desk.record(start, self._on_started, self._on_not_started, self)
+        self._controller.record(start, self._on_started, self._on_not_started, self)
         self.changed.emit()
 
     def stop(self, strides: Mapping[Side, int] | None = None, *, is_kept: bool = True) -> None:
@@ -249,7 +249,7 @@ class SessionRecordings(QObject):
 
         self._is_stopping = True
         self._unread.append(_Unread(recorder, self.ongoing.told.name, strides, is_kept))
-        self._desk.record(halt, None, self._on_not_halted, self)
+        self._controller.record(halt, None, self._on_not_halted, self)
         self._waited.start()
         if not self._again.isActive():
             self._read_back()
@@ -265,7 +265,7 @@ class SessionRecordings(QObject):
         def end(opened: "OpenedLibrary") -> None:
             begun.result().stop(opened)
 
-        self._desk.run(end, self._on_closed, self._on_not_closed, self)
+        self._controller.run(end, self._on_closed, self._on_not_closed, self)
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
@@ -337,7 +337,7 @@ class SessionRecordings(QObject):
             current = opened.library.recordings.find(recording.id) or recording.stored
             return opened.library.recordings.change(current, corrected(current.told))
 
-        self._desk.run(save, self._on_changed, self._on_not_changed, self)
+        self._controller.run(save, self._on_changed, self._on_not_changed, self)
 
     def _decide(self, recording: SessionRecording, is_kept: bool) -> None:
         """Give the answer that was asked for: nobody is asked again, at the next start either."""
@@ -346,7 +346,7 @@ class SessionRecordings(QObject):
             current = opened.library.recordings.find(recording.id)
             return opened.library.recordings.decide(current or recording.stored, is_kept)
 
-        self._desk.run(decide, self._on_changed, self._on_not_changed, self)
+        self._controller.run(decide, self._on_changed, self._on_not_changed, self)
 
     def counted(self) -> tuple[Recording, ...]:
         """Those that count and have been read, in order of time, as an analysis takes them.
@@ -374,7 +374,7 @@ class SessionRecordings(QObject):
         if self._unread and not self._is_reading:
             self._is_reading = True
             self._readings += 1
-            self._desk.run(self._unread[0].recorder.stop, self._on_read_back, self._on_not_read_back, self)
+            self._controller.run(self._unread[0].recorder.stop, self._on_read_back, self._on_not_read_back, self)
 
     def _go_on(self) -> None:
         """The next recording may begin."""
@@ -416,7 +416,7 @@ class SessionRecordings(QObject):
     def _moved(self) -> Message:
         """Say where the recording is kept while its library is gone, or cannot be written."""
         what, remedy = TOLD[Trouble.MOVED]
-        shelter = self._desk.state.library.shelter if self._desk.state is not None else None
+        shelter = self._controller.state.library.shelter if self._controller.state is not None else None
         place = shelter.folder if shelter is not None else ""
         return f"{tr(what)}.", f"{tr(remedy)}.".format(shelter=place)
 
@@ -459,7 +459,7 @@ class SessionRecordings(QObject):
         is_first = self._is_stopping or self._readings == 1
         self._is_reading = False
         self._go_on()
-        if self._desk.state is not None and (self._desk.is_gone or self._readings < MOST_READINGS):
+        if self._controller.state is not None and (self._controller.is_gone or self._readings < MOST_READINGS):
             self._again.start()
             self.changed.emit()
             if is_first:

@@ -1,7 +1,7 @@
 """One session in progress: whose it is, what is worn, what was recorded, and what that tells.
 
 It lives on the screen's thread. Steps read it and ask it; it knows no page. What takes long is done by the library's
-desk or beside the screen, and comes back as a signal.
+controller or beside the screen, and comes back as a signal.
 """
 
 import time
@@ -25,7 +25,7 @@ from app.wizard.reviewing import Reviewing
 from app.wizard.worn_sensors import SourceChoice, WornSensors
 from app.wording import tr
 from app.workers.background import Background, Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Recording, RecordingKind, Session
 
@@ -63,18 +63,18 @@ class Visit(QObject):
 
     def __init__(
         self,
-        desk: LibraryDesk,
+        controller: LibraryController,
         choices: Sequence[SourceChoice],
         parent: QObject | None = None,
         now_s: Callable[[], float] = time.monotonic,
     ) -> None:
         super().__init__(parent)
-        self._desk, self._now_s = desk, now_s
+        self._controller, self._now_s = controller, now_s
         self._choices = choices  # which may become more
         self.session: StoredSession | None = None
-        self.patient = PatientRecord(desk, self, self._refuses_code)
+        self.patient = PatientRecord(controller, self, self._refuses_code)
         self.sensors = WornSensors(self)
-        self.recordings = SessionRecordings(desk, self)
+        self.recordings = SessionRecordings(controller, self)
         self.evaluation = Evaluation(self)
         self.reviewing = Reviewing(self)
         self.preview = Background(self)
@@ -102,8 +102,8 @@ class Visit(QObject):
         self.recordings.changed.connect(self._on_recordings_changed)
 
     @property
-    def desk(self) -> LibraryDesk:
-        return self._desk
+    def controller(self) -> LibraryController:
+        return self._controller
 
     # the stopwatch
 
@@ -150,7 +150,7 @@ class Visit(QObject):
     @property
     def may_simulate(self) -> bool:
         """Whether simulated recordings may be kept for this patient: the demonstration's, or one coded for it."""
-        state = self._desk.state
+        state = self._controller.state
         is_demonstration = state is not None and state.is_demonstration
         return is_demonstration or self.patient.told.code.startswith(DEMO)
 
@@ -175,7 +175,7 @@ class Visit(QObject):
             return
         self._is_changing = True
         self.patient.has_this_session_only = patient.sessions == 0
-        state = self._desk.state
+        state = self._controller.state
         told = Session(
             recordings=(),
             started=_now(),
@@ -187,7 +187,7 @@ class Visit(QObject):
         def create(opened: "OpenedLibrary") -> StoredSession:
             return opened.library.sessions.create(patient.id, told, limits)
 
-        self._desk.run(create, self._on_session_changed, self._on_refused, self)
+        self._controller.run(create, self._on_session_changed, self._on_refused, self)
 
     def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
         """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
@@ -237,7 +237,7 @@ class Visit(QObject):
             session = library.sessions.get(session_id)
             return session, read_recordings(opened, session)
 
-        self._desk.run(swap, self._on_read, self._on_refused, self)
+        self._controller.run(swap, self._on_read, self._on_refused, self)
 
     def place_sensors(self, only: Side | None = None) -> None:
         """Tell the library who wears what: what is recorded next takes it, all of it or that of one leg."""
@@ -250,7 +250,7 @@ class Visit(QObject):
             opened.library.sessions.place(session_id, placed)
             return opened.library.sessions.get(session_id)
 
-        self._desk.run(place, self._on_session_changed, self._on_refused, self)
+        self._controller.run(place, self._on_session_changed, self._on_refused, self)
 
     def correct_placement(self) -> None:
         """Tell the library that all since the sensors were strapped on was worn as it is said now; it is read anew."""
@@ -267,7 +267,7 @@ class Visit(QObject):
                 sessions.correct_placement([recording for recording in current if recording], placed)
             return sessions.get(session_id), read_recordings(opened, sessions.get(session_id))
 
-        self._desk.run(correct, self._on_read, self._on_refused, self)
+        self._controller.run(correct, self._on_read, self._on_refused, self)
 
     def resume(self, session_id: UUID) -> None:
         """Take up a session of the library where it was left; `resumed` follows."""
@@ -275,7 +275,7 @@ class Visit(QObject):
         def read(opened: "OpenedLibrary") -> Resumed:
             return read_session(opened, session_id)
 
-        self._desk.run(read, self._on_resumed, self._on_refused, self)
+        self._controller.run(read, self._on_resumed, self._on_refused, self)
 
     def live_sensors(self) -> "Mapping[str, LiveSensor]":
         """What the live estimator has to know of each sensor that is worn, by its name."""
@@ -301,7 +301,7 @@ class Visit(QObject):
             before = [line for line in lines if line.id != session.id and line.started < session.told.started]
             return [read_analysed(opened, line.id, report) for line in reversed(before[:MOST_EARLIER])]
 
-        self._desk.run_long(work, self._on_earlier_read, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self)
 
     def close(self) -> None:
         """Let go of the sensors and wait for what runs; a recording that goes on is stopped first."""
@@ -312,7 +312,9 @@ class Visit(QObject):
             def close(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
                 acquisition.close()
 
-            self._desk.record(close, None, None, self._desk)  # in its turn, after the recording has been stopped
+            self._controller.record(
+                close, None, None, self._controller
+            )  # in its turn, after the recording has been stopped
         else:
             self.sensors.close()
 
@@ -342,7 +344,7 @@ class Visit(QObject):
             wanted = replace(current.told, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
             return opened.library.sessions.change(current, wanted, limits=limits)
 
-        self._desk.run(save, self._on_session_changed, self._on_refused, self)
+        self._controller.run(save, self._on_session_changed, self._on_refused, self)
 
     def _on_session_changed(self, session: StoredSession) -> None:
         self._is_changing = False
@@ -382,7 +384,7 @@ class Visit(QObject):
         def keep(opened: "OpenedLibrary") -> None:
             keep_analysis(opened.library.results, session_id, session, analysis)
 
-        self._desk.run(keep, None, self._on_not_kept, self)
+        self._controller.run(keep, None, self._on_not_kept, self)
 
     def _on_not_kept(self, _what: str, _remedy: str) -> None:
         """No harm: it is computed again."""

@@ -30,7 +30,7 @@ from app.wizard.step import Step
 from app.wizard.visit import DEMO, Visit
 from app.wizard.walking.step import WalkingStep
 from app.wording import tr
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.preload import is_preloaded
 from core.body import Site
 from core.samples import Patient
@@ -63,9 +63,9 @@ class Wizard(QWidget):
     help_wanted = Signal(str)
     settings_wanted = Signal()
 
-    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings) -> None:
+    def __init__(self, look: Look, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
-        self._look, self._desk, self._settings = look, desk, settings
+        self._look, self._controller, self._settings = look, controller, settings
         self._visit: Visit | None = None
         self._closing: list[Visit] = []  # their threads end by themselves
         self._steps: list[Step] = []
@@ -158,7 +158,7 @@ class Wizard(QWidget):
 
     def _begin_visit(self) -> Visit:
         self.close_visit()
-        visit = Visit(self._desk, choices(), self)
+        visit = Visit(self._controller, choices(), self)
         self._visit = visit
         look = self._look
         self._steps = [
@@ -168,7 +168,7 @@ class Wizard(QWidget):
             FreeMotionStep(look, visit, self),
             WalkingStep(look, visit, self),
             ResultsStep(look, visit, self),
-            ReportStep(look, visit, self._desk, self),
+            ReportStep(look, visit, self._controller, self),
         ]
         for step in self._steps:
             step.changed.connect(self._on_step_changed)
@@ -195,7 +195,7 @@ class Wizard(QWidget):
             signal.disconnect(self._on_visit_changed)
         visit.resumed.disconnect(self._on_resumed)
         visit.refused.disconnect(self._on_refused)
-        visit.refused.connect(self._desk.refused)
+        visit.refused.connect(self._controller.refused)
         visit.recordings.troubled.disconnect(self._on_troubled)
         visit.recordings.begun.disconnect(self.shell.banner.hide)
 
@@ -376,7 +376,7 @@ class Wizard(QWidget):
     def _on_demonstration_wanted(self) -> None:
         """Begin anew with the patient whom simulated recordings are kept for, found or made."""
         self.begin(None)
-        self._desk.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
+        self._controller.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
 
     def _on_demonstration_found(self, stored: "StoredPatient | None") -> None:
         if self._visit is None or self._visit.patient.told.code:
@@ -418,7 +418,7 @@ class Wizard(QWidget):
     def _on_refused(self, what: str, then: str) -> None:
         if self._visit is not None and self._visit.session is None and self.shell.page is None:
             self.leave()  # the session that was to be shown is not there
-            self._desk.refused.emit(what, then)
+            self._controller.refused.emit(what, then)
         else:
             self._tell(what, then)
 

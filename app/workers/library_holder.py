@@ -1,4 +1,4 @@
-"""What the desk's thread alone touches: the open library, how it is opened, and all that ends with it."""
+"""What the controller's thread alone touches: the open library, how it is opened, and all that ends with it."""
 
 import logging
 import tempfile

@@ -1,9 +1,9 @@
 """What the first session would wait for is imported beside the screen, once the window is there: two seconds' worth.
 
 The window, log in and what they import bring neither numpy nor the library's storage; so main_window, entry and the
-desk import what does inside functions. Home and the wizard import at their top whatever they need, apart from what
-brings pyqtgraph (walking, result and findings), Typst or the formats of exports: a page that nobody has come to is not
-waited for.
+controller of the library import what does inside functions. Home and the wizard import at their top whatever they need,
+apart from what brings pyqtgraph (walking, result and findings), Typst or the formats of exports: a page that nobody has
+come to is not waited for.
 """
 
 import gc

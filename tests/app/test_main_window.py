@@ -189,7 +189,7 @@ def test_a_recovery_key_that_was_never_typed_back_is_asked_for_until_it_is(
         if put_off:
             page.later.click()
             assert window.screens.currentWidget() is window.home
-            window.desk.close()
+            window.controller.close()
             window.close()
             continue
         page.typed.set_text(key[:-1] + "?")
@@ -216,8 +216,8 @@ def test_who_asks_for_the_demonstration_while_a_library_opens_gets_it_and_no_que
     QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
     window.open_demonstration()
     qtbot.waitUntil(lambda: window.home is not None and window.screens.currentWidget() is window.home, timeout=WAIT_MS)
-    assert window.desk.state is not None
-    assert window.desk.state.is_demonstration
+    assert window.controller.state is not None
+    assert window.controller.state.is_demonstration
     assert shown == [window.entry.waiting]
 
 
@@ -382,7 +382,7 @@ def test_another_operator_leaves_nothing_behind(qtbot: QtBot, open_window: Open,
     logged_in(qtbot, window)
     window._lock()
     assert window.entry is not None
-    with qtbot.waitSignal(window.desk.closed, timeout=WAIT_MS):
+    with qtbot.waitSignal(window.controller.closed, timeout=WAIT_MS):
         QTest.mouseClick(window.entry.log_in.leave, Qt.MouseButton.LeftButton)
     assert not window.is_covered
     assert window.home is not None
@@ -605,13 +605,13 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
     window = open_window(folder)
     logged_in(qtbot, window)
-    home, state = window.home, window.desk.state
+    home, state = window.home, window.controller.state
     assert home is not None
     assert state is not None
     library = state.library.library
     session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(window.desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     told = Recording("walk 1", RecordingKind.WALKING, "walk_1", {})
     writer = JournalWriter.create(
@@ -634,7 +634,7 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     monkeypatch.setattr("app.storage.root.platformdirs.user_data_path", lambda *_, **__: tmp_path / "data")
     window = open_window(folder)
     logged_in(qtbot, window)
-    home, state, entry = window.home, window.desk.state, window.entry
+    home, state, entry = window.home, window.controller.state, window.entry
     assert home is not None
     assert state is not None
     assert entry is not None
@@ -644,14 +644,14 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     window._lock()
     qtbot.waitUntil(lambda: not state.library.data_key, timeout=WAIT_MS)
     for name in ("walk 1", "walk 2"):  # a disk that comes and goes
-        with qtbot.waitSignal(window.desk.gone, timeout=WAIT_MS):
+        with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):
             folder.rename(elsewhere)
         told = Recording(name, RecordingKind.WALKING, name.replace(" ", "_"), {})
         with JournalWriter.create(
             state.library.recordings, uuid7(), data_key, room=ANY_ROOM, shelter=state.library.shelter
         ) as writer:
             writer.mark(Belonging(session_id, told).text())
-        with qtbot.waitSignal(window.desk.back, timeout=WAIT_MS):
+        with qtbot.waitSignal(window.controller.back, timeout=WAIT_MS):
             elsewhere.rename(folder)
         assert page.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
     assert len(list(state.library.recordings.glob("*.journal"))) == 2

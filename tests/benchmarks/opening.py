@@ -36,7 +36,7 @@ from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts
 from app.wizard.wizard import Wizard
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import Session
 from devices.walker import DEMONSTRATION, simulate
 
@@ -110,7 +110,7 @@ def forget(opened: OpenedLibrary, session_id: UUID) -> None:
 
     from app.storage.database.models import ResultRow
 
-    with opened.library._desk.writing(Role.CLINICIAN) as session:  # only a measurement wants this
+    with opened.library._unit.writing(Role.CLINICIAN) as session:  # only a measurement wants this
         session.execute(delete(ResultRow).where(ResultRow.session_id == session_id))
 
 
@@ -136,13 +136,13 @@ def main() -> None:
     times = parser.parse_args().times
     application = QApplication(sys.argv[:1])
     load_fonts()
-    look, desk = Look(application), LibraryDesk()
+    look, controller = Look(application), LibraryController()
     with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
         session_id = library_with(three_walks(), Path(folder))
-        desk.open(Path(folder), PASSPHRASE)
-        wait_until(application, lambda: desk.state is not None)
+        controller.open(Path(folder), PASSPHRASE)
+        wait_until(application, lambda: controller.state is not None)
         settings = Settings(QSettings(str(Path(folder) / "settings.ini"), QSettings.Format.IniFormat))
-        wizard = Wizard(look, desk, settings)
+        wizard = Wizard(look, controller, settings)
         wizard.resize(1280, 800)
         wizard.show()
         print("| analysis | first, s | median, s | longest, s | processor, s |\n|---|---|---|---|---|", flush=True)
@@ -150,12 +150,12 @@ def main() -> None:
             openings = []
             for _ in range(times + 1):
                 if name == "computed":
-                    desk.run(partial(forget, session_id=session_id), None, None, wizard)
+                    controller.run(partial(forget, session_id=session_id), None, None, wizard)
                 openings.append(opened_once(application, wizard, session_id))
             print(row(name, openings), flush=True)
         wizard.close()
         wizard.finish()
-        desk.finish()
+        controller.finish()
 
 
 if __name__ == "__main__":

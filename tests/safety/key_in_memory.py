@@ -30,12 +30,12 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
 app, folder, passphrase = QCoreApplication([]), Path(sys.argv[1]), sys.argv[2]
-desk, said = LibraryDesk(), []
-desk.not_opened.connect(lambda *words: sys.exit(str(words)))
+controller, said = LibraryController(), []
+controller.not_opened.connect(lambda *words: sys.exit(str(words)))
 
 class Asker(QObject):
     def on_done(self, result):
@@ -54,15 +54,21 @@ def tell(words):
     print(words, flush=True)
     sys.stdin.readline()
 
-desk.open(folder, passphrase, "hk")
-while desk.state is None:
+controller.open(folder, passphrase, "hk")
+while controller.state is None:
     app.processEvents()
-desk.run(lambda opened: len(KeySlots(folder / KEYS).open("hk", passphrase)), asker.on_done, asker.on_failed, asker)
-desk.run(lambda opened: opened.library.patients.create(Patient(code="P-001")), asker.on_done, asker.on_failed, asker)
+controller.run(
+    lambda opened: len(KeySlots(folder / KEYS).open("hk", passphrase)),
+    asker.on_done, asker.on_failed, asker,
+)
+controller.run(
+    lambda opened: opened.library.patients.create(Patient(code="P-001")),
+    asker.on_done, asker.on_failed, asker,
+)
 backups = folder.parent / "backups"
 backups.mkdir()
-desk.run(lambda opened: back_up(opened, backups), asker.on_done, asker.on_failed, asker)
-desk.run(
+controller.run(lambda opened: back_up(opened, backups), asker.on_done, asker.on_failed, asker)
+controller.run(
     lambda opened: JournalWriter.create(opened.recordings, uuid7(), opened.data_key, room=Room(0, 0)),
     asker.on_done, asker.on_failed, asker,
 )
@@ -70,8 +76,8 @@ wait(4)
 writer = said[-1]
 for k in range(int(sys.argv[3])):
     tell("open")
-    desk.lock()
-    desk.run(lambda opened: len(opened.library.patients.search()), asker.on_done, asker.on_failed, asker)
+    controller.lock()
+    controller.run(lambda opened: len(opened.library.patients.search()), asker.on_done, asker.on_failed, asker)
     until = time.monotonic() + 1.0
     while time.monotonic() < until:
         writer.mark("recorded under the lock")
@@ -79,11 +85,11 @@ for k in range(int(sys.argv[3])):
         time.sleep(0.01)
     assert len(said) == 4 + 2 * k, "the library answered under the lock"
     tell("locked")
-    desk.unlock("hk", passphrase, None, asker.on_done, asker.on_failed, asker)
+    controller.unlock("hk", passphrase, None, asker.on_done, asker.on_failed, asker)
     wait(6 + 2 * k)
     assert 1 in said[-2:], said
 print("written", writer.stop().state, flush=True)
-desk.finish()
+controller.finish()
 """
 
 

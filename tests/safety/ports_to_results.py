@@ -38,7 +38,7 @@ from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Joint, Site
 from core.results import Analysis, RecordingAnalysis
 from core.samples import FloatArray, ImuBlock, IntArray, RecordingKind
@@ -156,11 +156,11 @@ class WindowSession:
     def __init__(self, application: QApplication, folder: Path, shots: Path | None) -> None:
         self._application, self.shots = application, shots
         os.environ["XDG_CONFIG_HOME"] = str(folder)
-        self.desk = LibraryDesk()
-        self.desk.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
-        self.wait(lambda: self.desk.state is not None, "library")
+        self.controller = LibraryController()
+        self.controller.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
+        self.wait(lambda: self.controller.state is not None, "library")
         settings = Settings(QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat))
-        self.wizard = Wizard(Look(application), self.desk, settings)
+        self.wizard = Wizard(Look(application), self.controller, settings)
         self.wizard.resize(1280, 800)
         self.wizard.show()
         self.wizard.activateWindow()
@@ -229,7 +229,7 @@ class WindowSession:
     def close(self) -> None:
         self.wizard.close()
         self.wizard.finish()
-        self.desk.finish()
+        self.controller.finish()
         self.wizard.deleteLater()
         self._application.sendPostedEvents(None, QEvent.Type.DeferredDelete.value)
 

@@ -72,7 +72,7 @@ class RandomLife(QObject):
         self._window, self._user, self._dog, self._chance, self._end = window, user, dog, chance, end
         self.tells = False
         self._number = self._nested = self._late_told = self._compared = 0
-        self._is_acting = self._is_over = self._has_desk_answered = False
+        self._is_acting = self._is_over = self._has_library_answered = False
         self._before: deque[str] = deque(maxlen=REMEMBERED)
         self._told: set[str] = set()
         self._doubts: set[str] = set()
@@ -157,19 +157,19 @@ class RandomLife(QObject):
             now = {f"the library cannot be read beside: {refusal}"}
         self._compared += 1
         if not self._doubts:
-            self._doubts, self._doubted_s, self._has_desk_answered = now, time.monotonic(), False
+            self._doubts, self._doubted_s, self._has_library_answered = now, time.monotonic(), False
             if now:
-                self._window.desk.run(lambda _opened: None, self._on_desk_answered, None, self)
+                self._window.controller.run(lambda _opened: None, self._on_library_answered, None, self)
             return
         self._doubts &= now
         waited_s = time.monotonic() - self._doubted_s
         if self._doubts and waited_s > (SETTLES_BUSY_S if self._is_busy() else SETTLES_S):
             for one in self._doubts:  # what is said before the library was heard is not so either
-                self.fault("contradiction" if self._has_desk_answered else "said too early", one)
+                self.fault("contradiction" if self._has_library_answered else "said too early", one)
             self._doubts.clear()
 
-    def _on_desk_answered(self, _nothing: object) -> None:
-        self._has_desk_answered = True
+    def _on_library_answered(self, _nothing: object) -> None:
+        self._has_library_answered = True
 
     def _left_open(self, held: HeldLibrary) -> list[str]:
         wizard = self._window._wizard
@@ -179,14 +179,14 @@ class RandomLife(QObject):
     def _is_busy(self) -> bool:
         wizard = self._window._wizard
         visit = wizard.visit if wizard is not None else None
-        is_long = self._window.desk._long.is_busy
+        is_long = self._window.controller._long.is_busy
         if visit is None:
             return is_long
         return is_long or visit.evaluation.is_busy or not visit.recordings.is_idle or visit.sensors.is_searching
 
     def _held(self) -> HeldLibrary | None:
         """The open library's, while there is one whose key the user knows."""
-        state = self._window.desk.state
+        state = self._window.controller.state
         if state is None:
             return None
         folder = state.library.folder

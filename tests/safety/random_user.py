@@ -92,7 +92,7 @@ class RandomUser(SensibleUser):
         return f"chooses {path}"
 
     def _library(self) -> Path:
-        state = self._window.desk.state
+        state = self._window.controller.state
         return state.library.folder if state is not None else self._place / "library"
 
     # what leads nowhere

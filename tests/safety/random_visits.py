@@ -74,7 +74,7 @@ class SensibleUser(Hands):
             if page is home.working:
                 return "waits"
             return self._in_settings(home)
-        state = self._window.desk.state
+        state = self._window.controller.state
         if state is not None and state.is_demonstration and self._chance.random() < 0.1:
             self.press_named("Leave the demonstration")
             return "leaves the demonstration"

@@ -61,7 +61,7 @@ class Guide:
     def begin(self, library: Path, passphrase: str) -> None:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
-        window.desk.open(library, passphrase)
+        window.controller.open(library, passphrase)
         self._wait(lambda: window.home is not None and window.home._patient is not None)
         assert window.home is not None
         window._on_session_wished(window.home._patient)
@@ -116,15 +116,15 @@ class Guide:
         page = self._report.page.report
         self._wait(page.isVisible)
         QTest.keyClicks(page.comment, COMMENT)
-        assert self._window.desk.state is not None
+        assert self._window.controller.state is not None
         assert self.visit.session is not None
-        sessions, session_id = self._window.desk.state.library.library.sessions, self.visit.session.id
+        sessions, session_id = self._window.controller.state.library.library.sessions, self.visit.session.id
         self._wait(lambda: sessions.get(session_id).comment == COMMENT)  # half a second after the last letter
 
     def save(self) -> None:
         """Begin to write the report, and see that it has begun."""
-        assert self._window.desk.state is not None
-        out = self._window.desk.state.library.folder.parent / "out"
+        assert self._window.controller.state is not None
+        out = self._window.controller.state.library.folder.parent / "out"
         self._report._on_folder_selected(str(out))
         self._wait(lambda: any(out.parent.glob(f".{out.name}-*/new/*")))
 

@@ -128,7 +128,7 @@ class PatientStep(Step):
             before = next((line for line in lines if line.id != own_id and line.recordings), None)
             return None if before is None else opened.library.sessions.get(before.id)
 
-        self._visit.desk.run(read, self._on_last_read, self._on_refused, self)
+        self._visit.controller.run(read, self._on_last_read, self._on_refused, self)
 
     def _on_last_read(self, session: "StoredSession | None") -> None:
         self._last = session
@@ -184,7 +184,7 @@ class PatientStep(Step):
         def find(opened: "OpenedLibrary") -> "StoredPatient | None":
             return opened.library.patients.find(code)
 
-        self._visit.desk.run(find, self._on_found, self._on_refused, self)
+        self._visit.controller.run(find, self._on_found, self._on_refused, self)
 
     def _on_found(self, stored: "StoredPatient | None") -> None:
         if stored is not None:

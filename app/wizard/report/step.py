@@ -33,7 +33,7 @@ from app.wizard.resuming import read_analysed
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import RecordingKind
 from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
@@ -51,9 +51,11 @@ OTHERS = ("xlsx", "c3d", "mot", "fhir")
 
 
 class ReportStep(Step):
-    def __init__(self, look: Look, visit: "Visit", desk: LibraryDesk, parent: QObject | None = None) -> None:
+    def __init__(
+        self, look: Look, visit: "Visit", controller: LibraryController, parent: QObject | None = None
+    ) -> None:
         super().__init__(look, visit, parent)
-        self._desk = desk
+        self._controller = controller
         self._frame: _ReportFrame | None = None
         self._dialog: QFileDialog | None = None
         self._saved: Path | None = None
@@ -125,7 +127,7 @@ class ReportStep(Step):
             self._ask_where()
             return
         session_id = session.id
-        self._desk.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
+        self._controller.run(lambda opened: _previews(opened, session_id), self._on_previews, self._on_refused, self)
 
     def _on_previews(self, previews: "Mapping[frozenset[str], Rows]") -> None:
         """Show what leaves without the name before anybody says where to."""
@@ -232,7 +234,7 @@ class ReportStep(Step):
             if current.comment != comment:
                 opened.library.sessions.change(current, current.told, comment)
 
-        self._desk.run(save, None, self._on_refused, self)
+        self._controller.run(save, None, self._on_refused, self)
 
     def _on_options_changed(self) -> None:
         chosen = self.page.report.chosen_visit
@@ -254,7 +256,7 @@ class ReportStep(Step):
             before = [line for line in lines if line.id != current.id and line.started < current.told.started]
             return str(opened.library.settings.get(CLINIC, "")), before
 
-        self._desk.run(read, self._on_choices, self._on_refused, self)
+        self._controller.run(read, self._on_choices, self._on_refused, self)
 
     def _on_choices(self, found: "tuple[str, list[SessionLine]]") -> None:
         clinic, lines = found
@@ -274,7 +276,7 @@ class ReportStep(Step):
         def read(opened: "OpenedLibrary", report: Report) -> tuple[UUID, ReportVisit]:
             return session_id, ReportVisit(*read_analysed(opened, session_id, report))
 
-        self._desk.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
+        self._controller.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
         self.changed.emit()
 
     def _on_earlier_read(self, found: tuple[UUID, ReportVisit]) -> None:
@@ -335,7 +337,7 @@ class ReportStep(Step):
                 raise LibraryError(what, tr("Choose another folder; the recordings are untouched")) from problem
             return out
 
-        self._desk.run_long(save, self._on_saved, self._on_refused, None, self)
+        self._controller.run_long(save, self._on_saved, self._on_refused, None, self)
 
     def _on_saved(self, folder: Path) -> None:
         self._is_saving, self._saved = False, folder

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     from app.pages.result_page import ResultPage, ResultParts
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
-    from app.workers.how_found_desk import HowFoundDesk
+    from app.workers.diagnostics_controller import DiagnosticsController
     from core.results import Analysis
     from core.samples import Recording, Session
 
@@ -45,7 +45,7 @@ class ResultsStep(Step):
         self._shown: Analysis | None = None
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
         self._is_correcting = self._is_asking = False
-        self._how_found: HowFoundDesk | None = None
+        self._how_found: DiagnosticsController | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
         self._strides.offered.connect(self._offer)
@@ -195,15 +195,15 @@ class ResultsStep(Step):
         if evaluation.session is None or evaluation.analysis is None or recording is None:
             return
         self._is_asking = True
-        self._desk_of_found().show(evaluation.session, evaluation.analysis, recording)
+        self._controller_of_found().show(evaluation.session, evaluation.analysis, recording)
         self._show()
         self.page.found().focus()
 
-    def _desk_of_found(self) -> "HowFoundDesk":
+    def _controller_of_found(self) -> "DiagnosticsController":
         if self._how_found is None:
-            from app.workers.how_found_desk import HowFoundDesk
+            from app.workers.diagnostics_controller import DiagnosticsController
 
-            self._how_found = HowFoundDesk(self.page.found(), self._visit.looking, self)
+            self._how_found = DiagnosticsController(self.page.found(), self._visit.looking, self)
             self._how_found.refused.connect(self.told)
             self._how_found.writing.connect(self._on_figures_wished)
             self.page.found().closed.connect(self._on_answered)
@@ -215,11 +215,11 @@ class ResultsStep(Step):
         self._show()
 
     def _on_figures_wished(self, folder: Path, write: Callable[[], None]) -> None:
-        from app.workers.how_found_desk import saved_from_library
+        from app.workers.diagnostics_controller import saved_from_library
 
         if (session := self._visit.session) is not None:
             session_id = session.id
-            self._visit.desk.run(
+            self._visit.controller.run(
                 lambda opened: saved_from_library(opened, session_id, folder, write),
                 self._on_figures_saved,
                 self._on_figures_not_saved,

@@ -18,7 +18,7 @@ from app.storage.stored import LibraryError, SessionLine
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import tr
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from devices.decoders import DECODERS
 from devices.replay import ReplaySource, names_of
 
@@ -75,9 +75,9 @@ class Replays(QObject):
     read = Signal(object)
     refused = Signal(str, str)
 
-    def __init__(self, desk: LibraryDesk, parent: QObject) -> None:
+    def __init__(self, controller: LibraryController, parent: QObject) -> None:
         super().__init__(parent)
-        self._desk = desk
+        self._controller = controller
         self.reading = ""
         """What is being read now, as the user knows it."""
 
@@ -88,7 +88,7 @@ class Replays(QObject):
             every = opened.library.sessions.list()
             return [line for line in every if line.recordings and line.id != without][:MOST_LISTED]
 
-        self._desk.run(listing, self._on_listed, self._on_refused, self)
+        self._controller.run(listing, self._on_listed, self._on_refused, self)
 
     def read_session(self, session_id: UUID, name: str) -> None:
         """Read a session of the library; `read` or `refused` follows."""
@@ -112,11 +112,11 @@ class Replays(QObject):
         """Wait for it no longer."""
         if self.reading:
             self.reading = ""
-            self._desk.stop_long()
+            self._controller.stop_long()
 
     def _read(self, reading: "Callable[[OpenedLibrary, Report], SourceChoice]", name: str) -> None:
         self.reading = name
-        self._desk.run_long(reading, self._on_read, self._on_refused, None, self)
+        self._controller.run_long(reading, self._on_read, self._on_refused, None, self)
 
     def _on_listed(self, lines: list[SessionLine]) -> None:
         self.listed.emit(lines)

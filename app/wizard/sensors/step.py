@@ -61,7 +61,7 @@ class SensorsStep(Step):
         self._dialog: QFileDialog | None = None
         self._telling = ColumnsTelling(self)
         self._telling.changed.connect(self.changed)
-        self._replays = Replays(visit.desk, self)
+        self._replays = Replays(visit.controller, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
         self._replays.refused.connect(self._on_replay_refused)

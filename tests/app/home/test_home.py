@@ -35,7 +35,7 @@ from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
 from app.theme import Look, load_fonts
 from app.widgets.button import Button
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
 from core.body import Site
 from core.samples import ImuBlock, Patient, Recording, RecordingKind, SensorInfo, Session
@@ -71,28 +71,28 @@ def settings(tmp_path: Path) -> Settings:
 
 
 @pytest.fixture
-def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
-    desk = LibraryDesk()
-    yield desk
-    desk.finish()
+def controller(qtbot: QtBot) -> Iterator[LibraryController]:
+    controller = LibraryController()
+    yield controller
+    controller.finish()
 
 
 @pytest.fixture
-def home(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path) -> Home:
+def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
     load_fonts()
-    home = Home(Look(), desk, settings)
+    home = Home(Look(), controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
     with qtbot.waitActive(home):
         home.show()
         home.activateWindow()
-    open_library(qtbot, desk, home, folder)
+    open_library(qtbot, controller, home, folder)
     return home
 
 
-def open_library(qtbot: QtBot, desk: LibraryDesk, home: Home, folder: Path) -> None:
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
-        desk.open(folder, PASSPHRASE)
+def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder: Path) -> None:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open(folder, PASSPHRASE)
     (state,) = told.args or []
     assert isinstance(state, OpenedState)
     home.show_library(state)
@@ -252,8 +252,8 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     go_on.set()
     what = "was done before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
     qtbot.waitUntil(lambda: what in home.banner.text, timeout=WAIT_MS)
-    assert home._desk.state is not None
-    library = home._desk.state.library.library
+    assert home._controller.state is not None
+    library = home._controller.state.library.library
     patient = library.patients.find("P-0200")
     assert patient is not None
     assert len(library.sessions.list(patient.id)) == int(is_done)
@@ -323,14 +323,14 @@ def leave_open(folder: Path, has_row: bool = True, says_session: bool = False) -
 
 
 def test_what_was_being_recorded_is_recovered_and_marked(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     session_id = leave_open(folder)
     load_fonts()
-    home = Home(Look(), desk, settings)
+    home = Home(Look(), controller, settings)
     qtbot.addWidget(home)
     home.show()
-    open_library(qtbot, desk, home, folder)
+    open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "of walk 3 was recovered" in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
@@ -340,13 +340,13 @@ def test_what_was_being_recorded_is_recovered_and_marked(
 
 
 def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     """The library knows it, so a new program does: nothing of this is remembered in a window."""
     session_id = leave_open(folder)
     recover_all(folder)
-    home = new_home(qtbot, desk, settings)
-    open_library(qtbot, desk, home, folder)
+    home = new_home(qtbot, controller, settings)
+    open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     asked = "walk 3 of P-0163 was recovered earlier, and nobody has said yet whether it is kept."
     assert home.banner.text == f"{asked} Look at it, then keep or discard."
@@ -361,23 +361,23 @@ def test_a_recovered_walk_is_asked_for_at_every_start_until_it_is_decided(
         library.recordings.decide(walk.recording, is_kept=True)
     home.refresh()
     qtbot.waitUntil(lambda: not any_needs_look(home), timeout=WAIT_MS)
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
-    later = new_home(qtbot, desk, settings)
-    open_library(qtbot, desk, later, folder)
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
+    later = new_home(qtbot, controller, settings)
+    open_library(qtbot, controller, later, folder)
     qtbot.waitUntil(lambda: len(sessions(later)) == 3, timeout=WAIT_MS)
     assert later.banner.isHidden()
     assert not any_needs_look(later)
 
 
 def test_several_recovered_walks_are_asked_for_together(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path
 ) -> None:
     leave_open(folder)
     leave_open(folder, has_row=False, says_session=True)
     recover_all(folder)
-    home = new_home(qtbot, desk, settings)
-    open_library(qtbot, desk, home, folder)
+    home = new_home(qtbot, controller, settings)
+    open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert home.banner.text.startswith("2 walks were recovered earlier, and nobody has said yet whether they are kept.")
 
@@ -386,9 +386,9 @@ def any_needs_look(home: Home) -> bool:
     return any(line.needs_look for line in sessions(home)) or any(line.needs_look for line in lines(home))
 
 
-def new_home(qtbot: QtBot, desk: LibraryDesk, settings: Settings) -> Home:
+def new_home(qtbot: QtBot, controller: LibraryController, settings: Settings) -> Home:
     load_fonts()
-    home = Home(Look(), desk, settings)
+    home = Home(Look(), controller, settings)
     qtbot.addWidget(home)
     home.show()
     return home
@@ -405,17 +405,17 @@ def recover_all(folder: Path) -> None:
 
 
 def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, settings: Settings, folder: Path, tmp_path: Path
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path, tmp_path: Path
 ) -> None:
     """One says of which session it is; of two others nobody knows, so their samples can be had as files."""
     leave_open(folder, has_row=False, says_session=True)
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
     load_fonts()
-    home = Home(Look(), desk, settings)
+    home = Home(Look(), controller, settings)
     qtbot.addWidget(home)
     home.show()
-    open_library(qtbot, desk, home, folder)
+    open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
@@ -426,23 +426,23 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
     assert len(list((tmp_path / "out").glob("*/LT-1.csv"))) == 2
     assert home.banner._act.isHidden()
-    assert desk.state is not None
-    left = list(desk.state.library.recordings.iterdir())
+    assert controller.state is not None
+    left = list(controller.state.library.recordings.iterdir())
     home.banner._dismiss.click()
     looked_through: list[object] = []
     home.recovering.recovered.connect(lambda: looked_through.append(None))
-    open_library(qtbot, desk, home, folder)
+    open_library(qtbot, controller, home, folder)
     qtbot.waitUntil(lambda: bool(looked_through), timeout=WAIT_MS)
-    assert desk.state is not None
-    assert len(desk.state.interrupted) == 2  # they are kept, but told of no more
+    assert controller.state is not None
+    assert len(controller.state.interrupted) == 2  # they are kept, but told of no more
     assert home.banner.text.startswith("walk 3 of P-0163 was recovered earlier")
     home.banner._dismiss.click()
     assert home.banner.isHidden()
-    assert set(left) <= set(desk.state.library.recordings.iterdir())
+    assert set(left) <= set(controller.state.library.recordings.iterdir())
 
 
-def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, desk: LibraryDesk, home: Home) -> None:
-    state = desk.state
+def test_a_library_that_lost_its_end_says_so(qtbot: QtBot, controller: LibraryController, home: Home) -> None:
+    state = controller.state
     assert state is not None
     home.show_library(replace(state, is_end_lost=True))
     assert "Look through the latest session." in home.banner.text
@@ -493,9 +493,9 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
 
 
 def test_the_settings_of_one_library_name_no_folder_of_another(
-    qtbot: QtBot, home: Home, desk: LibraryDesk, tmp_path: Path
+    qtbot: QtBot, home: Home, controller: LibraryController, tmp_path: Path
 ) -> None:
-    page, state = home.settings.page, desk.state
+    page, state = home.settings.page, controller.state
     assert state is not None
     home.settings.set_backup_folder(str(tmp_path / "disk"))
     qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
@@ -505,9 +505,9 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
 
 @pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
 def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_it(
-    qtbot: QtBot, home: Home, desk: LibraryDesk, first: int, role: Role
+    qtbot: QtBot, home: Home, controller: LibraryController, first: int, role: Role
 ) -> None:
-    state = desk.state
+    state = controller.state
     assert state is not None
     home.show_library(state)
     assert not home.rollback_banner.isVisible()
@@ -523,7 +523,7 @@ def test_an_older_state_of_the_library_is_said_and_an_administrator_may_accept_i
 
 
 def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_new_passphrase(
-    qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, home: Home, controller: LibraryController, folder: Path
 ) -> None:
     home.show_settings()
     page = home.settings.page
@@ -557,16 +557,18 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
     stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
     with pytest.raises(LibraryError):
         Library.open(folder, stolen)
-    assert desk.state is not None
-    assert desk.state.library.data_key == KeySlots(folder / KEYS).open("hk", PASSPHRASE)
+    assert controller.state is not None
+    assert controller.state.library.data_key == KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     row()[0].click()
     assert page.first.is_wrong
     add("other words for then")
     qtbot.waitUntil(lambda: row()[1] == "Works here no longer", timeout=WAIT_MS)
-    assert KeySlots(folder / KEYS).open("ab", "other words for then") == desk.state.library.data_key
+    assert KeySlots(folder / KEYS).open("ab", "other words for then") == controller.state.library.data_key
 
 
-def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: LibraryDesk, folder: Path) -> None:
+def test_an_operator_is_added_and_may_log_in(
+    qtbot: QtBot, home: Home, controller: LibraryController, folder: Path
+) -> None:
     page = home.settings.page
     page.code.set_text("vi")
     page.name.set_text("V. Iten")
@@ -574,9 +576,9 @@ def test_an_operator_is_added_and_may_log_in(qtbot: QtBot, home: Home, desk: Lib
     page.role.setCurrentIndex(page.role.findData("viewer"))
     page._on_add()
     qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
-    desk.close()
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
-        desk.open(folder, "first words for now", "vi")
+    controller.close()
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open(folder, "first words for now", "vi")
     (state,) = told.args or []
     assert state.operator.role is Role.VIEWER
     home.show_library(state)

@@ -23,7 +23,7 @@ from app.reports.how_found import (
 from app.theme import Look, load_fonts
 from app.widgets.text import Text
 from app.workers.background import Background
-from app.workers.how_found_desk import HowFoundDesk
+from app.workers.diagnostics_controller import DiagnosticsController
 from core.analysis import analyse
 from core.body import Joint, Site
 from core.diagnostics import JointDiagnostics, diagnostics_of
@@ -208,18 +208,18 @@ class Listener(QObject):
 
 
 @pytest.mark.endurance  # finds out anew, and opens a dialog
-def test_the_desk_answers_beside_the_screen_and_saves(
+def test_the_controller_answers_beside_the_screen_and_saves(
     qtbot: QtBot, page: FoundPage, session: Session, analysis: Analysis, tmp_path: Path
 ) -> None:
     background, listener = Background(page), Listener()
-    desk = HowFoundDesk(page, background, page)
-    desk.writing.connect(listener.on_writing)
+    controller = DiagnosticsController(page, background, page)
+    controller.writing.connect(listener.on_writing)
     findings = [
         Finding("strap_slipped", Severity.WARNING, f"{where}, {site}", {"from_s": 2.0, "turn_deg": turn})
         for where, site, turn in (("walk 1", Site.RIGHT_SHANK, 9), ("free motion", Site.RIGHT_SHANK, 8))
     ]
     walk = analysis.recordings[-1]
-    desk.show(session, replace(analysis, findings=(*analysis.findings, *findings)), walk)
+    controller.show(session, replace(analysis, findings=(*analysis.findings, *findings)), walk)
     assert not page.save.isEnabled()
     assert page.waiting.isVisible()
     qtbot.waitUntil(lambda: page.save.isEnabled(), timeout=20_000)
@@ -239,8 +239,8 @@ def test_the_desk_answers_beside_the_screen_and_saves(
 
 
 def test_without_a_joint_the_page_says_so(qtbot: QtBot, page: FoundPage, session: Session, analysis: Analysis) -> None:
-    desk = HowFoundDesk(page, Background(page), page)
-    desk.show(session, analysis, replace(analysis.recordings[-1], joints={}))
+    controller = DiagnosticsController(page, Background(page), page)
+    controller.show(session, analysis, replace(analysis.recordings[-1], joints={}))
     assert page.waiting.isVisible()
     assert not page.save.isEnabled()
     with qtbot.waitSignal(page.closed):

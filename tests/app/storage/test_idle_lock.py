@@ -9,7 +9,7 @@ from app.storage.journal.writer import JournalWriter, State
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED, read_all
 
 
-class Desk:
+class FakeController:
     """A clock to be set, and a lock that counts how often it fell."""
 
     def __init__(self) -> None:
@@ -30,89 +30,89 @@ class Desk:
 
 
 def test_it_locks_after_five_idle_minutes_and_once() -> None:
-    desk = Desk()
-    desk.wait(295.0)
-    assert (desk.locks, desk.idle.is_locked) == (0, False)
-    desk.wait(5.0)
-    assert (desk.locks, desk.idle.is_locked) == (1, True)
-    desk.wait(3600.0)
-    assert desk.locks == 1
+    controller = FakeController()
+    controller.wait(295.0)
+    assert (controller.locks, controller.idle.is_locked) == (0, False)
+    controller.wait(5.0)
+    assert (controller.locks, controller.idle.is_locked) == (1, True)
+    controller.wait(3600.0)
+    assert controller.locks == 1
 
 
 def test_who_works_is_not_locked_out() -> None:
-    desk = Desk()
+    controller = FakeController()
     for _ in range(20):
-        desk.wait(290.0)
-        desk.idle.note_activity()
-    assert desk.locks == 0
-    desk.wait(300.0)
-    assert desk.locks == 1
+        controller.wait(290.0)
+        controller.idle.note_activity()
+    assert controller.locks == 0
+    controller.wait(300.0)
+    assert controller.locks == 1
 
 
 def test_only_the_passphrase_unlocks_and_the_minutes_begin_anew() -> None:
-    desk = Desk()
-    desk.wait(300.0)
-    desk.idle.note_activity()
-    assert desk.idle.is_locked
-    desk.now_s += 900.0
-    desk.idle.unlock()
-    desk.wait(295.0)
-    assert (desk.locks, desk.idle.is_locked) == (1, False)
-    desk.wait(5.0)
-    assert desk.locks == 2
+    controller = FakeController()
+    controller.wait(300.0)
+    controller.idle.note_activity()
+    assert controller.idle.is_locked
+    controller.now_s += 900.0
+    controller.idle.unlock()
+    controller.wait(295.0)
+    assert (controller.locks, controller.idle.is_locked) == (1, False)
+    controller.wait(5.0)
+    assert controller.locks == 2
 
 
 def test_after_a_long_sleep_the_first_poll_locks() -> None:
-    desk = Desk()
-    desk.wait(10.0)
-    desk.now_s += 3600.0
-    desk.idle.poll()
-    assert desk.locks == 1
+    controller = FakeController()
+    controller.wait(10.0)
+    controller.now_s += 3600.0
+    controller.idle.poll()
+    assert controller.locks == 1
 
 
 def test_the_mouse_that_wakes_the_machine_does_not_keep_it_open() -> None:
-    desk = Desk()
-    desk.now_s += 3600.0
-    desk.idle.note_activity()
-    assert (desk.locks, desk.idle.is_locked) == (1, True)
+    controller = FakeController()
+    controller.now_s += 3600.0
+    controller.idle.note_activity()
+    assert (controller.locks, controller.idle.is_locked) == (1, True)
 
 
 def test_a_short_sleep_counts_as_idle_time() -> None:
-    desk = Desk()
-    desk.wait(200.0)
-    desk.now_s += 95.0
-    desk.idle.poll()
-    assert desk.locks == 0
-    desk.wait(5.0)
-    assert desk.locks == 1
+    controller = FakeController()
+    controller.wait(200.0)
+    controller.now_s += 95.0
+    controller.idle.poll()
+    assert controller.locks == 0
+    controller.wait(5.0)
+    assert controller.locks == 1
 
 
 def test_a_clock_set_back_keeps_nothing_open_for_longer() -> None:
-    desk = Desk()
-    desk.wait(200.0)
-    desk.now_s -= 7200.0
-    desk.idle.poll()
-    desk.wait(95.0)
-    assert desk.locks == 0
-    desk.wait(5.0)
-    assert desk.locks == 1
+    controller = FakeController()
+    controller.wait(200.0)
+    controller.now_s -= 7200.0
+    controller.idle.poll()
+    controller.wait(95.0)
+    assert controller.locks == 0
+    controller.wait(5.0)
+    assert controller.locks == 1
 
 
 def test_a_poll_while_it_locks_does_not_lock_twice() -> None:
-    desk = Desk()
-    desk.while_locking = lambda: desk.idle.poll()
-    desk.wait(600.0)
-    assert desk.locks == 1
+    controller = FakeController()
+    controller.while_locking = lambda: controller.idle.poll()
+    controller.wait(600.0)
+    assert controller.locks == 1
 
 
 def test_a_recording_goes_on_when_the_screen_locks_and_the_key_is_forgotten(tmp_path: Path) -> None:
-    desk = Desk()
+    controller = FakeController()
     data_keys = [KEY]
-    desk.while_locking = data_keys.clear  # the application forgets the key, the journal has its own
+    controller.while_locking = data_keys.clear  # the application forgets the key, the journal has its own
     with JournalWriter.create(tmp_path, ID, data_keys[0], room=NO_ROOM_ASKED) as journal:
         assert journal.mark("seen")
-        desk.wait(300.0)
-        assert (desk.idle.is_locked, data_keys) == (True, [])
+        controller.wait(300.0)
+        assert (controller.idle.is_locked, data_keys) == (True, [])
         assert journal.mark("unseen")
         assert journal.status.state is State.RECORDING
         summary = journal.stop()

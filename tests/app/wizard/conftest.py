@@ -22,7 +22,7 @@ from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
 from app.wizard.worn_sensors import SourceChoice
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.samples import Patient, Session
 from devices.replay import ReplaySource
@@ -52,13 +52,13 @@ def untouched_library(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def desk(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterator[LibraryDesk]:
-    desk = LibraryDesk()
+def controller(qtbot: QtBot, untouched_library: Path, tmp_path: Path) -> Iterator[LibraryController]:
+    controller = LibraryController()
     folder = shutil.copytree(untouched_library, tmp_path / "library")
-    with qtbot.waitSignal(desk.opened, timeout=20_000):
-        desk.open(folder, PASSPHRASE)
-    yield desk
-    desk.finish()
+    with qtbot.waitSignal(controller.opened, timeout=20_000):
+        controller.open(folder, PASSPHRASE)
+    yield controller
+    controller.finish()
 
 
 @pytest.fixture
@@ -67,19 +67,19 @@ def source(simulated_session: Session) -> ReplaySource:
 
 
 @pytest.fixture
-def visit(desk: LibraryDesk, source: ReplaySource) -> Iterator[Visit]:
+def visit(controller: LibraryController, source: ReplaySource) -> Iterator[Visit]:
     choice = SourceChoice("fast", "Fast patient", lambda: Acquisition([source], source.now_ns), is_simulated=True)
-    visit = Visit(desk, [choice])
+    visit = Visit(controller, [choice])
     yield visit
     visit.close()
     visit.finish()
 
 
 @pytest.fixture
-def wizard(qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path) -> Iterator[Wizard]:
+def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
     load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    wizard = Wizard(Look(), desk, settings)
+    wizard = Wizard(Look(), controller, settings)
     qtbot.addWidget(wizard)
     wizard.resize(1280, 800)
     wizard.show()

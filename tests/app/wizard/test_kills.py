@@ -27,7 +27,7 @@ from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import REPORT, RESULTS, WALKING, Wizard
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from tests.app.wizard.conftest import PASSPHRASE
 from tests.safety.wizard_kills import COMMENT, CONDITION, SPEED, Point
@@ -57,16 +57,16 @@ def killed_at(point: Point, folder: Path, untouched: Path) -> dict[str, Any]:
 
 
 @pytest.fixture
-def desk() -> Iterator[LibraryDesk]:
+def controller() -> Iterator[LibraryController]:
     """Nothing is open yet."""
-    desk = LibraryDesk()
-    yield desk
-    desk.finish()
+    controller = LibraryController()
+    yield controller
+    controller.finish()
 
 
 @pytest.fixture
 def start_again(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Callable[[str], tuple[Home, Wizard]]]:
     """Open the library as the next start does, and then the session that was killed."""
     load_fonts()
@@ -75,17 +75,17 @@ def start_again(
 
     def start(session: str) -> tuple[Home, Wizard]:
         settings = Settings(QSettings(str(tmp_path / "again.ini"), QSettings.Format.IniFormat))
-        home, wizard = Home(Look(), desk, settings), Wizard(Look(), desk, settings)
+        home, wizard = Home(Look(), controller, settings), Wizard(Look(), controller, settings)
         made.append(wizard)
         for widget in (home, wizard):
             qtbot.addWidget(widget)
             widget.resize(1280, 800)
         home.show()
-        with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-            desk.open(tmp_path / "library", PASSPHRASE)
-        assert desk.state is not None
-        home.show_library(desk.state)
-        if desk.state.interrupted:
+        with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+            controller.open(tmp_path / "library", PASSPHRASE)
+        assert controller.state is not None
+        home.show_library(controller.state)
+        if controller.state.interrupted:
             with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
                 pass
         wizard.show()

@@ -25,7 +25,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.samples import Patient, Recording, RecordingKind, Session
 from tests.app.wizard.test_visit import begin, record
@@ -265,11 +265,11 @@ def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Vi
     assert step.bar().note.startswith("Next:")
 
 
-def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looked_at: Visit) -> None:
+def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryController, looked_at: Visit) -> None:
     looked_at.recordings.keep(record(qtbot, looked_at, RecordingKind.WALKING, 1.0), is_kept=True)
     qtbot.waitUntil(lambda: looked_at.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert looked_at.session is not None
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
     step = WalkingStep(Look(), again)
@@ -290,13 +290,13 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, desk: LibraryDesk, looke
 
 
 def test_sensors_of_another_day_were_strapped_anew(
-    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION, RecordingKind.WALKING):
         record(qtbot, looked_at, kind, 0.5)
     assert looked_at.session is not None
     monkeypatch.setattr("app.wizard.visit._now", lambda: "2031-02-03T09:00:00+01:00")
-    again = Visit(desk, looked_at._choices)
+    again = Visit(controller, looked_at._choices)
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
     assert again.recordings.has_moved
@@ -325,10 +325,10 @@ def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str
 
 
 def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit
+    qtbot: QtBot, controller: LibraryController, visit: Visit
 ) -> None:
-    assert desk.state is not None
-    library = desk.state.library.library
+    assert controller.state is not None
+    library = controller.state.library.library
     library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
     demo = library.patients.find("DEMO-98")
     assert demo is not None
@@ -352,18 +352,20 @@ def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Vis
     assert visit.patient.stored.told.code == "DEMO-5"
 
 
-def test_a_session_that_is_gone_leads_back_and_says_so(qtbot: QtBot, wizard: Wizard, desk: LibraryDesk) -> None:
-    with qtbot.waitSignals([wizard.left, desk.refused], timeout=WAIT_MS):
+def test_a_session_that_is_gone_leads_back_and_says_so(
+    qtbot: QtBot, wizard: Wizard, controller: LibraryController
+) -> None:
+    with qtbot.waitSignals([wizard.left, controller.refused], timeout=WAIT_MS):
         wizard.show_session(uuid4())
     assert wizard.visit is None
 
 
 def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
-    qtbot: QtBot, wizard: Wizard, desk: LibraryDesk, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, wizard: Wizard, controller: LibraryController, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(wizard_module, "choices", tuple)
-    assert desk.state is not None
-    library = desk.state.library.library
+    assert controller.state is not None
+    library = controller.state.library.library
     session = library.sessions.create(library.patients.create(Patient(code="DEMO-98")).id, Session(recordings=()))
     wizard.show_session(session.id)
     assert wizard.visit is not None

@@ -19,7 +19,7 @@ from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import RESULTS, SENSORS, WALKING, Wizard
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.calibration.rest import rest_of
 from core.samples import RecordingKind
@@ -38,11 +38,11 @@ def left(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.
 
 @pytest.fixture
 def wizard(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Wizard]:
     load_fonts()
     monkeypatch.setattr(wizard_module, "choices", tuple)
-    wizard = Wizard(Look(), desk, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
+    wizard = Wizard(Look(), controller, Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(wizard)
     yield wizard
     wizard.finish()
@@ -66,8 +66,8 @@ def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizar
     left.recordings.keep(walk, is_kept=True)
     qtbot.waitUntil(lambda: left.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     assert landed(qtbot, wizard, left) == RESULTS
-    assert left.desk.state is not None
-    library = left.desk.state.library.library
+    assert left.controller.state is not None
+    library = left.controller.state.library.library
     files = {journal.segment: journal.sha256 for journal in walk.stored.journals}
     library.recordings.close(walk.id, RecordingState.RECOVERED, files)
     assert landed(qtbot, wizard, left) == WALKING  # where it is kept or discarded
@@ -106,7 +106,7 @@ def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_or
     record(qtbot, left, RecordingKind.FREE_MOTION, 0.5)
     record(qtbot, left, RecordingKind.WALKING, 0.5)
     assert left.session is not None
-    again = Visit(left.desk, [])
+    again = Visit(left.controller, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(left.session.id)
     assert [recording.told.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]

@@ -6,7 +6,7 @@ from pytestqt.qtbot import QtBot
 from app.storage.stored import Limits
 from app.wizard.visit import Visit
 from app.wording import sentence
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record
@@ -21,7 +21,7 @@ def said(visit: Visit) -> list[str]:
 
 @pytest.mark.parametrize("is_told_late", [False, pytest.param(True, marks=pytest.mark.endurance)])
 def test_a_foot_without_ankle_is_called_foot_against_shank(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site], is_told_late: bool
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], is_told_late: bool
 ) -> None:
     begin(qtbot, visit, worn)
     limits = Limits(without_ankle=frozenset({Side.RIGHT}))
@@ -35,7 +35,7 @@ def test_a_foot_without_ankle_is_called_foot_against_shank(
             visit.set_limits(limits)
     assert SAID in said(visit)
     assert visit.session is not None
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=20_000):
         again.resume(visit.session.id)
     assert SAID in said(again)

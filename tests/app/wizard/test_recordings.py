@@ -14,7 +14,7 @@ from app.storage.recordings import Recordings
 from app.storage.stored import LibraryFaultError, RecordingState
 from app.wizard.recordings import SessionRecording
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Side, Site
 from core.samples import RecordingKind
 from tests.app.wizard.test_visit import begin, record
@@ -34,14 +34,14 @@ def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
 
 @pytest.mark.endurance
 def test_no_call_of_the_library_holds_up_a_recording(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was said before."""
     begin(qtbot, visit, worn)
     recordings, acquisition, over = visit.recordings, visit.sensors.acquisition, Event()
     recordings._waited.setInterval(200)
     assert acquisition is not None
-    desk.run(hanging(over), None, None, desk)
+    controller.run(hanging(over), None, None, controller)
     visit.place_sensors()  # behind it, and before the walk
     told: list[tuple[str, str]] = []
     recordings.troubled.connect(lambda *words: told.append(words))
@@ -116,10 +116,10 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     assert (told.condition, dict(told.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
         recordings.keep(recordings.walks[0], is_kept)
-    assert visit.desk.state is not None
-    library = visit.desk.state.library.library
+    assert visit.controller.state is not None
+    library = visit.controller.state.library.library
     passed = Event()
-    visit.desk.run(lambda _opened: passed.set(), None, None, visit)
+    visit.controller.run(lambda _opened: passed.set(), None, None, visit)
     assert passed.wait(20)
     stored = library.recordings.find(walk.id)
     assert stored is not None

@@ -18,7 +18,7 @@ from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look
 from app.wizard.wizard import RESULTS, WALKING, Wizard
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import Session
 from tests.safety.random_keys import play
 from tests.safety.said_and_held import HeldLibrary, contradictions, left_open
@@ -28,10 +28,10 @@ Alter = Callable[[str], None]
 
 
 @pytest.fixture
-def opened(desk: LibraryDesk, simulated_session: Session) -> OpenedLibrary:
-    """The desk's library, with a session of two walks."""
-    assert desk.state is not None
-    library = desk.state.library
+def opened(controller: LibraryController, simulated_session: Session) -> OpenedLibrary:
+    """The controller's library, with a session of two walks."""
+    assert controller.state is not None
+    library = controller.state.library
     import_session(library, simulated_session, lambda _share, _what: None, "DEMO-1")
     return library
 
@@ -68,12 +68,12 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
 
 @pytest.fixture
 def home_in_sight(
-    qtbot: QtBot, qapp: QApplication, desk: LibraryDesk, opened: OpenedLibrary, tmp_path: Path
+    qtbot: QtBot, qapp: QApplication, controller: LibraryController, opened: OpenedLibrary, tmp_path: Path
 ) -> Iterator[Any]:
-    assert desk.state is not None
-    home = Home(Look(), desk, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
+    assert controller.state is not None
+    home = Home(Look(), controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
-    home.show_library(desk.state)
+    home.show_library(controller.state)
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines.lines), timeout=WAIT_MS)
     yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, _wizard=None)
     qapp.setStyleSheet("")

@@ -22,7 +22,7 @@ from app.wizard.visit import Visit
 from app.wizard.walking.step import WalkingStep
 from app.wizard.wizard import WALKING, Wizard
 from app.wizard.worn_sensors import SourceChoice
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.samples import RecordingKind
 from devices.replay import ReplaySource
@@ -63,20 +63,20 @@ def is_whole(recording: SessionRecording, seconds: float) -> bool:
 
 
 def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
-    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
+    qtbot: QtBot, controller: LibraryController, looked_at: Visit, tmp_path: Path
 ) -> None:
     recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     start_walk(qtbot, looked_at)
     qtbot.wait(200)
     said: list[tuple[str, str]] = []
     recordings.troubled.connect(lambda *words: said.append(words))
-    with qtbot.waitSignals([recordings.troubled, desk.gone], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.troubled, controller.gone], timeout=WAIT_MS):
         folder.rename(elsewhere)
     assert recordings.is_recording
     qtbot.waitUntil(lambda: len(said) == 2, timeout=WAIT_MS)  # by the journal, and by who looks for the folder
-    assert desk.state is not None
-    assert desk.state.library.shelter is not None
-    assert all(str(desk.state.library.shelter.folder) in then for _, then in said)
+    assert controller.state is not None
+    assert controller.state.library.shelter is not None
+    assert all(str(controller.state.library.shelter.folder) in then for _, then in said)
     qtbot.wait(200)
     refused: list[tuple[str, str]] = []
     recordings.refused.connect(lambda *words: refused.append(words))
@@ -86,7 +86,7 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     qtbot.wait(100)
     assert not recordings.is_idle
     assert not folder.exists()
-    with qtbot.waitSignals([recordings.ended, desk.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
     (walk,) = recordings.walks
     assert (walk.stored.state, len(walk.stored.journals)) == (RecordingState.CLOSED, 2)
@@ -96,11 +96,11 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
 
 
 def test_renamed_between_two_walks_the_next_begins_all_the_same(
-    qtbot: QtBot, desk: LibraryDesk, looked_at: Visit, tmp_path: Path
+    qtbot: QtBot, controller: LibraryController, looked_at: Visit, tmp_path: Path
 ) -> None:
     recordings, folder, elsewhere = looked_at.recordings, tmp_path / "library", tmp_path / "renamed"
     record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as said:
         start_walk(qtbot, looked_at)
@@ -110,7 +110,7 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
     recordings.stop()
     qtbot.waitUntil(lambda: recordings._readings > 16, timeout=WAIT_MS)  # more than it is patient with a busy library
     assert not recordings.is_idle
-    with qtbot.waitSignals([recordings.ended, desk.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
     assert [(recording.told.name, recording.stored.state) for recording in recordings.walks] == [
         ("walk 1", RecordingState.CLOSED),
@@ -161,7 +161,7 @@ def log_in(qtbot: QtBot, window: MainWindow) -> None:
     qtbot.waitUntil(lambda: page.isVisible() and page.operator.count() == 1, timeout=WAIT_MS)
     page.passphrase.set_text(PASSPHRASE)
     QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
-    qtbot.waitUntil(lambda: window.desk.state is not None and window.home is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.controller.state is not None and window.home is not None, timeout=WAIT_MS)
 
 
 def notice_of(wizard: Wizard) -> str:
@@ -210,8 +210,8 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     home = again.home
     assert home is not None
     qtbot.waitUntil(lambda: "while the library was gone" in home.banner.text, timeout=WAIT_MS)
-    assert again.desk.state is not None
-    library = again.desk.state.library.library
+    assert again.controller.state is not None
+    library = again.controller.state.library.library
     (line,) = library.sessions.list()
     recordings = library.sessions.get(line.id).recordings
     assert [(one.told.name, one.state) for one in recordings] == [

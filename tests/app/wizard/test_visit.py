@@ -16,7 +16,7 @@ from app.wizard.patient.step import PatientStep
 from app.wizard.recordings import SessionRecording
 from app.wizard.standing.step import StandStillStep
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.analysis import analyse
 from core.body import Joint, Side, Site
 from core.samples import Patient, RecordingKind
@@ -53,7 +53,7 @@ def record(qtbot: QtBot, visit: Visit, kind: RecordingKind, seconds: float, cond
 
 
 def test_whole_session_is_evaluated_and_stored(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     begin(qtbot, visit, worn)
     record(qtbot, visit, RecordingKind.STANDING, 4.0)
@@ -69,7 +69,7 @@ def test_whole_session_is_evaluated_and_stored(
 
     stored = visit.session
     assert stored is not None
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     computed: list[object] = []
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
@@ -130,7 +130,7 @@ def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> No
 
 
 def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     """Told before there is a session, and after; it is on the rows, and shown by whoever resumes."""
     visit.set_limits(Limits(without_ankle=frozenset({Side.LEFT})))
@@ -144,7 +144,7 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     visit.set_limits(wanted)
     qtbot.waitUntil(lambda: visit.session is not None and visit.session.limits == wanted)
     qtbot.waitUntil(lambda: visit.patient.is_saved)
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=10_000):
         again.resume(session.id)
     assert again.without_ankle == {Side.LEFT, Side.RIGHT}
@@ -163,12 +163,12 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
 
 
 def test_who_judged_a_recovered_walk_is_noted_once_for_all(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     begin(qtbot, visit, worn)
     walk = record(qtbot, visit, RecordingKind.WALKING, 2.0)
     session = visit.session
-    state = desk.state
+    state = controller.state
     assert session is not None
     assert state is not None
     library = state.library.library
@@ -176,7 +176,7 @@ def test_who_judged_a_recovered_walk_is_noted_once_for_all(
     library.recordings.close(walk.id, RecordingState.RECOVERED, hashes)  # as after a crash
 
     def resumed() -> Visit:
-        again = Visit(desk, [])
+        again = Visit(controller, [])
         with qtbot.waitSignal(again.resumed, timeout=10_000):
             again.resume(session.id)
         return again
@@ -205,7 +205,7 @@ def test_one_sensor_at_one_site(visit: Visit) -> None:
 
 
 def test_closing_in_mid_walk_loses_nothing(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
 ) -> None:
     begin(qtbot, visit, worn)
     acquisition, session = visit.sensors.acquisition, visit.session
@@ -215,7 +215,7 @@ def test_closing_in_mid_walk_loses_nothing(
         visit.recordings.begin(acquisition, RecordingKind.WALKING)
     qtbot.wait(500)
     visit.close()
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=10_000):
         again.resume(session.id)
     (walk,) = again.recordings.walks
@@ -225,7 +225,7 @@ def test_closing_in_mid_walk_loses_nothing(
 
 
 def test_what_has_hardly_begun_when_the_program_ends_is_ended_too(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, worn: dict[str, Site], tmp_path: Path
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], tmp_path: Path
 ) -> None:
     begin(qtbot, visit, worn)
     acquisition, session = visit.sensors.acquisition, visit.session
@@ -233,7 +233,7 @@ def test_what_has_hardly_begun_when_the_program_ends_is_ended_too(
     assert session is not None
     visit.recordings.begin(acquisition, RecordingKind.STANDING)
     visit.close()
-    desk.finish()  # no event loop runs in between
+    controller.finish()  # no event loop runs in between
     with open_library(tmp_path / "library", PASSPHRASE) as opened:
         assert [one.state for one in opened.library.sessions.get(session.id).recordings] == [RecordingState.CLOSED]
 

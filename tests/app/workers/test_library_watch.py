@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtTest import QSignalSpy
 from pytestqt.qtbot import QtBot
 
-from app.home.settings_desk import _slots
+from app.home.settings_controller import _slots
 from app.storage.bringing_home import bring_home
 from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
@@ -26,7 +26,7 @@ from app.storage.recovery import find_interrupted
 from app.storage.root import LibraryGoneError
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.samples import Patient, Recording, RecordingKind, Session
 
 PASSPHRASE = "four short words here"
@@ -53,21 +53,21 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def desk(qtbot: QtBot, folder: Path) -> Iterator[LibraryDesk]:
-    desk = LibraryDesk()
-    open_at(qtbot, desk, folder)
-    yield desk
-    desk.finish()
+def controller(qtbot: QtBot, folder: Path) -> Iterator[LibraryController]:
+    controller = LibraryController()
+    open_at(qtbot, controller, folder)
+    yield controller
+    controller.finish()
 
 
-def open_at(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open(folder, PASSPHRASE)
+def open_at(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open(folder, PASSPHRASE)
 
 
-def opened_of(desk: LibraryDesk) -> OpenedLibrary:
-    assert desk.state is not None
-    return desk.state.library
+def opened_of(controller: LibraryController) -> OpenedLibrary:
+    assert controller.state is not None
+    return controller.state.library
 
 
 def visit_of(opened: OpenedLibrary) -> UUID:
@@ -87,13 +87,13 @@ def record_away(opened: OpenedLibrary, session_id: UUID, name: str = "walk 1") -
 
 
 def test_it_is_missed_within_a_second_and_said_where_recordings_go(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    opened = opened_of(desk)
+    opened = opened_of(controller)
     elsewhere = folder.with_name("renamed")
-    seen = [desk.is_gone]
+    seen = [controller.is_gone]
     began_s = time.monotonic()
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
         folder.rename(elsewhere)
     assert time.monotonic() - began_s < 1.5
     what, then = said.args or ["", ""]
@@ -101,59 +101,63 @@ def test_it_is_missed_within_a_second_and_said_where_recordings_go(
     assert opened.shelter is not None
     assert str(opened.shelter.folder) in then
     assert "connect its disk" in then
-    seen.append(desk.is_gone)
-    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+    seen.append(controller.is_gone)
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args == ["The library is back.", "Nothing had to be added to it."]
-    assert [*seen, desk.is_gone] == [False, True, False]
+    assert [*seen, controller.is_gone] == [False, True, False]
     assert not opened.shelter.folder.exists()
 
 
-def test_what_was_recorded_meanwhile_is_home_once_it_is_back(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened = opened_of(desk)
+def test_what_was_recorded_meanwhile_is_home_once_it_is_back(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
-    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
     assert said.args[1] == "1 recording that was made meanwhile is in it now."
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
 
 
-def test_what_was_recorded_meanwhile_is_home_at_the_next_start(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+def test_what_was_recorded_meanwhile_is_home_at_the_next_start(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
     """Of this library: of another one nothing is taken."""
-    opened = opened_of(desk)
+    opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
     elsewhere.rename(folder)
-    open_at(qtbot, desk, folder)
-    assert desk.state is not None
-    assert desk.state.brought_home == {recording_id}
-    assert [(one.recording_id, one.problem) for one in desk.state.interrupted] == [(recording_id, "")]
-    open_at(qtbot, desk, folder)
-    assert desk.state.brought_home == frozenset()
+    open_at(qtbot, controller, folder)
+    assert controller.state is not None
+    assert controller.state.brought_home == {recording_id}
+    assert [(one.recording_id, one.problem) for one in controller.state.interrupted] == [(recording_id, "")]
+    open_at(qtbot, controller, folder)
+    assert controller.state.brought_home == frozenset()
 
 
-def test_a_library_that_stays_is_not_missed(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with qtbot.assertNotEmitted(desk.gone, wait=1200):
-        opened_of(desk).library.patients.create(Patient(code="P-002"))
+def test_a_library_that_stays_is_not_missed(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    with qtbot.assertNotEmitted(controller.gone, wait=1200):
+        opened_of(controller).library.patients.create(Patient(code="P-002"))
 
 
 def test_what_cannot_be_brought_home_is_said_once_and_kept(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    opened = opened_of(desk)
+    opened = opened_of(controller)
     session_id = visit_of(opened)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened, session_id)
 
@@ -161,7 +165,7 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
-    with qtbot.waitSignal(desk.refused, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
     assert "could not be added to it yet (No space left on device)" in said.args[0]
@@ -172,11 +176,13 @@ def test_what_cannot_be_brought_home_is_said_once_and_kept(
     assert bring_home(opened) == {recording_id}
 
 
-def test_keys_are_changed_of_the_library_that_is_open_only(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+def test_keys_are_changed_of_the_library_that_is_open_only(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
     """Another library in its place keeps its own."""
-    opened = opened_of(desk)
+    opened = opened_of(controller)
     assert "hk" in _slots(opened).codes
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(folder.with_name("renamed"))
     folder.mkdir()
     KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64)).create("hk", PASSPHRASE)
@@ -207,51 +213,53 @@ class Asker(QObject):
 
 
 def test_after_a_change_of_the_key_the_library_is_watched_as_before(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     """Its database is another file then, and its folder the same."""
-    asker, before = Asker(), opened_of(desk)
-    gone = QSignalSpy(desk.gone)
-    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    asker, before = Asker(), opened_of(controller)
+    gone = QSignalSpy(controller.gone)
+    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
     assert asker.refusals == []
-    assert opened_of(desk) is not before
+    assert opened_of(controller) is not before
     qtbot.wait(1200)
     assert gone.count() == 0
     with pytest.raises(LibraryError, match="open with this library already"), held_alone(folder):
         pass
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
-    recording_id = record_away(opened_of(desk), visit_id := uuid7())
-    with qtbot.waitSignal(desk.back, timeout=WAIT_MS) as said:
+    recording_id = record_away(opened_of(controller), visit_id := uuid7())
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS) as said:
         elsewhere.rename(folder)
     assert said.args is not None
     assert said.args[1] == "1 recording that was made meanwhile is in it now."
-    (found,) = find_interrupted(opened_of(desk))
+    (found,) = find_interrupted(opened_of(controller))
     assert (found.recording_id, found.problem) == (recording_id, "")
     assert found.belonging is not None
     assert found.belonging.session_id == visit_id
 
 
-def test_the_key_is_not_changed_while_the_library_is_gone(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    asker, opened = Asker(), opened_of(desk)
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+def test_the_key_is_not_changed_while_the_library_is_gone(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    asker, opened = Asker(), opened_of(controller)
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(folder.with_name("renamed"))
-    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    assert asker.refusals == [desk.gone_words]
-    assert desk.is_gone
-    assert opened_of(desk) is opened
+    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    assert asker.refusals == [controller.gone_words]
+    assert controller.is_gone
+    assert opened_of(controller) is opened
 
 
 def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_removed(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asker, opened = Asker(), opened_of(desk)
+    asker, opened = Asker(), opened_of(controller)
     opened.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN))
     assert opened.shelter is not None
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     record_away(opened, uuid7())
 
@@ -259,79 +267,79 @@ def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_remo
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("app.storage.bringing_home._copy", full)
-    with qtbot.waitSignals([desk.refused, desk.back], timeout=WAIT_MS):
+    with qtbot.waitSignals([controller.refused, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
-    desk.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.has_heard, timeout=WAIT_MS)
     ((what, remedy),) = asker.refusals
     assert what.startswith("What was recorded while the library was gone is not in it yet")
     assert str(opened.shelter.folder) in remedy
-    assert [one.is_active for one in opened_of(desk).library.operators.list()] == [True, True]
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):  # it is watched all the same
+    assert [one.is_active for one in opened_of(controller).library.operators.list()] == [True, True]
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):  # it is watched all the same
         folder.rename(elsewhere)
 
 
 def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
-    assert desk.state is None
-    assert desk._watch is None
+    controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
+    assert controller.state is None
+    assert controller._watch is None
     with held_alone(folder):
         assert not asker.has_heard
 
 
 def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
-    asker, opened = Asker(), opened_of(desk)
+    asker, opened = Asker(), opened_of(controller)
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     recording_id = record_away(opened, uuid7())
-    desk.lock()
+    controller.lock()
     qtbot.waitUntil(lambda: not opened.data_key, timeout=WAIT_MS)
-    with qtbot.waitSignal(desk.back, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.back, timeout=WAIT_MS):
         elsewhere.rename(folder)
     assert [path.name for path in opened.recordings.iterdir()] == [f"{recording_id}.1.journal"]
-    desk.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
+    controller.run_long(lambda library, _report: find_interrupted(library), asker.on_done, asker.on_failed, None, asker)
     qtbot.wait(300)
     assert not asker.has_heard
-    desk.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    controller.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     (found,) = asker.results[1] if isinstance(asker.results[1], tuple) else ()
     assert (found.recording_id, found.problem) == (recording_id, "")
 
 
 def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, delay = Asker(), LoginDelay(folder, time.monotonic)
-    desk.lock()
+    controller.lock()
     elsewhere = folder.with_name("renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS):
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS):
         folder.rename(elsewhere)
     for _ in range(4):
-        desk.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
+        controller.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.refusals) == 4, timeout=WAIT_MS)
     assert {what for what, _ in asker.refusals} == {f"The library is gone from {folder}."}
     assert delay.left_s("hk") == 0.0
     assert not folder.exists()
     elsewhere.rename(folder)
-    desk.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
+    controller.unlock("hk", PASSPHRASE, delay, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: asker.results == [None], timeout=WAIT_MS)
 
 
-def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, desk: LibraryDesk) -> None:
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open_demonstration()
-    opened = opened_of(desk)
+def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, controller: LibraryController) -> None:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open_demonstration()
+    opened = opened_of(controller)
     assert opened.shelter is None
     elsewhere = opened.folder.with_name(f"{opened.folder.name}-renamed")
-    with qtbot.waitSignal(desk.gone, timeout=WAIT_MS) as said:
+    with qtbot.waitSignal(controller.gone, timeout=WAIT_MS) as said:
         opened.folder.rename(elsewhere)
     elsewhere.rename(opened.folder)  # to be removed
     assert said.args is not None

@@ -15,7 +15,7 @@ from app.widgets.rail_row import StepState
 from app.wizard.patient.page import PatientDraft
 from app.wizard.patient.step import PatientStep
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Joint, Side, Site
 from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 
@@ -49,9 +49,9 @@ def test_going_on_waits_until_the_library_has_the_patient(qtbot: QtBot, visit: V
 
 
 def test_a_code_in_use_stops_and_offers_that_patient(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
-    desk.run(make, None, None, step)
+    controller.run(make, None, None, step)
     type_in(step, Patient(code="demo-8"))
     with qtbot.waitSignal(visit.patient.code_taken, timeout=5000), qtbot.assertNotEmitted(step.done):
         step.on_primary()
@@ -81,9 +81,9 @@ def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, s
 
 
 def test_the_set_up_of_the_last_visit_is_taken_over(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
-    desk.run(make_with_visit, None, None, step)
+    controller.run(make_with_visit, None, None, step)
     step.page.open_pressed.emit("DEMO-10")
     button = next(one for one in step.page.findChildren(QAbstractButton) if one.text() == "Same set-up as last visit")
     qtbot.waitUntil(button.isVisible, timeout=5000)
@@ -124,7 +124,7 @@ def make_with_visit(opened: OpenedLibrary) -> None:
 
 
 def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: PatientStep
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
 ) -> None:
     listed: list[StoredPatient] = []
 
@@ -134,7 +134,7 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
         patients.change(stored, replace(stored.told, birth_year=1982))
         listed.append(stored)
 
-    desk.run(change, None, None, step)
+    controller.run(change, None, None, step)
     qtbot.waitUntil(lambda: bool(listed), timeout=5000)
     visit.patient.choose_from_list(listed[0])
     step.enter()

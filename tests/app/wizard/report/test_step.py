@@ -18,7 +18,7 @@ from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.step import ReportStep
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.analysis import analyse
 from core.body import Site
 from core.results import Analysis
@@ -36,7 +36,7 @@ def analysis(simulated_session: Session) -> Analysis:
 @pytest.fixture
 def step(
     qtbot: QtBot,
-    desk: LibraryDesk,
+    controller: LibraryController,
     visit: Visit,
     worn: dict[str, Site],
     simulated_session: Session,
@@ -46,7 +46,7 @@ def step(
     """On its page, the library's earlier visits read."""
     begin(qtbot, visit, worn)
     visit.evaluation.session, visit.evaluation.analysis = simulated_session, analysis
-    step = ReportStep(Look(), visit, desk)
+    step = ReportStep(Look(), visit, controller)
     qtbot.addWidget(step.page)
     step.page.resize(1016, 600)
     step.page.show()
@@ -70,7 +70,7 @@ def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: Report
     step.page.report.comment.setPlainText("Keep alignment C.")
     step.leave()
     assert step.comment == "Keep alignment C."
-    state, session = visit.desk.state, visit.session
+    state, session = visit.controller.state, visit.session
     assert state is not None
     assert session is not None
     sessions, session_id = state.library.library.sessions, session.id
@@ -99,7 +99,7 @@ def dialog_of(qtbot: QtBot, step: ReportStep) -> LeavingDialog:
 def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_is_ticked(
     qtbot: QtBot, step: ReportStep, visit: Visit, simulated_session: Session, tmp_path: Path
 ) -> None:
-    state, session = visit.desk.state, visit.session
+    state, session = visit.controller.state, visit.session
     assert state is not None
     assert session is not None
     library = state.library.library
@@ -163,9 +163,14 @@ def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
 
 @pytest.mark.endurance
 def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, simulated_session: Session, step: ReportStep, tmp_path: Path
+    qtbot: QtBot,
+    controller: LibraryController,
+    visit: Visit,
+    simulated_session: Session,
+    step: ReportStep,
+    tmp_path: Path,
 ) -> None:
-    state, session = desk.state, visit.session
+    state, session = controller.state, visit.session
     assert state is not None
     assert session is not None
     code = session.told.patient.code
@@ -195,7 +200,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
 
 
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
-    step = ReportStep(Look(), visit, visit.desk)
+    step = ReportStep(Look(), visit, visit.controller)
     qtbot.addWidget(step.page)
     primary = step.bar().primary
     assert primary is not None

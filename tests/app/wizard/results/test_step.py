@@ -22,7 +22,7 @@ from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Joint, Side
 from core.chosen_strides import left_out_by_hand
 from core.results import RecordingAnalysis
@@ -47,10 +47,10 @@ class Asker(QObject):
         self.answers.append(answer)
 
 
-def asked(qtbot: QtBot, desk: LibraryDesk, call: Callable[[OpenedLibrary], object]) -> object:
+def asked(qtbot: QtBot, controller: LibraryController, call: Callable[[OpenedLibrary], object]) -> object:
     """What the library answers on its own thread."""
     asker = Asker()
-    desk.run(call, asker.on_done, None, asker)
+    controller.run(call, asker.on_done, None, asker)
     qtbot.waitUntil(lambda: bool(asker.answers), timeout=10_000)
     return asker.answers[0]
 
@@ -61,13 +61,13 @@ def one_walk() -> Session:
 
 
 @pytest.fixture
-def session_id(qtbot: QtBot, desk: LibraryDesk, one_walk: Session) -> UUID:
+def session_id(qtbot: QtBot, controller: LibraryController, one_walk: Session) -> UUID:
     def bring_in(opened: OpenedLibrary) -> UUID:
         for started in ("2026-09-01T10:00:00", "2026-10-01T10:00:00"):
             import_session(opened, replace(one_walk, started=started), lambda _share, _what: None, "DEMO-1")
         return opened.library.sessions.list()[0].id
 
-    found = asked(qtbot, desk, bring_in)
+    found = asked(qtbot, controller, bring_in)
     assert isinstance(found, UUID)
     return found
 
@@ -131,7 +131,7 @@ def test_results_that_are_made_ready_ahead_open_with_the_walk(visit: Visit, step
 
 
 def test_a_sign_is_turned_kept_in_the_history_and_undone(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: ResultsStep, session_id: UUID
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: ResultsStep, session_id: UUID
 ) -> None:
     before = angle_of(visit, Joint.LEFT_KNEE)
     step.on_quiet(0)
@@ -151,7 +151,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
         corrections = opened.library.corrections.of_session(session_id)
         return [change.field for correction in corrections for change in correction.changes]
 
-    assert asked(qtbot, desk, corrected) == ["turned_sign", "turned_sign"]
+    assert asked(qtbot, controller, corrected) == ["turned_sign", "turned_sign"]
 
 
 def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
@@ -195,7 +195,7 @@ def test_rerun_that_is_missing_is_told(
 
 
 def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
-    qtbot: QtBot, visit: Visit, step: ResultsStep, desk: LibraryDesk, tmp_path: Path
+    qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
 ) -> None:
     step.on_quiet(2)
     page = step.page.found()
@@ -213,7 +213,7 @@ def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     dialog.close()
     assert "how" in page.note.text()
     assert any(one.name.startswith("simulated_right_ankle") for one in (tmp_path / "how").iterdir())
-    exports = asked(qtbot, desk, lambda opened: [entry.details for entry in opened.library.audit.entries()])
+    exports = asked(qtbot, controller, lambda opened: [entry.details for entry in opened.library.audit.entries()])
     assert any("how-found" in details for details in exports)  # type: ignore[attr-defined] # answers are objects
     assert not step.on_intent(Intent(KeyAction.PRIMARY))
     assert step.on_intent(Intent(KeyAction.BACK))
@@ -236,7 +236,7 @@ def test_swapped_sides_are_read_anew_and_swapped_back(qtbot: QtBot, visit: Visit
 
 
 def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a_restart(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: ResultsStep, session_id: UUID
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: ResultsStep, session_id: UUID
 ) -> None:
     """At once, without another analysis; each by the key, in the history and the audit, and in the kept files."""
     computed: list[object] = []
@@ -263,12 +263,12 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
         fields = [change.field for correction in corrections for change in correction.changes]
         return fields, opened.library.audit.entries(f"session:{session_id}")[-1].details
 
-    answer = asked(qtbot, desk, told)
+    answer = asked(qtbot, controller, told)
     assert isinstance(answer, tuple)
     assert answer[0] == ["left_out", "left_out"]
     assert "left_out" in answer[1]
 
-    again = Visit(desk, [])
+    again = Visit(controller, [])
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
         again.resume(session_id)

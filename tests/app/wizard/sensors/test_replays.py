@@ -15,7 +15,7 @@ from app.theme import Look
 from app.wizard.sensors.replays import Replays, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from core.body import Site
 from core.samples import Patient, RecordingKind, SensorInfo, Session
 from devices.files.session_folder import write_session
@@ -40,13 +40,13 @@ def folder(short_session: Session, tmp_path_factory: pytest.TempPathFactory) -> 
     return folder
 
 
-def stored(desk: LibraryDesk, session: Session) -> None:
+def stored(controller: LibraryController, session: Session) -> None:
     """Let the library hold the session, of another patient."""
 
     def keep(opened: OpenedLibrary) -> None:
         import_session(opened, session, lambda _share, _what: None, session.patient.code)
 
-    desk.run(keep, None, None, desk)
+    controller.run(keep, None, None, controller)
 
 
 def test_a_folder_becomes_the_sensors_with_their_places(
@@ -73,9 +73,9 @@ def test_a_folder_becomes_the_sensors_with_their_places(
 
 
 def test_a_session_of_the_library_is_chosen_by_code_and_date(
-    qtbot: QtBot, desk: LibraryDesk, visit: Visit, step: SensorsStep, short_session: Session
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: SensorsStep, short_session: Session
 ) -> None:
-    stored(desk, short_session)
+    stored(controller, short_session)
     step.page.source_chosen.emit(REPLAY)
     qtbot.waitUntil(lambda: bool(step.page.stored.sessions.lines.lines), timeout=5000)
     (line,) = step.page.stored.sessions.lines.lines
@@ -88,7 +88,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
     assert visit.sensors.site_of == {f"S-{site}": site for site in Site}
     assert visit.sensors.choice is not None
     assert visit.sensors.choice.name == "Replay of P-7, 24 Oct 2026"
-    replays = Replays(desk, visit)
+    replays = Replays(controller, visit)
     with qtbot.waitSignal(replays.listed, timeout=5000) as listed:
         replays.list_sessions(line.id)
     assert listed.args == [[]], "neither the session itself, nor one without recordings"

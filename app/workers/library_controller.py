@@ -34,7 +34,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 
-class LibraryDesk(QObject):
+class LibraryController(QObject):
     """One library at a time; opening another closes the one before. `finish` belongs to the program's end.
 
     `seen`: the folder where this computer remembers how far a library had come; without it nothing is remembered.

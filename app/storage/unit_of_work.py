@@ -16,7 +16,7 @@ END = "end_of_audit"  # by this name a session keeps how far its entries go
 DEMO = "DEMO"  # how codes of patients begin that simulated recordings may be kept for
 
 
-class Desk:
+class UnitOfWork:
     """One operator at one library. `operator` is None while nobody is logged in, and then nothing can be done."""
 
     def __init__(

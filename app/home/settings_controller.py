@@ -1,4 +1,4 @@
-"""What follows when something is set: on the screen at once, in the library through its desk."""
+"""What follows when something is set: on the screen at once, in the library through its controller."""
 
 import datetime
 from contextlib import suppress
@@ -24,7 +24,7 @@ from app.theme import Look
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_opening import BACKUP_FOLDER
 from app.workers.library_state import OpenedState
 
@@ -36,13 +36,13 @@ HASH_LETTERS = 16  # of an entry's hash: as much as anybody compares
 VIEWER, CLINICIAN = "viewer", "clinician"  # as app.storage.stored has them
 
 
-class SettingsDesk(QObject):
+class SettingsController(QObject):
     told = Signal(str, str)
     restored = Signal()  # something that was deleted
 
-    def __init__(self, look: Look, desk: LibraryDesk, settings: Settings, parent: QWidget) -> None:
+    def __init__(self, look: Look, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
         super().__init__(parent)
-        self._look, self._desk, self._settings = look, desk, settings
+        self._look, self._controller, self._settings = look, controller, settings
         self._state: OpenedState | None = None
         self._backup_folder = ""
         self._sheet: KeySheet | None = None
@@ -69,14 +69,16 @@ class SettingsDesk(QObject):
         self._show_screen()
         self._on_backup_folder_read("")  # the one in sight is another library's
         if is_own:
-            self._desk.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
-            self._desk.run(_clinic_of, self._on_clinic_read, self._on_refused, self)  # no passphrase holds its name
+            self._controller.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
+            self._controller.run(
+                _clinic_of, self._on_clinic_read, self._on_refused, self
+            )  # no passphrase holds its name
         if is_administrator:
             self._read_operators()
 
     def read_deleted(self) -> None:
         """Show what can be had back now."""
-        self._desk.run(_deleted_in, self._on_deleted_read, self._on_refused, self)
+        self._controller.run(_deleted_in, self._on_deleted_read, self._on_refused, self)
 
     def _on_deleted_read(self, lines: tuple[DeletedLine, ...]) -> None:
         self.page.show_deleted(lines)
@@ -88,7 +90,7 @@ class SettingsDesk(QObject):
             else:
                 opened.library.sessions.restore(opened.library.sessions.get(row_id))
 
-        self._desk.run(restore, self._on_restored, self._on_refused, self)
+        self._controller.run(restore, self._on_restored, self._on_refused, self)
 
     def _on_restored(self, _nothing: object) -> None:
         self.read_deleted()
@@ -139,7 +141,7 @@ class SettingsDesk(QObject):
             known = (operator.name, _clinic_of(opened))
             slots.set_passphrase(slots.open(operator.code, old), operator.code, new, known)
 
-        self._desk.run(change, self._on_passphrase_changed, self._on_passphrase_refused, self)
+        self._controller.run(change, self._on_passphrase_changed, self._on_passphrase_refused, self)
 
     def _on_passphrase_changed(self, _nothing: object) -> None:
         self.page.show_passphrase_changed()
@@ -152,7 +154,7 @@ class SettingsDesk(QObject):
             assert opened.data_key is not None  # hidden in the demonstration
             return _slots(opened).renew_recovery_key(opened.data_key)
 
-        self._desk.run(renew, self._on_recovery_key, self._on_refused, self)
+        self._controller.run(renew, self._on_recovery_key, self._on_refused, self)
 
     def _on_recovery_key(self, key: str) -> None:
         self.page.show_recovery_key(key)
@@ -183,7 +185,7 @@ class SettingsDesk(QObject):
             opened.library.settings.put(BACKUP_FOLDER, folder)
             return folder
 
-        self._desk.run(put, self._on_backup_folder_read, self._on_refused, self)
+        self._controller.run(put, self._on_backup_folder_read, self._on_refused, self)
 
     def _on_backup_wished(self) -> None:
         if not self._backup_folder:
@@ -195,7 +197,7 @@ class SettingsDesk(QObject):
             return back_up(opened, into, report)
 
         self.page.show_backup(tr("Backing up"), self._backup_folder, is_running=True)
-        self._desk.run_long(work, self._on_backed_up, self._on_backup_refused, self._on_backup_progressed, self)
+        self._controller.run_long(work, self._on_backed_up, self._on_backup_refused, self._on_backup_progressed, self)
 
     def _on_backup_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Backing up, {percent} %").format(percent=round(share * 100))
@@ -218,7 +220,7 @@ class SettingsDesk(QObject):
         self.page.show_backup(f"{what} {remedy}", self._backup_folder)
 
     def _on_stop_wished(self) -> None:
-        self._desk.stop_long(self._on_backup_stopped)
+        self._controller.stop_long(self._on_backup_stopped)
         self.page.show_backup(tr("Stopping"), self._backup_folder)
 
     def _on_backup_stopped(self, is_done: bool) -> None:
@@ -233,10 +235,10 @@ class SettingsDesk(QObject):
             if opened.library.settings.get(CLINIC, "") != name:
                 opened.library.settings.put(CLINIC, name)
 
-        self._desk.run(put, None, self._on_refused, self)
+        self._controller.run(put, None, self._on_refused, self)
 
     def _read_operators(self) -> None:
-        self._desk.run(_operators_of, self._on_operators, self._on_refused, self)
+        self._controller.run(_operators_of, self._on_operators, self._on_refused, self)
 
     def _on_operators(self, found: tuple[tuple[Operator, ...], tuple[str, ...]]) -> None:
         operators, codes = found
@@ -270,11 +272,11 @@ class SettingsDesk(QObject):
                     slots.remove(code)
                 raise
 
-        self._desk.run(add, self._on_operator_changed, self._on_operator_refused, self)
+        self._controller.run(add, self._on_operator_changed, self._on_operator_refused, self)
 
     def _on_operator_removed(self, code: str) -> None:
         self.page.show_key_change(tr("Changing the library's key"), is_running=True)
-        self._desk.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
+        self._controller.change_key(code, self._on_key_changed, self._on_key_refused, self._on_key_progressed, self)
 
     def _on_key_progressed(self, share: float, _what: str) -> None:
         sentence = tr("Changing the library's key, {percent} %").format(percent=round(share * 100))

@@ -21,7 +21,7 @@ from app.storage.opened import OpenedLibrary, held_alone, open_library
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, Role, StoredPatient
 from app.workers.background import Report
-from app.workers.library_desk import LibraryDesk
+from app.workers.library_controller import LibraryController
 from app.workers.library_state import LibraryPlace, OpenedState
 from app.workers.refusals import refusal_of
 from core.body import Site
@@ -35,7 +35,7 @@ WAIT_MS = 20_000  # on a busy machine
 @pytest.fixture(scope="session")
 def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A closed library whose operators are `hk` and the viewer `vi`."""
-    folder = tmp_path_factory.mktemp("desk")
+    folder = tmp_path_factory.mktemp("controller")
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     data_key, _ = slots.create("hk", PASSPHRASE)
     slots.add(data_key, "vi", PASSPHRASE)
@@ -50,10 +50,10 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def desk(qtbot: QtBot) -> Iterator[LibraryDesk]:
-    desk = LibraryDesk()
-    yield desk
-    desk.finish()
+def controller(qtbot: QtBot) -> Iterator[LibraryController]:
+    controller = LibraryController()
+    yield controller
+    controller.finish()
 
 
 class Asker(QObject):
@@ -78,16 +78,18 @@ class Asker(QObject):
         self.shares.append(share)
 
 
-def opened(qtbot: QtBot, desk: LibraryDesk, folder: Path, code: str = "hk") -> OpenedState:
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
-        desk.open(folder, PASSPHRASE, code)
+def opened(qtbot: QtBot, controller: LibraryController, folder: Path, code: str = "hk") -> OpenedState:
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open(folder, PASSPHRASE, code)
     (state,) = told.args or []
     assert isinstance(state, OpenedState)
     return state
 
 
-def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened(qtbot, desk, folder)
+def test_calls_are_answered_in_order_on_the_screens_thread(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    opened(qtbot, controller, folder)
     asker = Asker()
     worked_in = []
 
@@ -99,7 +101,7 @@ def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: L
         return add
 
     for code in ("P-1", "P-2", "P-3"):
-        desk.run(adding(code), asker.on_done, asker.on_failed, asker)
+        controller.run(adding(code), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 3, timeout=WAIT_MS)
     assert asker.results == ["P-1", "P-2", "P-3"]
     assert asker.threads == {main_thread()}
@@ -108,13 +110,13 @@ def test_calls_are_answered_in_order_on_the_screens_thread(qtbot: QtBot, desk: L
 
 
 def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker, slow = Asker(), Event()
-    desk.record(lambda _library, _turn: "too early", asker.on_done, asker.on_failed, asker)
+    controller.record(lambda _library, _turn: "too early", asker.on_done, asker.on_failed, asker)
     assert asker.refusals == [("No library is open.", "Log in, then try again.")]
-    opened(qtbot, desk, folder)
-    desk.run(lambda _library: slow.wait(60), None, None, asker)
+    opened(qtbot, controller, folder)
+    controller.run(lambda _library: slow.wait(60), None, None, asker)
     turns: list[bool] = []
 
     def begin(_library: OpenedLibrary, turn: Future[None]) -> str:
@@ -125,22 +127,22 @@ def test_a_recording_waits_for_no_call_and_the_library_for_the_recording(
         turn.result()
         return len(library.library.patients.search())  # it is still open
 
-    desk.record(begin, asker.on_done, asker.on_failed, asker)
+    controller.record(begin, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: asker.results == ["begun"], timeout=WAIT_MS)
     assert turns == [False]
-    desk.record(end, asker.on_done, asker.on_failed, asker)
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
+    controller.record(end, asker.on_done, asker.on_failed, asker)
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
         slow.set()
     assert asker.results == ["begun", 0]
     assert asker.threads == {main_thread()}
 
 
-def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened(qtbot, desk, folder)
+def test_a_refusal_is_told_in_two_sentences(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
     asker = Asker()
     for _ in range(2):
-        desk.run(
+        controller.run(
             lambda library: library.library.patients.create(Patient(code="P-1")), asker.on_done, asker.on_failed, asker
         )
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
@@ -167,52 +169,54 @@ def test_what_the_library_refuses_is_told_in_the_users_language(tmp_path: Path) 
 
 
 def test_what_nobody_foresaw_is_logged_and_told_plainly(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, caplog: pytest.LogCaptureFixture
+    qtbot: QtBot, controller: LibraryController, folder: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    opened(qtbot, desk, folder)
+    opened(qtbot, controller, folder)
 
     def call(_library: OpenedLibrary) -> None:
         raise ZeroDivisionError("P-0147")
 
-    with qtbot.waitSignal(desk.refused, timeout=WAIT_MS) as told:
-        desk.run(call, None, None, desk)
+    with qtbot.waitSignal(controller.refused, timeout=WAIT_MS) as told:
+        controller.run(call, None, None, controller)
     assert told.args is not None
     assert "P-0147" not in " ".join(told.args)
     assert "ZeroDivisionError" in caplog.text
 
 
-def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened(qtbot, desk, folder)
+def test_nothing_arrives_for_an_owner_that_is_gone(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
     go_on, asker = Event(), Asker()
     heard = asker.results
-    desk.run(lambda _library: go_on.wait(5), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda _library: go_on.wait(5), asker.on_done, asker.on_failed, asker)
     del asker
     go_on.set()
     last = Asker()
-    desk.run(lambda _library: "after it", last.on_done, last.on_failed, last)
+    controller.run(lambda _library: "after it", last.on_done, last.on_failed, last)
     qtbot.waitUntil(lambda: bool(last.results), timeout=WAIT_MS)
     assert heard == []
 
 
-def test_calls_before_opening_and_after_closing_are_refused(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+def test_calls_before_opening_and_after_closing_are_refused(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
     asker = Asker()
-    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.refusals) == 1, timeout=WAIT_MS)
-    opened(qtbot, desk, folder)
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
-    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    opened(qtbot, controller, folder)
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
+    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.refusals) == 2, timeout=WAIT_MS)
     assert asker.results == []
-    assert desk.state is None
+    assert controller.state is None
 
 
 def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, tmp_path: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:
     for place, is_key in ((folder, True), (tmp_path / "nothing", False)):
-        with qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
-            desk.open(place, "not this one", "hk")
+        with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+            controller.open(place, "not this one", "hk")
         assert told.args is not None
         assert told.args[2] is is_key
         assert all(sentence.endswith(".") for sentence in told.args[:2])
@@ -220,28 +224,30 @@ def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
 
 @pytest.mark.endurance
 def test_a_new_library_comes_with_its_recovery_key_which_lets_in_again(
-    qtbot: QtBot, desk: LibraryDesk, tmp_path: Path
+    qtbot: QtBot, controller: LibraryController, tmp_path: Path
 ) -> None:
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
-        desk.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.create(tmp_path / "new", "hk", "H. Keller", PASSPHRASE)
     (state,) = told.args or []
     assert state.operator.role is Role.ADMINISTRATOR
     assert state.recovery_key
     assert state.recovery_key not in repr(state)
-    desk.close()
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS) as told:
-        desk.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
+    controller.close()
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open_recovered(tmp_path / "new", state.recovery_key, "hk", "another four words")
     (state,) = told.args or []
     assert state.recovery_key == ""
-    desk.close()
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open(tmp_path / "new", "another four words")
+    controller.close()
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open(tmp_path / "new", "another four words")
 
 
-def test_the_folder_says_who_may_open_it(qtbot: QtBot, desk: LibraryDesk, folder: Path, tmp_path: Path) -> None:
+def test_the_folder_says_who_may_open_it(
+    qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
+) -> None:
     asker = Asker()
     for place in (folder, tmp_path / "nothing"):
-        desk.look(place, asker.on_done, asker.on_failed, asker)
+        controller.look(place, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     there, nothing = asker.results
     assert isinstance(there, LibraryPlace)
@@ -250,23 +256,27 @@ def test_the_folder_says_who_may_open_it(qtbot: QtBot, desk: LibraryDesk, folder
     assert not nothing.exists
 
 
-def test_a_keyring_without_the_key_sends_back_to_the_passphrase(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
-        desk.open_remembered(folder, "hk")
+def test_a_keyring_without_the_key_sends_back_to_the_passphrase(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    with qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+        controller.open_remembered(folder, "hk")
     assert told.args is not None
     assert told.args[1] == "Type it."
 
 
-def test_a_library_that_another_program_holds_is_not_opened(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    with held_alone(folder), qtbot.waitSignal(desk.not_opened, timeout=WAIT_MS) as told:
-        desk.open(folder, PASSPHRASE, "hk")
+def test_a_library_that_another_program_holds_is_not_opened(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
+    with held_alone(folder), qtbot.waitSignal(controller.not_opened, timeout=WAIT_MS) as told:
+        controller.open(folder, PASSPHRASE, "hk")
     assert told.args is not None
     assert "open with this library already" in told.args[0]
-    opened(qtbot, desk, folder)
+    opened(qtbot, controller, folder)
 
 
 def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     data_key = KeySlots(folder / KEYS).open("hk", PASSPHRASE)
     long_ago = datetime.now(UTC) - timedelta(days=40)
@@ -275,9 +285,9 @@ def test_what_is_overdue_is_destroyed_after_opening_but_not_for_a_viewer(
         library.patients.delete(library.patients.create(Patient(code="P-9")))
     asker = Asker()
     for code, left in (("vi", 1), ("hk", 0)):
-        opened(qtbot, desk, folder, code)
+        opened(qtbot, controller, folder, code)
         asker.results.clear()
-        desk.run(deleted, asker.on_done, asker.on_failed, asker)
+        controller.run(deleted, asker.on_done, asker.on_failed, asker)
         qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
         assert asker.results == [left]
 
@@ -291,30 +301,32 @@ def worn_at_first(opened: OpenedLibrary) -> dict[str, Site]:
     return opened.library.sessions.get(line.id).placements[0].site_of
 
 
-def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(qtbot: QtBot, desk: LibraryDesk) -> None:
-    with qtbot.waitSignal(desk.opened, timeout=30_000) as told:
-        desk.open_demonstration()
+def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(
+    qtbot: QtBot, controller: LibraryController
+) -> None:
+    with qtbot.waitSignal(controller.opened, timeout=30_000) as told:
+        controller.open_demonstration()
     (state,) = told.args or []
     assert state.is_demonstration
     folder = state.library.folder
     asker = Asker()
-    desk.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.patients.search(), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     (patients,) = asker.results
     assert isinstance(patients, tuple)
     (patient,) = patients
     assert isinstance(patient, StoredPatient)
     assert (patient.told.code, patient.sessions) == ("DEMO-1", 1)
-    desk.run(worn_at_first, asker.on_done, asker.on_failed, asker)
+    controller.run(worn_at_first, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     assert asker.results[1] == {name: site for site, name in DEMONSTRATION_NAMES.items()}, "as its live sensors"
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()
     assert not folder.exists()
 
 
-def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened(qtbot, desk, folder)
+def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
     asker, ended = Asker(), Event()
 
     def work(_library: OpenedLibrary, report: Report) -> None:
@@ -324,34 +336,34 @@ def test_long_work_tells_progress_and_is_stopped(qtbot: QtBot, desk: LibraryDesk
         finally:
             ended.set()
 
-    desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
     qtbot.waitUntil(lambda: asker.shares[:1] == [0.5], timeout=WAIT_MS)
-    desk.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    controller.run_long(work, asker.on_done, asker.on_failed, asker.on_progressed, asker)
     assert asker.refusals == [("Something else is still being done.", "Wait for it, or stop it.")]
-    with qtbot.waitSignal(desk.closed, timeout=WAIT_MS):
-        desk.close()  # stops it first
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.close()  # stops it first
     assert ended.is_set()
     assert asker.results == []
 
 
-def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
-    opened(qtbot, desk, folder)
+def test_long_work_gives_its_result_or_its_refusal(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
+    opened(qtbot, controller, folder)
     asker = Asker()
-    desk.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
+    controller.run_long(lambda library, _report: library.folder, asker.on_done, asker.on_failed, None, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)
     assert asker.results == [folder]
 
     def refused(_library: OpenedLibrary, _report: Report) -> None:
         raise LibraryError("There is no room", "Make some")
 
-    qtbot.waitUntil(lambda: desk._long.is_idle, timeout=WAIT_MS)
-    desk.run_long(refused, asker.on_done, asker.on_failed, None, asker)
+    qtbot.waitUntil(lambda: controller._long.is_idle, timeout=WAIT_MS)
+    controller.run_long(refused, asker.on_done, asker.on_failed, None, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [("There is no room.", "Make some.")]
 
 
 def test_a_passphrase_that_is_remembered_opens_next_time(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     kept: dict[str, str] = {}
 
@@ -365,50 +377,50 @@ def test_a_passphrase_that_is_remembered_opens_next_time(
             return kept.get(name)
 
     monkeypatch.setattr("app.storage.keyring_slot._keyring", Keyring)
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open(folder, PASSPHRASE, "hk", must_remember=True)
-    desk.close()
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open_remembered(folder, "hk")
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open(folder, PASSPHRASE, "hk", must_remember=True)
+    controller.close()
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open_remembered(folder, "hk")
 
 
 def test_a_refusing_keyring_is_no_reason_not_to_open(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def refuse(*_: object) -> None:
         raise KeyRefusedError("The keyring takes no key", "Unlock it")
 
     monkeypatch.setattr("app.workers.library_opening.remember", refuse)
-    with qtbot.waitSignal(desk.opened, timeout=WAIT_MS):
-        desk.open(folder, PASSPHRASE, "hk", must_remember=True)
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open(folder, PASSPHRASE, "hk", must_remember=True)
 
 
 def test_under_the_lock_there_is_no_key_and_what_is_asked_comes_after_it(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    state = opened(qtbot, desk, folder)
+    state = opened(qtbot, controller, folder)
     key = state.library.data_key
     assert key is not None
     before = bytes(key)
-    desk.lock()
+    controller.lock()
     qtbot.waitUntil(lambda: not key, timeout=WAIT_MS)
     with pytest.raises(LibraryLockedError):
         state.library.library.patients.search()
-    desk.run(lambda library: len(library.library.patients.search()), asker.on_done, asker.on_failed, asker)
-    desk.unlock("hk", "not this passphrase", None, asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: len(library.library.patients.search()), asker.on_done, asker.on_failed, asker)
+    controller.unlock("hk", "not this passphrase", None, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.refusals), timeout=WAIT_MS)
     assert not asker.results
     assert not key
-    desk.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
+    controller.unlock("hk", PASSPHRASE, None, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     assert asker.results == [None, len(state.library.library.patients.search())]
     assert bytes(key) == before
 
 
-def test_a_lock_waits_for_long_work(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+def test_a_lock_waits_for_long_work(qtbot: QtBot, controller: LibraryController, folder: Path) -> None:
     asker, slow = Asker(), Event()
-    state = opened(qtbot, desk, folder)
+    state = opened(qtbot, controller, folder)
     key = state.library.data_key
     assert key is not None
 
@@ -416,33 +428,35 @@ def test_a_lock_waits_for_long_work(qtbot: QtBot, desk: LibraryDesk, folder: Pat
         slow.wait(60)
         return len(library.library.patients.search())
 
-    desk.run_long(work, asker.on_done, asker.on_failed, None, asker)
-    desk.lock()
+    controller.run_long(work, asker.on_done, asker.on_failed, None, asker)
+    controller.lock()
     assert key
     slow.set()
     qtbot.waitUntil(lambda: bool(asker.results) and not key, timeout=WAIT_MS)
 
 
-def test_the_key_is_changed_and_who_left_opens_nothing(qtbot: QtBot, desk: LibraryDesk, folder: Path) -> None:
+def test_the_key_is_changed_and_who_left_opens_nothing(
+    qtbot: QtBot, controller: LibraryController, folder: Path
+) -> None:
     asker = Asker()
-    state = opened(qtbot, desk, folder)
+    state = opened(qtbot, controller, folder)
     before = state.library.data_key
     assert before is not None
     slots = KeySlots(folder / KEYS, Cost(passes=1, memory_kib=64))
     slots.add(before, "ab", "another four short words")
-    desk.run(
+    controller.run(
         lambda library: library.library.operators.add(Operator("ab", "A. Bauer", Role.CLINICIAN)), None, None, asker
     )
-    desk.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
-    assert not desk.state  # nothing is begun meanwhile
+    controller.change_key("ab", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+    assert not controller.state  # nothing is begun meanwhile
     qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == []
     assert not before
-    now = desk.state
+    now = controller.state
     assert now is not None
     assert now.library.data_key == slots.open("hk", PASSPHRASE)
     assert slots.codes == ("hk", "vi")
-    desk.run(lambda library: library.library.operators.list(), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: library.library.operators.list(), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     operators = asker.results[1]
     assert isinstance(operators, tuple)
@@ -450,13 +464,13 @@ def test_the_key_is_changed_and_who_left_opens_nothing(qtbot: QtBot, desk: Libra
 
 
 def test_a_change_of_the_key_that_is_refused_leaves_the_library_open(
-    qtbot: QtBot, desk: LibraryDesk, folder: Path
+    qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
     asker = Asker()
-    opened(qtbot, desk, folder)
+    opened(qtbot, controller, folder)
     with open_library(folder, PASSPHRASE, "hk"):
-        desk.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
+        controller.change_key("", asker.on_done, asker.on_failed, asker.on_progressed, asker)
         qtbot.waitUntil(lambda: bool(asker.results or asker.refusals), timeout=WAIT_MS)
     assert asker.refusals == [("Another program has the library open.", "Close it, then try again.")]
-    desk.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
+    controller.run(lambda library: len(library.library.operators.list()), asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: bool(asker.results), timeout=WAIT_MS)

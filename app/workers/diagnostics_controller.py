@@ -29,7 +29,7 @@ _log = logging.getLogger(__name__)
 FOLDER = "gaitwright-how-found"
 
 
-class HowFoundDesk(QObject):
+class DiagnosticsController(QObject):
     """Works for one page; a newer question takes the older one's place.
 
     Signals
