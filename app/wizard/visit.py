@@ -164,6 +164,17 @@ class Visit(QObject):
         return said.format(code=self.patient.told.code)
 
     @property
+    def cannot_calibrate(self) -> str:
+        """What is missing for standing or free motion, in a sentence; empty where nothing is."""
+        if self.session is None:
+            return tr("Type the patient's code first.")
+        if self.sensors.acquisition is None:
+            return tr("Choose the source of the sensors first.")
+        if not self.sensors.site_of and not self.sensors.is_left_to_motion:
+            return tr("Say first which sensor is worn where.")
+        return self.cannot_record
+
+    @property
     def choices(self) -> tuple[SourceChoice, ...]:
         """What this patient's sensors can be heard through."""
         return tuple(choice for choice in self._choices if self.may_simulate or not choice.is_simulated)

@@ -80,14 +80,7 @@ class StandStillStep(Step):
 
     @property
     def cannot_enter(self) -> str:
-        sensors = self._visit.sensors
-        if self._visit.session is None:
-            return tr("Type the patient's code first.")
-        if sensors.acquisition is None:
-            return tr("Choose the source of the sensors first.")
-        if not sensors.site_of and not sensors.is_left_to_motion:
-            return tr("Say first which sensor is worn where.")
-        return self._visit.cannot_record
+        return self._visit.cannot_calibrate
 
     @property
     def topic(self) -> str:
