@@ -22,7 +22,7 @@ from app.patient_words import patient_line, person, session_line
 from app.settings import Scheme, Settings
 from app.storage.exchange import import_session
 from app.theme import Look
-from app.widgets.action_bar import ActionBar, BarState, Verb
+from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
@@ -322,15 +322,15 @@ class Home(QWidget):
         if self.current is self.import_page:
             code = self.import_page.code.text.strip()
             words = tr("Import for {code}").format(code=code) if code else tr("Import")
-            return BarState(Verb(words, tr("Enter"), Icon.IMPORT, is_enabled=bool(code)))
+            return BarState(BarAction(words, tr("Enter"), Icon.IMPORT, is_enabled=bool(code)))
         if self.current is not self.page:
             return BarState()
-        new = Verb(tr("New patient"), tr("Ctrl N"), Icon.ADD)
+        new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
         patient = self._patient
         if patient is None:
             return BarState(quiet=(new,), has_back=False)
         words = tr("New session for {code}").format(code=patient.told.code)
-        begin = Verb(words, tr("Enter"), Icon.PLAY)
+        begin = BarAction(words, tr("Enter"), Icon.PLAY)
         note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
         return BarState(begin, quiet=(new,), note=note, has_back=False)
 

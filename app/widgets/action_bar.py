@@ -38,7 +38,7 @@ Row = Sequence[QWidget]
 
 
 @dataclass(frozen=True, slots=True)
-class Verb:
+class BarAction:
     """`is_wished`: pressing it is what we want, so it is filled. `key` is what its cap shows."""
 
     text: str
@@ -62,9 +62,9 @@ class RecordingNote:
 class BarState:
     """`others` stand left of the primary verb, `quiet` ones after Back; without Back the first takes its place."""
 
-    primary: Verb | None = None
-    others: tuple[Verb, ...] = ()
-    quiet: tuple[Verb, ...] = ()
+    primary: BarAction | None = None
+    others: tuple[BarAction, ...] = ()
+    quiet: tuple[BarAction, ...] = ()
     note: str = ""
     recording: RecordingNote | None = None
     has_back: bool = True
@@ -166,8 +166,8 @@ class ActionBar(Themed):
         sound = None
         if recording is not None:
             on = recording.has_sound
-            sound = Verb(tr("Sound on") if on else tr("Sound off"), "", Icon.SOUND if on else Icon.SOUND_OFF)
-        back = Verb(tr("Back"), "", Icon.BACK) if state.has_back and not is_inverse else None
+            sound = BarAction(tr("Sound on") if on else tr("Sound off"), "", Icon.SOUND if on else Icon.SOUND_OFF)
+        back = BarAction(tr("Back"), "", Icon.BACK) if state.has_back and not is_inverse else None
         self.back.show_verb(back, Kind.SECONDARY, is_inverse)
         self.sound.show_verb(sound, Kind.QUIET, is_inverse)
         for k, (button, verb) in enumerate(zip(self._quiet, _padded(state.quiet, len(self._quiet)), strict=True)):
@@ -294,14 +294,14 @@ class VerbButton(Button):
     def __init__(self, look: Look, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
         self._is_primary = is_primary
-        self._verb = Verb("")
+        self._verb = BarAction("")
         self.hide()
 
     @property
     def is_filled(self) -> bool:
         return self.face.kind is Kind.PRIMARY
 
-    def show_verb(self, verb: Verb | None, kind: Kind, is_inverse: bool) -> None:
+    def show_verb(self, verb: BarAction | None, kind: Kind, is_inverse: bool) -> None:
         self.setVisible(verb is not None)
         if verb is None:
             return
@@ -385,7 +385,7 @@ def _without_time(state: BarState) -> BarState:
     return replace(state, recording=replace(state.recording, elapsed_s=0.0))
 
 
-def _padded(verbs: tuple[Verb, ...], length: int) -> list[Verb | None]:
+def _padded(verbs: tuple[BarAction, ...], length: int) -> list[BarAction | None]:
     return [*verbs, *[None] * (length - len(verbs))]
 
 

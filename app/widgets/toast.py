@@ -12,7 +12,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme import Look
-from app.widgets.action_bar import Verb, VerbButton
+from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import Kind
 from app.widgets.text import Text
 from app.widgets.themed import Themed
@@ -52,7 +52,7 @@ class Toast(Themed):
     def offer(self, what: str) -> None:
         """Say what was done; what was said before can no longer be undone from here."""
         self._text.setText(what)
-        self.button.show_verb(Verb(tr("Undo"), tr("Ctrl Z")), Kind.QUIET, is_inverse=True)
+        self.button.show_verb(BarAction(tr("Undo"), tr("Ctrl Z")), Kind.QUIET, is_inverse=True)
         self.setAccessibleName(what)
         self._fit()
         self.show()

@@ -1,4 +1,4 @@
-"""What is every step of the wizard? A page, a row in the rail, a bar of verbs, and what keys do meanwhile."""
+"""What is every step of the wizard? A page, a row in the rail, a bar of actions, and what keys do meanwhile."""
 
 from typing import TYPE_CHECKING
 
@@ -99,13 +99,13 @@ class Step(QObject):
         raise NotImplementedError
 
     def on_primary(self) -> None:
-        """The primary verb, by mouse or Enter."""
+        """The primary action, by mouse or Enter."""
 
     def on_other(self, number: int) -> None:
-        """One of the verbs left of the primary one."""
+        """One of the actions left of the primary one."""
 
     def on_quiet(self, number: int) -> None:
-        """One of the quiet verbs after Back."""
+        """One of the quiet actions after Back."""
 
     def on_intent(self, intent: Intent) -> bool:
         """A key that the frame does not know what to do with; returns whether it meant something here."""

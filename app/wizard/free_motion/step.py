@@ -11,7 +11,7 @@ from app.acquisition.live_sensors import live_sensors
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
@@ -167,22 +167,22 @@ class FreeMotionStep(Step):
     def bar(self) -> BarState:
         price = price_of_stopping(self._motion, self._visit.prosthetic_sides, can_move=not self._is_played)
         words = {Side.LEFT: (tr("Repeat left"), "L"), Side.RIGHT: (tr("Repeat right"), "R")}
-        repeat = tuple(Verb(*words[side], Icon.REPEAT) for side in self._repeatable)
-        go_on = Verb(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
+        repeat = tuple(BarAction(*words[side], Icon.REPEAT) for side in self._repeatable)
+        go_on = BarAction(tr("Go on to walking"), tr("Enter"), Icon.NEXT)
         if not self._is_recording:
             if not self._has_moved:
-                begin = Verb(tr("Begin the free motion"), tr("Space"), Icon.PLAY)
+                begin = BarAction(tr("Begin the free motion"), tr("Space"), Icon.PLAY)
                 return BarState(primary=begin)
-            again = Verb(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
+            again = BarAction(tr("Record again"), tr("Space"), Icon.REPEAT, is_wished=False)
             return BarState(primary=go_on, others=(again,), quiet=repeat)
         if self._is_done:
             return BarState(primary=go_on, quiet=repeat, note=price or tr("Goes on by itself."))
         if self._is_played:
             if not self._plays_s:
                 return BarState(primary=go_on)
-            again = Verb(tr("Record again"), icon=Icon.REPEAT, is_wished=False)
+            again = BarAction(tr("Record again"), icon=Icon.REPEAT, is_wished=False)
             return BarState(primary=go_on, others=(again,), note=price)
-        stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+        stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
         return BarState(primary=stop, quiet=repeat, note=price)
 
     def on_primary(self) -> None:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject
 
 from app.patient_words import date
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
@@ -84,7 +84,7 @@ class PatientStep(Step):
         if self._taken_code:
             note = tr("Not saved: {code} is another patient's code.").format(code=self._taken_code)
         can_go_on = has_code and not self._taken_code
-        return BarState(primary=Verb(tr("Put on sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
+        return BarState(primary=BarAction(tr("Put on sensors"), tr("Enter"), is_enabled=can_go_on), note=note)
 
     def on_primary(self) -> None:
         patient = self._visit.patient

@@ -23,7 +23,7 @@ from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
 from app.storage.stored import Action, LibraryError
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -111,11 +111,11 @@ class ReportStep(Step):
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
-        save = Verb(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._can_save())
+        save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._can_save())
         if self._saved is None:
             return BarState(primary=save, note=tr("Only the code stands in it, no name."))
         note = tr("Saved as {folder}. Saving again asks where.").format(folder=self._saved.name)
-        show = Verb(tr("Open the folder"), is_wished=False)
+        show = BarAction(tr("Open the folder"), is_wished=False)
         return BarState(primary=replace(save, is_wished=False), others=(show,), note=note)
 
     def on_primary(self) -> None:

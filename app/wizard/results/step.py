@@ -13,7 +13,7 @@ from app.pages.sentence_page import SentencePage
 from app.reports.reference_bands import NOBODY, age_and_height
 from app.reports.visits import conditions_in_words, visits_by_condition
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
@@ -96,15 +96,15 @@ class ResultsStep(Step):
         if self._shown is None or not self._kept_walks:
             return BarState()
         if self._is_asking:
-            return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
-        quiet: tuple[Verb, ...] = ()
+            return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
+        quiet: tuple[BarAction, ...] = ()
         if not self._is_correcting:
             quiet = (
-                Verb(tr("Correct"), icon=Icon.REPEAT),
-                Verb(tr("Review in Rerun"), icon=Icon.PLAY),
-                Verb(tr("How was this found?"), icon=Icon.SEARCH),
+                BarAction(tr("Correct"), icon=Icon.REPEAT),
+                BarAction(tr("Review in Rerun"), icon=Icon.PLAY),
+                BarAction(tr("How was this found?"), icon=Icon.SEARCH),
             )
-        return BarState(primary=Verb(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
+        return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
 
     def on_primary(self) -> None:
         if self.bar().primary is not None:

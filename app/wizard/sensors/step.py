@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QFileDialog
 from app.pages.home_lists import PatientLine
 from app.patient_words import when
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
@@ -170,29 +170,29 @@ class SensorsStep(Step):
             return BarState()
         if self._telling.is_on:
             is_whole = self._telling.columns is not None
-            return BarState(primary=Verb(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
+            return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
         if self._is_choosing:
             is_any = self.page.stored.session is not None
-            return BarState(primary=Verb(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
+            return BarState(primary=BarAction(tr("Replay it"), tr("Enter"), Icon.PLAY, is_enabled=is_any))
         go_on = tr("Stand still")
         if sensors.acquisition is None:
             return BarState(note="" if sensors.is_searching else tr("Choose where sensors are looked for."))
         if reason := self._visit.cannot_record:
-            other = Verb(tr("Choose other sensors"), tr("Enter"), Icon.REPEAT)
-            demonstration = Verb(tr("Begin with a demonstration patient"), is_wished=False)
+            other = BarAction(tr("Choose other sensors"), tr("Enter"), Icon.REPEAT)
+            demonstration = BarAction(tr("Begin with a demonstration patient"), is_wished=False)
             return BarState(primary=other, others=(demonstration,), note=reason)
         if (silent := self._silent_site) is not None:
-            again = Verb(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
+            again = BarAction(tr("Reconnect {site}").format(site=name_of(silent)), tr("Enter"), Icon.REPEAT)
             lost = tr(" and ").join(name_of(one) for one in Joint if silent in (one.proximal, one.distal))
-            without = Verb(tr("Go on without {joints}").format(joints=lost), is_wished=False)
+            without = BarAction(tr("Go on without {joints}").format(joints=lost), is_wished=False)
             return BarState(primary=again, others=(without,) if sensors.joints else ())
         if sensors.is_left_to_motion:
-            return BarState(primary=Verb(go_on, tr("Enter")), note=tr("The free motion tells who wears what."))
+            return BarState(primary=BarAction(go_on, tr("Enter")), note=tr("The free motion tells who wears what."))
         if not sensors.joints:
             note = tr("Two sensors that share a joint are needed: thigh and shank, or shank and foot.")
-            return BarState(primary=Verb(go_on, tr("Enter"), is_enabled=False), note=note)
+            return BarState(primary=BarAction(go_on, tr("Enter"), is_enabled=False), note=note)
         is_whole = len(sensors.site_of) == len(Site)
-        return BarState(primary=Verb(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
+        return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:
         if self._telling.is_on:

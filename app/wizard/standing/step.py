@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QTimer
 from app import sounds
 from app.sounds import Sound
 from app.theme import Look
-from app.widgets.action_bar import BarState, Verb
+from app.widgets.action_bar import BarAction, BarState
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -115,15 +115,15 @@ class StandStillStep(Step):
 
     def bar(self) -> BarState:
         space, enter = tr("Space"), tr("Enter")
-        again = Verb(tr("Start count again"), space, Icon.REPEAT, is_wished=False)
-        go_on = Verb(tr("Go on to free motion"), enter, Icon.NEXT)
+        again = BarAction(tr("Start count again"), space, Icon.REPEAT, is_wished=False)
+        go_on = BarAction(tr("Go on to free motion"), enter, Icon.NEXT)
         if self._phase is StandPhase.COUNTING:
             return BarState(primary=again, note=tr("Goes on by itself when it is done."))
         if self._phase is StandPhase.DONE:
             return BarState(primary=go_on, others=(again,))
         if self._phase is StandPhase.SKIPPED:
             return BarState(primary=go_on)
-        return BarState(primary=Verb(tr("Start the count"), space, Icon.PLAY))
+        return BarState(primary=BarAction(tr("Start the count"), space, Icon.PLAY))
 
     def on_primary(self) -> None:
         if self._phase in (StandPhase.DONE, StandPhase.SKIPPED):

@@ -11,7 +11,7 @@ from app import sounds
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import Look
-from app.widgets.action_bar import BarState, RecordingNote, Verb
+from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -172,7 +172,7 @@ class WalkingStep(Step):
             acquisition = self._visit.sensors.acquisition
             elapsed_s = 0.0 if acquisition is None else max(0.0, acquisition.now_s - recordings.ongoing.began_s)
             return BarState(
-                primary=Verb(tr("Stop walk"), tr("Space"), Icon.STOP),
+                primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
                     tr("Recording {label}").format(label=recordings.ongoing.told.condition),
                     " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
@@ -181,15 +181,17 @@ class WalkingStep(Step):
                 ),
                 has_back=False,
             )
-        start = Verb(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
+        start = BarAction(tr("Start walk"), tr("Space"), Icon.PLAY, is_enabled=self._can_start)
         if recordings.is_stopping:
             return BarState(primary=start, note=tr("The walk is being read back."))
         if self._asked is not None:
-            both = Verb(tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start)
+            both = BarAction(
+                tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start
+            )
             return BarState(primary=both, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
         if any(recording.told.is_kept for recording in recordings.walks):
-            again = Verb(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
-            return BarState(primary=Verb(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
+            again = BarAction(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
+            return BarState(primary=BarAction(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
         note = tr("Next: {label}").format(label=self._label)
         if not recordings.has_moved:
             note = tr("Without a free motion, angles are poor or missing.")

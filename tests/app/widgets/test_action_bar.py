@@ -7,11 +7,11 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.theme import LIGHT, Look, load_fonts
-from app.widgets.action_bar import ActionBar, BarState, RecordingNote, Verb, clock_time
+from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
 from app.widgets.icons import Icon
 from tests.app.room import settle, words_cut
 
-STOP = Verb("Stop walk", "Space", Icon.STOP)
+STOP = BarAction("Stop walk", "Space", Icon.STOP)
 
 
 def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
@@ -33,15 +33,15 @@ def ground(bar: ActionBar) -> QColor:
 
 
 def test_a_verb_is_filled_only_if_pressing_it_is_wished(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Go on to walking", "Enter")))
+    bar.show_state(BarState(BarAction("Go on to walking", "Enter")))
     assert bar.primary.is_filled
-    bar.show_state(BarState(Verb("Stop early", "Space", is_wished=False)))
+    bar.show_state(BarState(BarAction("Stop early", "Space", is_wished=False)))
     assert not bar.primary.is_filled
 
 
 def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> None:
-    quiet = (Verb("Repeat one leg"), Verb("Swap"))
-    bar.show_state(BarState(Verb("Go on"), others=(Verb("Keep"), Verb("Discard")), quiet=quiet))
+    quiet = (BarAction("Repeat one leg"), BarAction("Swap"))
+    bar.show_state(BarState(BarAction("Go on"), others=(BarAction("Keep"), BarAction("Discard")), quiet=quiet))
     told: list[tuple[str, int]] = []
     bar.back_pressed.connect(lambda: told.append(("back", 0)))
     bar.primary_pressed.connect(lambda: told.append(("primary", 0)))
@@ -53,10 +53,10 @@ def test_each_verb_tells_that_it_was_pressed(bar: ActionBar, qtbot: QtBot) -> No
 
 
 def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Keep 18 strides", "K")))
+    bar.show_state(BarState(BarAction("Keep 18 strides", "K")))
     assert bar.primary.accessibleName() == "Keep 18 strides"
     assert bar.primary.accessibleDescription() == "Key K"
-    bar.show_state(BarState(Verb("Write report")))
+    bar.show_state(BarState(BarAction("Write report")))
     assert bar.primary.accessibleName() == "Write report"
     assert bar.primary.accessibleDescription() == ""
 
@@ -64,7 +64,7 @@ def test_words_of_a_screen_reader_follow_the_verb(bar: ActionBar) -> None:
 def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
     told: list[int] = []
     bar.primary_pressed.connect(lambda: told.append(1))
-    bar.show_state(BarState(Verb("Stand still", is_enabled=False), note="Two sensors are still to be placed."))
+    bar.show_state(BarState(BarAction("Stand still", is_enabled=False), note="Two sensors are still to be placed."))
     QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)
     assert told == []
 
@@ -72,12 +72,12 @@ def test_a_verb_that_is_off_cannot_be_pressed(bar: ActionBar) -> None:
 def test_the_bar_is_inverse_while_recording_and_at_no_other_time(bar: ActionBar) -> None:
     told: list[bool] = []
     bar.recording_changed.connect(told.append)
-    bar.show_state(BarState(Verb("Start walk")))
+    bar.show_state(BarState(BarAction("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
     bar.show_state(recording())
     assert ground(bar) == QColor(LIGHT.inv)
     assert bar.back.isHidden()
-    bar.show_state(BarState(Verb("Start walk")))
+    bar.show_state(BarState(BarAction("Start walk")))
     assert ground(bar) == QColor(LIGHT.surface)
     assert told == [True, False]
 
@@ -101,21 +101,21 @@ def test_the_bell_tells_whether_it_is_on(bar: ActionBar, qtbot: QtBot) -> None:
 
 
 def test_without_back_the_first_quiet_verb_stands_in_its_place(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Go on"), quiet=(Verb("New patient"),)))
+    bar.show_state(BarState(BarAction("Go on"), quiet=(BarAction("New patient"),)))
     back = bar.back.x()
-    bar.show_state(BarState(Verb("Go on"), quiet=(Verb("New patient"),), has_back=False))
+    bar.show_state(BarState(BarAction("Go on"), quiet=(BarAction("New patient"),), has_back=False))
     assert bar.quiet[0].x() == back
 
 
 def test_the_focus_goes_to_the_primary_verb_where_its_button_goes(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Keep"), others=(Verb("Discard"),)))
+    bar.show_state(BarState(BarAction("Keep"), others=(BarAction("Discard"),)))
     bar.others[0].setFocus()
-    bar.show_state(BarState(Verb("Start walk")))
+    bar.show_state(BarState(BarAction("Start walk")))
     assert bar.focusWidget() is bar.primary
 
 
 def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Start walk", "Space")))
+    bar.show_state(BarState(BarAction("Start walk", "Space")))
     bar.primary.setFocus()
     bar.show_state(recording())
     assert bar.focusWidget() is bar.primary
@@ -124,7 +124,9 @@ def test_a_button_keeps_the_focus_when_its_word_is_another(bar: ActionBar) -> No
 @pytest.mark.parametrize("width", [1064, 896, 736, 368])
 @pytest.mark.parametrize("note", ["", "Stopping now leaves the left knee with range only, without absolute angles."])
 def test_nothing_is_cut_and_nothing_overlaps(bar: ActionBar, width: int, note: str) -> None:
-    state = BarState(Verb("Reconnect R foot", "Enter"), (Verb("Go on without"),), (Verb("Repeat one leg"),), note)
+    state = BarState(
+        BarAction("Reconnect R foot", "Enter"), (BarAction("Go on without"),), (BarAction("Repeat one leg"),), note
+    )
     bar.show_state(state)
     bar.resize(width, bar.height())
     settle()
@@ -140,7 +142,7 @@ def test_a_time_is_minutes_and_seconds(elapsed_s: float, shown: str) -> None:
 
 
 def test_a_double_click_is_one_press(bar: ActionBar) -> None:
-    bar.show_state(BarState(Verb("Start walk", "Space", Icon.PLAY)))
+    bar.show_state(BarState(BarAction("Start walk", "Space", Icon.PLAY)))
     pressed: list[None] = []
     bar.primary_pressed.connect(lambda: pressed.append(None))
     QTest.mouseClick(bar.primary, Qt.MouseButton.LeftButton)

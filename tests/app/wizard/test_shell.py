@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.sentence_page import SentencePage
 from app.theme import Look, load_fonts
-from app.widgets.action_bar import BarState, RecordingNote, Verb
+from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.icons import Icon
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
@@ -49,20 +49,20 @@ def fine() -> dict[Site, SensorTile]:
 
 def stop_early() -> BarState:
     note = tr("Stopping now leaves the left knee with range only, without absolute angles.")
-    stop = Verb(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
-    return BarState(stop, quiet=(Verb(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
+    stop = BarAction(tr("Stop early"), tr("Space"), Icon.STOP, is_wished=False)
+    return BarState(stop, quiet=(BarAction(tr("Repeat one leg"), icon=Icon.REPEAT),), note=note)
 
 
 def recording() -> BarState:
     title, note = (tr(words) for words in RECORDING)
     return BarState(
-        Verb(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
+        BarAction(tr("Stop walk"), tr("Space"), Icon.STOP), recording=RecordingNote(title, note, 17.0, has_sound=True)
     )
 
 
 def reconnect() -> BarState:
-    wished = Verb(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
-    return BarState(wished, others=(Verb(tr("Go on without right ankle")),))
+    wished = BarAction(tr("Reconnect R foot"), tr("Enter"), Icon.REPEAT)
+    return BarState(wished, others=(BarAction(tr("Go on without right ankle")),))
 
 
 def filled(look: Look) -> WizardShell:
