@@ -14,16 +14,17 @@ from app.widgets.icons import Icon
 from app.wording import tr
 
 HEIGHT = 48
+CHOICES = (Kind.SEGMENT, Kind.CHIP)  # Enter belongs to the page they are on
 
 
-class FacedButton(QPushButton):
-    """What all our buttons have in common: the style paints their face. `key` is what a cap shows."""
+class Button(QPushButton):
+    """`key` is what the cap shows; the shortcut itself belongs to the window, which knows when it holds."""
 
     def __init__(
         self,
         look: Look,
         text: str,
-        kind: Kind,
+        kind: Kind = Kind.SECONDARY,
         icon: Icon | None = None,
         key: str = "",
         height: float = HEIGHT,
@@ -32,10 +33,15 @@ class FacedButton(QPushButton):
         super().__init__(text, parent)
         self._look, self.face = look, ButtonFace(kind, height, icon, key)
         self.setAccessibleName(text)
+        self.setAccessibleDescription(tr("Key {key}").format(key=key) if key else "")
         self.setAutoDefault(False)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    @property
+    def key(self) -> str:
+        return self.face.key
 
     def set_face(self, **changes: Any) -> None:
         """Show another kind, icon, key, note or height."""
@@ -50,29 +56,9 @@ class FacedButton(QPushButton):
         self.initStyleOption(option)  # Qt would keep the size while face and check change
         return self.style().sizeFromContents(QStyle.ContentsType.CT_PushButton, option, QSize(), self)
 
-
-class Button(FacedButton):
-    """Pressed by Enter and Space; a shortcut itself belongs to the window, which knows when it holds."""
-
-    def __init__(
-        self,
-        look: Look,
-        text: str,
-        kind: Kind = Kind.SECONDARY,
-        icon: Icon | None = None,
-        key: str = "",
-        height: float = HEIGHT,
-        parent: QWidget | None = None,
-    ) -> None:
-        super().__init__(look, text, kind, icon, key, height, parent)
-        self.setAccessibleDescription(tr("Key {key}").format(key=key) if key else "")
-
-    @property
-    def key(self) -> str:
-        return self.face.key
-
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+        is_enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        if is_enter and self.face.kind not in CHOICES:
             self.click()
             return
         super().keyPressEvent(event)

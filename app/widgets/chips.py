@@ -7,7 +7,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import Look
-from app.widgets.button import FacedButton, Kind
+from app.widgets.button import Button, Kind
 from app.widgets.themed import Themed
 
 HEIGHT = 44
@@ -122,7 +122,7 @@ class Chips(Themed):
         self.turned.emit()
 
 
-class _Chip(FacedButton):
+class _Chip(Button):
     def __init__(self, look: Look, word: str, group: Chips) -> None:
         super().__init__(look, word, Kind.CHIP, height=HEIGHT, parent=group)
         self._group = group
