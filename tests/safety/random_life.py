@@ -90,7 +90,9 @@ class RandomLife(QObject):
     def fault(self, kind: str, what: str) -> None:
         if (key := f"{kind} {what[-300:]}") not in self._told:
             self._told.add(key)
-            told = {"fault": kind, "step": self._number, "what": what, "before": list(self._before)}
+            screen, home = self._window.screens.currentWidget(), self._window.home
+            seen = {"page": type(screen).__name__, "home says": "" if home is None else home.banner.text}
+            told = {"fault": kind, "step": self._number, "what": what, **seen, "before": list(self._before)}
             print(json.dumps(told), flush=True)
 
     def step(self) -> None:
