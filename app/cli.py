@@ -325,13 +325,17 @@ def _write_analysis(
     has_log: bool = True,
     has_report: bool = True,
 ) -> "Analysis":
-    from app.reports.result_folder import write_results
+    from app.reports.result_folder import LOG, write_results
     from core.analysis import analyse
     from core.results import Method
 
     analysis = analyse(session, Method(method), tau_s, progress)
     progress(1.0, "writing")
-    write_results(session, analysis, folder, has_log=has_log)
+    write_results(session, analysis, folder)
+    if has_log:
+        from app.review.rerun_log import write_log
+
+        write_log(session, analysis, folder / LOG)
     if has_report:
         from app.reports.patient_report.report_file import write_report
 

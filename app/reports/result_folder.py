@@ -46,8 +46,8 @@ TAKEN = tuple(
 )
 
 
-def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log: bool) -> None:
-    """Write every file of an analysis into `folder`, which is there.
+def write_results(session: Session, analysis: Analysis, folder: Path) -> None:
+    """Write every table of an analysis and its summary into `folder`, which is there.
 
     Raises
     ------
@@ -67,10 +67,6 @@ def write_results(session: Session, analysis: Analysis, folder: Path, *, has_log
         write_table(*peak_table(analysis.recordings), folder / PEAKS)
     _write_comparisons(session, analysis, folder)
     describe_tables(analysis, folder)
-    if has_log:
-        from app.review.rerun_log import write_log  # here, not above: Rerun takes longer to load than to write
-
-        write_log(session, analysis, folder / LOG)
     write_summary(analysis, folder / SUMMARY)
 
 

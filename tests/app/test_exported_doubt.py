@@ -24,7 +24,8 @@ from app.pages.result_page import ResultPage
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.reference_bands import age_and_height
-from app.reports.result_folder import write_results
+from app.reports.result_folder import LOG, write_results
+from app.review.rerun_log import write_log
 from core.analysis import analyse
 from core.body import Side, Site
 from core.results import Analysis
@@ -131,7 +132,8 @@ def analysed(case: Case) -> tuple[Session, Analysis]:
 def out(analysed: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of results of a case, with every format in it."""
     folder = tmp_path_factory.mktemp("out")
-    write_results(*analysed, folder, has_log=True)
+    write_results(*analysed, folder)
+    write_log(*analysed, folder / LOG)
     export_from_folder(*analysed, list(Format), folder, is_identified=True)
     return folder
 

@@ -188,7 +188,7 @@ def try_names(count: int) -> Trial:
         if alive_in(pdf):
             trial.alive.append(name)
         with tempfile.TemporaryDirectory() as folder:
-            write_results(request.visit.session, request.visit.analysis, Path(folder), has_log=False)
+            write_results(request.visit.session, request.visit.analysis, Path(folder))
             if formulas_in(Path(folder)):
                 trial.formulas.append(name)
     return trial

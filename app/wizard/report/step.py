@@ -303,7 +303,7 @@ class ReportStep(Step):
             from app.exports.exports import Format, export_from_library
             from app.reports.patient_report.document import make_report
             from app.reports.patient_report.report_file import write_visits
-            from app.reports.result_folder import REPORT, check_place, write_results, written_beside
+            from app.reports.result_folder import LOG, REPORT, check_place, write_results, written_beside
 
             typed = [Typed(one) for one in sorted(kept)]
             report(0.0, tr("writing"))
@@ -312,7 +312,11 @@ class ReportStep(Step):
                 opened.library.audit.note(Action.EXPORT, about("session", session_id), format="report")
                 with written_beside(out) as beside:
                     if "csv" in chosen or "rrd" in chosen:
-                        write_results(session, analysis, beside, has_log="rrd" in chosen)
+                        write_results(session, analysis, beside)
+                    if "rrd" in chosen:
+                        from app.review.rerun_log import write_log  # Rerun takes longer to load than to write
+
+                        write_log(session, analysis, beside / LOG)
                     if request is not None:
                         (beside / REPORT).write_bytes(make_report(request))
                         if "csv" in chosen:

@@ -37,5 +37,5 @@ def visit() -> tuple[Session, Analysis]:
 def tables(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of results with its CSV files and summary.json."""
     folder = tmp_path_factory.mktemp("tables")
-    write_results(*visit, folder, has_log=False)
+    write_results(*visit, folder)
     return folder

@@ -28,7 +28,7 @@ def folder(simulated: SimulatedSession, tmp_path_factory: pytest.TempPathFactory
     place = tmp_path_factory.mktemp("no_zero")
     analysis = analyse(simulated.session)
     export_from_folder(simulated.session, analysis, list(Format), place, is_identified=True)
-    write_results(simulated.session, analysis, place, has_log=False)
+    write_results(simulated.session, analysis, place)
     return place
 
 

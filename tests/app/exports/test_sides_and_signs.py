@@ -64,7 +64,7 @@ def truth() -> RecordingTruth:
 def exported(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("exported")
     export_from_folder(*visit, list(Format), folder, is_identified=True)
-    write_results(*visit, folder, has_log=False)
+    write_results(*visit, folder)
     return folder
 
 

@@ -30,7 +30,7 @@ def visit() -> tuple[Session, Analysis]:
 @pytest.fixture(scope="module")
 def out(visit: tuple[Session, Analysis], tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("out")
-    write_results(*visit, folder, has_log=False)
+    write_results(*visit, folder)
     return folder
 
 
@@ -63,7 +63,7 @@ def test_every_column_of_every_table_is_told_of_and_no_other(out: Path) -> None:
 def test_the_tables_of_an_earlier_visit_are_told_of_once_they_are_there(
     visit: tuple[Session, Analysis], out: Path, tmp_path: Path
 ) -> None:
-    write_results(*visit, tmp_path, has_log=False)
+    write_results(*visit, tmp_path)
     found = comparisons_of([visit, visit])[-1]
     write_differences(rows_of(found), tmp_path / VISITS)
     write_compared_cycles(found.parts, tmp_path / VISITS_CYCLES)

@@ -31,7 +31,7 @@ NUMBER = re.compile(rf"[{MINUS}]?\d+(?:\.\d+)?")
 @pytest.fixture(scope="module")
 def results(demonstration: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("results")
-    write_results(demonstration.session, demonstration.analysis, folder, has_log=False)
+    write_results(demonstration.session, demonstration.analysis, folder)
     return folder
 
 
@@ -109,7 +109,7 @@ def test_every_number_in_a_table_is_in_a_file(request_of_demonstration: ReportRe
 
 def test_every_number_of_one_leg_alone_is_in_a_file(request_of_one_leg: ReportRequest, tmp_path: Path) -> None:
     visit = request_of_one_leg.visit
-    write_results(visit.session, visit.analysis, tmp_path, has_log=False)
+    write_results(visit.session, visit.analysis, tmp_path)
     numbers, files = numbers_of(report_data(request_of_one_leg)), known(tmp_path)
     assert len(numbers) > 50
     assert [(where, number) for where, number in numbers if number not in files] == []
@@ -162,7 +162,7 @@ def test_every_number_and_curve_of_a_comparison_is_in_a_file(
     request_of_alignments: ReportRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     visit = request_of_alignments.visit
-    write_results(visit.session, visit.analysis, tmp_path, has_log=False)
+    write_results(visit.session, visit.analysis, tmp_path)
     numbers, files = numbers_of(report_data(request_of_alignments)), known(tmp_path, "walk_3")
     assert len(numbers) > 200
     assert [(where, number) for where, number in numbers if number not in files] == []
