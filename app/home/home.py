@@ -115,6 +115,7 @@ class Home(QWidget):
         self._add_page(made.page)
         made.told.connect(self.banner.tell)
         made.restored.connect(self.refresh)
+        self.deleting.undone.connect(made.read_deleted)
         if self._state is not None:
             made.show_library(self._state)
         return made

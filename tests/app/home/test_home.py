@@ -172,6 +172,18 @@ def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
     assert home.bar.primary.text() == "New session for P-0163"
 
 
+def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_any_more(
+    qtbot: QtBot, home: Home
+) -> None:
+    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
+    home.show_settings()
+    rows = home.settings.page._deleted_rows
+    qtbot.waitUntil(lambda: rows.count() == 1, timeout=WAIT_MS)
+    home.toast.undo()
+    qtbot.waitUntil(lambda: rows.count() == 0, timeout=WAIT_MS)
+
+
 def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home: Home) -> None:
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     home.page.sessions.setFocus()
