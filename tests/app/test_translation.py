@@ -22,7 +22,7 @@ SPOKEN = {"tr", "tr_n", "later"}
 # what takes strings that nobody sees: logs, keys, signals, names of attributes and threads
 UNSEEN = re.compile(
     r"(^|\.)(_log\.\w+|QKeySequence|QShortcut|Signal|Thread|getattr|import_module|strftime"
-    r"|setObjectName|setStyle|setStyleSheet|takes\.mark)$"  # a mark is data
+    r"|setObjectName|setStyle|setStyleSheet|recordings\.mark)$"  # a mark is data
 )
 UNSEEN_ERRORS = re.compile(
     r"^(ValueError|TypeError|RuntimeError|KeyError|LookupError|AssertionError|NotImplementedError)"
