@@ -436,7 +436,7 @@ class SessionRecordings(QObject):
     def _on_waited(self) -> None:
         self._go_on()
         self.changed.emit()
-        self.refused.emit(tr("The library does not answer yet."), self._where(is_tried_again=True))
+        self.refused.emit(tr("The recording is not read back yet."), self._where(is_tried_again=True))
 
     def _on_not_halted(self, _what: str, _remedy: str) -> None:
         """Whoever reads it back meets the same, and tells."""

@@ -58,7 +58,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
             qtbot.waitUntil(lambda: not recordings.is_recording, timeout=WAIT_MS)
             assert acquisition._writer is None
         assert ended == []
-        assert [what for what, _ in told] == ["The library does not answer.", "The library does not answer yet."] * 2
+        assert [what for what, _ in told] == ["The library does not answer.", "The recording is not read back yet."] * 2
         assert ["written to the disk all the same" in then for _, then in told] == [True, False] * 2
         assert ["safe on the disk" in then for _, then in told] == [False, True] * 2
     finally:
