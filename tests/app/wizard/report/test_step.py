@@ -131,7 +131,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert shown["patient"] in said
     assert "Qx1 knee" in said
     assert "Qx2 stick" not in said
-    assert patient.told.code not in said
+    assert patient.told.code not in said.replace(shown["patient"], "")  # which begins as the code does
 
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep) -> None:
