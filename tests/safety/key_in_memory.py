@@ -30,6 +30,7 @@ from app.storage.database.ids import uuid7
 from app.storage.journal.disk import Room
 from app.storage.journal.writer import JournalWriter
 from app.storage.keys import KeySlots
+from app.storage.layout import KEYS
 from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
