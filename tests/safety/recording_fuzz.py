@@ -173,7 +173,7 @@ class _Clock:
 
 
 class _Greeted:
-    """A driver's `Dialect` that knows its sensor, and the `Channel` to it that gives one piece at a time."""
+    """A driver's `SensorProtocol` that knows its sensor, and the `Channel` to it that gives one piece at a time."""
 
     version, place, serial = "1", "", ""
 
