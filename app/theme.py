@@ -7,14 +7,9 @@ from PySide6.QtCore import QByteArray, QEvent, QObject, Qt, Signal
 from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
 from PySide6.QtWidgets import QApplication, QStyle, QToolTip, QWidget
 
-from app.colours import DARK as DARK
-from app.colours import LIGHT as LIGHT
-from app.colours import Colours as Colours
+from app.colours import DARK, LIGHT, Colours
 from app.style import ControlStyle
-from app.tokens import CARD_RADIUS as CARD_RADIUS
-from app.tokens import CHIP_RADIUS as CHIP_RADIUS
-from app.tokens import CONTROL_RADIUS as CONTROL_RADIUS
-from app.tokens import Theme as Theme
+from app.tokens import Theme
 
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
 

@@ -15,6 +15,7 @@ from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
+from app.icons import Icon
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
@@ -25,7 +26,6 @@ from app.theme import Look
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
-from app.widgets.icons import Icon
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below

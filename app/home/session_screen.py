@@ -18,12 +18,12 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.banner import Banner
 from app.widgets.button import Button, Kind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
-from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.start_pages import EmptyPage, WorkingPage
 from app.widgets.text import Text

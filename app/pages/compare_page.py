@@ -6,6 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.pages.compared_words import (
     MINUS,
     change_in_words,
@@ -45,7 +46,7 @@ from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.difference_table import DifferenceTable
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.field import Field
-from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle

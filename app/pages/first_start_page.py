@@ -9,13 +9,13 @@ from collections.abc import Callable
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 
+from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.field import Field
-from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr, tr_n
 

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.body_words import segment_name
+from app.icons import SEVERITY_ICONS, Icon
 from app.pages.sentence_page import SentencePage
 from app.plots.cost_map import CostMap
 from app.plots.cycle_chart import SIMULATED
@@ -28,7 +29,6 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.findings_list import ORDER, FindingRow
-from app.widgets.icons import SEVERITY_ICONS, Icon
 from app.widgets.line_keys import LineKeys
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.icons import Icon
 from app.pages.help_reader import HelpReader
 from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
 from app.theme import Look
@@ -26,7 +27,6 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.icons import Icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n

@@ -11,8 +11,9 @@ from PySide6.QtCore import QAbstractListModel, QModelIndex, QPersistentModelInde
 from PySide6.QtGui import QColor, QFocusEvent, QFont, QFontMetrics, QKeyEvent, QPainter
 from PySide6.QtWidgets import QAbstractItemView, QListView, QStyle, QStyledItemDelegate, QStyleOptionViewItem
 
-from app.theme import CONTROL_RADIUS, Look
-from app.widgets.icons import Icon, paint_icon
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
 from app.widgets.text import REGULAR, SEMIBOLD
 
 ROW = 72

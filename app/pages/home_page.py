@@ -7,11 +7,11 @@ from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
+from app.icons import Icon, paint_icon
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
@@ -16,7 +17,7 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.toggle import Toggle
 from app.wording import tr

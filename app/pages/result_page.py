@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.pages.compare_page import ComparePage
 from app.pages.cycle_page import CyclePage
 from app.pages.strides_page import StridesPage
@@ -21,7 +22,6 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.facts_table import FactsTable
 from app.widgets.findings_list import FindingsList
-from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

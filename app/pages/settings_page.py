@@ -7,13 +7,13 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.icons import Icon
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed

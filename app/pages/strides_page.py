@@ -6,11 +6,11 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QWidget
 
+from app.icons import Icon
 from app.reports.walk_figures import by_hand_in_words
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.icons import Icon
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import NAMES, tr

@@ -12,6 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
+from app.icons import Icon
 from app.plots.axes import (
     ABOUT_MEAN_DEG,
     ANKLE_DEG,
@@ -40,7 +41,7 @@ from app.reports.walk_figures import (
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.withheld_panel import WithheldPanel

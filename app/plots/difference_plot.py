@@ -8,10 +8,10 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
+from app.icons import Icon, paint_icon
 from app.plots.compared_chart import DOT, paint_letter
 from app.theme import Look
 from app.widgets.chip import CHIP, paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed

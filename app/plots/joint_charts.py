@@ -7,6 +7,7 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
+from app.icons import Icon
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.axes import (
     ANKLE_DEG,
@@ -23,7 +24,7 @@ from app.plots.phase_lanes import PhaseFrame
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, name_of, tr

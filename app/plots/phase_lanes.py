@@ -13,7 +13,8 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme import Look, Theme
+from app.theme import Look
+from app.tokens import Theme
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, Chip, paint_chip
 from app.widgets.text import MEDIUM, SEMIBOLD, Text

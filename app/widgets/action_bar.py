@@ -18,10 +18,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
+from app.icons import Icon, paint_icon
 from app.theme import Look
 from app.widgets.button import HEIGHT, Button, Kind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

@@ -4,9 +4,9 @@ from PySide6.QtCore import QPointF, QRectF, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
+from app.icons import Icon, paint_icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr

@@ -7,10 +7,10 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButton, QWidget
 
+from app.icons import Icon
 from app.style import ButtonFace
 from app.style import Kind as Kind
 from app.theme import Look
-from app.widgets.icons import Icon
 from app.wording import tr
 
 HEIGHT = 48

@@ -4,7 +4,8 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QVBoxLayout
 
-from app.theme import CARD_RADIUS, Look
+from app.theme import Look
+from app.tokens import CARD_RADIUS
 from app.widgets.themed import Themed
 
 

@@ -4,7 +4,8 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import CHIP_RADIUS, Look, Theme
+from app.theme import Look
+from app.tokens import CHIP_RADIUS, Theme
 from app.widgets.text import SEMIBOLD
 from app.wording import tr
 from core.body import Side

@@ -13,10 +13,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.icons import Icon, paint_icon
 from app.theme import Look
 from app.widgets.bare_table import ROW, BareTable
 from app.widgets.chip import CHIP, paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import later, name_of, tr
 from core.body import Joint, Side

@@ -18,10 +18,11 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
+from app.icons import Icon
 from app.style import IS_WRONG
 from app.theme import Look
 from app.widgets.chip import paint_chip
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr

@@ -5,8 +5,9 @@ from collections.abc import Sequence
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
+from app.icons import SEVERITY_ICONS, Icon
 from app.theme import Look
-from app.widgets.icons import SEVERITY_ICONS, Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import later, sentence, tr
 from core.findings import Finding, Severity

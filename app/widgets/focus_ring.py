@@ -5,7 +5,8 @@ from PySide6.QtGui import QPainter, QPaintEvent, QRegion
 from PySide6.QtWidgets import QApplication, QWidget
 from shiboken6 import isValid
 
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
 
 DISTANCE = 3
 WIDTH = 2

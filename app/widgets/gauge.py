@@ -9,9 +9,10 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import joint_name
-from app.theme import CARD_RADIUS, Look
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CARD_RADIUS
 from app.widgets.chip import paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording import name_of, tr
 from core.body import Joint, Side

@@ -4,7 +4,8 @@ from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import CHIP_RADIUS, Look
+from app.theme import Look
+from app.tokens import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.stopwatch import Stopwatch
 from app.widgets.strip_button import StripButton

@@ -6,8 +6,9 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import CARD_RADIUS, Look
-from app.widgets.icons import Icon, paint_icon
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CARD_RADIUS
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr
 

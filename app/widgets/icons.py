@@ -4,9 +4,7 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.icons import SEVERITY_ICONS as SEVERITY_ICONS
-from app.icons import Icon as Icon
-from app.icons import paint_icon as paint_icon
+from app.icons import Icon, paint_icon
 from app.theme import Look
 
 

@@ -16,8 +16,9 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
-from app.widgets.icons import Icon, paint_icon
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr

@@ -3,9 +3,9 @@
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
-from app.widgets.icons import Icon
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, tr

@@ -10,9 +10,10 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme import CONTROL_RADIUS, Look
+from app.icons import Icon
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
 from app.widgets.header import Mark
-from app.widgets.icons import Icon
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed

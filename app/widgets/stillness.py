@@ -9,9 +9,10 @@ from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import segment_name
-from app.theme import CHIP_RADIUS, Look
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wording import tr
 from core.body import Site

@@ -27,9 +27,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.icons import Icon, paint_icon
 from app.theme import Look
 from app.widgets.chip import CHIP, paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.text import MEDIUM
 from app.wording import capitalised, later, side_name, tr
 from core.body import Side

@@ -5,7 +5,8 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.gates_in_words import verdict_word
-from app.theme import CONTROL_RADIUS, Look
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
 from app.widgets.chip import Chip
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed

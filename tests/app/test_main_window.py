@@ -16,6 +16,7 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, 
 from pytestqt.qtbot import QtBot
 
 from app import main_window
+from app.colours import DARK, LIGHT
 from app.home import session_screen
 from app.home.entry import SHORTEST
 from app.main_window import MainWindow
@@ -31,7 +32,7 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import DARK, LIGHT, Look, load_fonts
+from app.theme import Look, load_fonts
 from app.wording import use_language
 from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session

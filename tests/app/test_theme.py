@@ -18,13 +18,13 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
+from app.icons import Icon
 from app.style import IS_WRONG
 from app.theme import Look, load_fonts
 from app.widgets.button import Button, Kind
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.field import Field
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.toggle import Toggle

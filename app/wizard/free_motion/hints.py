@@ -4,9 +4,9 @@ import math
 from collections.abc import Collection
 from dataclasses import dataclass, replace
 
+from app.icons import Icon
 from app.widgets.gauge import AXIS_FROM_DEG, CENTRE_FROM_MM, two_digits
 from app.widgets.hint import Hint
-from app.widgets.icons import Icon
 from app.wording import name_of, tr
 from core.body import Joint, Segment, Side, Site
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState, Missing, Movement, Wanted

@@ -7,12 +7,12 @@ from PySide6.QtCore import QPointF, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, Kind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from core.body import Joint, Site
 

@@ -8,11 +8,11 @@ from PySide6.QtCore import QObject, QTimer
 
 from app import sounds
 from app.acquisition.live_sensors import live_sensors
+from app.icons import Icon
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
 from app.wizard.free_motion.hints import (

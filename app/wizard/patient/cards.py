@@ -6,10 +6,11 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.icons import Icon, IconMark
+from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
 from core.norms import ReferenceCurves

@@ -13,6 +13,7 @@ from PySide6.QtCore import QObject, Qt, QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFileDialog, QStackedWidget
 
+from app.icons import Icon
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
 from app.reports.patient_report.dates import day
@@ -24,7 +25,6 @@ from app.storage.pseudonyms import Typed
 from app.storage.stored import Action, LibraryError
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog

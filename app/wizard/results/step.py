@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 from PySide6.QtWidgets import QWidget
 
+from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
 from app.reports.reference_bands import NOBODY, age_and_height
 from app.reports.visits import conditions_in_words, visits_by_condition
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.icons import Icon
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
 from app.widgets.start_pages import WorkingPage

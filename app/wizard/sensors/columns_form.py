@@ -7,11 +7,11 @@ from enum import StrEnum
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr

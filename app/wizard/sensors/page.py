@@ -15,10 +15,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text

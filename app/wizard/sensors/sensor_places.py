@@ -20,7 +20,8 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QApplication, QSizePolicy, QWidget
 
-from app.theme import CARD_RADIUS, CONTROL_RADIUS, Look
+from app.theme import Look
+from app.tokens import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
 from app.widgets.painted_text import RIGHT, PaintedText

@@ -17,12 +17,13 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QWidget
 
-from app.theme import CONTROL_RADIUS, Look
+from app.icons import Icon, paint_icon
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.chip import paint_chip
-from app.widgets.icons import Icon, paint_icon
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_places import drag_sensor, is_dragged, number_of, segment_name

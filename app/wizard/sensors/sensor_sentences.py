@@ -2,7 +2,7 @@
 
 from collections.abc import Collection, Mapping, Sequence
 
-from app.widgets.icons import Icon
+from app.icons import Icon
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site

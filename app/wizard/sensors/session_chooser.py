@@ -6,11 +6,11 @@ from uuid import UUID
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.pages.home_lists import LineList, PatientLine
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr

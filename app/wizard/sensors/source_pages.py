@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QProgressBar, QVBoxLayout, QWidget
 
+from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
-from app.widgets.icons import Icon
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import tr

@@ -9,12 +9,12 @@ import numpy as np
 from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QFileDialog
 
+from app.icons import Icon
 from app.pages.home_lists import PatientLine
 from app.patient_words import when
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_folder
-from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wizard.keys import Intent, KeyAction

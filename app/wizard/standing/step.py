@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, QTimer
 
 from app import sounds
+from app.icons import Icon
 from app.sounds import Sound
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
-from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.recordings import SessionRecording

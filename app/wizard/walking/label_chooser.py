@@ -4,7 +4,8 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
 
-from app.theme import CHIP_RADIUS, CONTROL_RADIUS, Look
+from app.theme import Look
+from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.field import Field
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD

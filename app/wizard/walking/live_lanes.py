@@ -14,7 +14,8 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.theme import CHIP_RADIUS, Look
+from app.theme import Look
+from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
 from app.wizard.walking.live_strip import SHOWN_S

@@ -8,11 +8,11 @@ from uuid import UUID
 from PySide6.QtCore import QObject, Slot
 
 from app import sounds
+from app.icons import Icon
 from app.sounds import Sound
 from app.storage.stored import RecordingState
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
-from app.widgets.icons import Icon
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.losses import NOTHING, Losses, Message

@@ -13,6 +13,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QStyleOptionViewItem, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.colours import DARK, LIGHT
 from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.pages.found_page import FoundPage
@@ -28,7 +29,7 @@ from app.pages.result_page import (
     ResultPage,
 )
 from app.plots.angle_chart import AngleChart
-from app.theme import DARK, LIGHT, Look, load_fonts
+from app.theme import Look, load_fonts
 from app.widgets.facts_table import FactsTable
 from app.widgets.figures_table import FiguresTable
 from app.widgets.findings_list import FindingRow

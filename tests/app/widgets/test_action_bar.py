@@ -6,9 +6,10 @@ from PySide6.QtGui import QColor
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme import LIGHT, Look, load_fonts
+from app.colours import LIGHT
+from app.icons import Icon
+from app.theme import Look, load_fonts
 from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
-from app.widgets.icons import Icon
 from tests.app.room import settle, words_cut
 
 STOP = BarAction("Stop walk", "Space", Icon.STOP)

@@ -8,7 +8,8 @@ from PySide6.QtGui import QColor, QPaintEvent
 from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
-from app.theme import LIGHT, Look, load_fonts
+from app.colours import LIGHT
+from app.theme import Look, load_fonts
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton

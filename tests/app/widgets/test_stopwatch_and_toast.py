@@ -7,7 +7,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import LIGHT, Look, load_fonts
+from app.colours import LIGHT
+from app.theme import Look, load_fonts
 from app.widgets import toast as toast_module
 from app.widgets.header import Header
 from app.widgets.stopwatch import Stopwatch

@@ -8,10 +8,10 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
+from app.icons import Icon
 from app.pages.sentence_page import SentencePage
 from app.theme import Look, load_fonts
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
-from app.widgets.icons import Icon
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile
