@@ -44,7 +44,6 @@ class Entry(QObject):
         self._new: OpenedState | None = None  # whose recovery key is shown or asked for
         self._key = ""  # as long as it is shown
         self._cover_of = self._tried = ""
-        self._awaits_demonstration = False
         self._delay: LoginDelay | None = None
         self._sheet: KeySheet | None = None
         self.first_start = FirstStartPage(look, SHORTEST, _is_same_key)
@@ -107,7 +106,7 @@ class Entry(QObject):
             self.log_in.show_recording(is_recording)
 
     def open_demonstration(self) -> None:
-        self._tried, self._awaits_demonstration = "", True
+        self._tried = ""
         self.waiting.begin(tr("Opening the demonstration"))
         self._show(self.waiting)
         self._controller.open_demonstration()
@@ -196,9 +195,6 @@ class Entry(QObject):
     def _on_opened(self, state: OpenedState) -> None:
         self.log_in.forget_typed()
         self.first_start.show_busy(False)
-        if self._awaits_demonstration and not state.is_demonstration:
-            return  # asked for before, and closed again by now
-        self._awaits_demonstration = False
         if not state.is_demonstration:
             self._settings.latest_operator = state.operator.code
             self._settings.latest_library = str(self._folder)
@@ -214,7 +210,6 @@ class Entry(QObject):
         self.entered.emit(state)
 
     def _on_not_opened(self, what: str, remedy: str, _is_key: bool) -> None:
-        self._awaits_demonstration = False
         if self._tried:
             self.log_in.refuse(f"{what} {remedy}", self._left_s(self._tried))
         elif (self._folder / KEYS).exists():

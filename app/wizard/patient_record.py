@@ -48,13 +48,13 @@ class PatientRecord(QObject):
         return not self._is_to_be_read and self.stored is not None and self.stored.told == self.told
 
     def choose(self, stored: StoredPatient) -> None:
-        self.stored, self.told = stored, stored.told
-        self.changed.emit()
+        self._is_to_be_read = False
+        self._choose(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
         """Choose a patient as a list has it: the visit before may have changed what was told since it was read."""
         self._is_to_be_read = True
-        self.choose(listed)
+        self._choose(listed)
         self._read(listed)
 
     def edit(self, told: Patient) -> None:
@@ -95,6 +95,10 @@ class PatientRecord(QObject):
 
         self._controller.run(save, self._on_saved, self._on_refused, self)
 
+    def _choose(self, stored: StoredPatient) -> None:
+        self.stored, self.told = stored, stored.told
+        self.changed.emit()
+
     def _read(self, listed: StoredPatient) -> None:
         self._is_busy = True
         self._controller.run(
@@ -102,15 +106,15 @@ class PatientRecord(QObject):
         )
 
     def _on_read(self, stored: StoredPatient) -> None:
-        self._is_busy = self._is_to_be_read = False
-        if self.stored is None or self.stored.id != stored.id:
-            return  # another was chosen meanwhile
-        listed, self.stored = self.stored.told, stored
-        every = ((field.name, getattr(self.told, field.name)) for field in fields(Patient))
-        typed = {name: told for name, told in every if told != getattr(listed, name)}
-        self.told = replace(stored.told, **typed)
-        if stored.told != listed:
-            self.read_anew.emit()
+        self._is_busy = False
+        if self._is_to_be_read and self.stored is not None:  # else another was chosen meanwhile
+            self._is_to_be_read = False
+            listed, self.stored = self.stored.told, stored
+            every = ((field.name, getattr(self.told, field.name)) for field in fields(Patient))
+            typed = {name: told for name, told in every if told != getattr(listed, name)}
+            self.told = replace(stored.told, **typed)
+            if stored.told != listed:
+                self.read_anew.emit()
         self.changed.emit()
         if not self.is_saved:
             self._pause.start()  # typed meanwhile

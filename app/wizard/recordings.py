@@ -256,7 +256,10 @@ class SessionRecordings(QObject):
         self.changed.emit()
 
     def close(self) -> None:
-        """Stop for good: of one that has not begun yet nobody may hear any more, so the library ends it itself."""
+        """Stop for good: of one that has not begun yet nobody may hear any more, so the library ends it itself.
+
+        Where that fails, what was recorded is found at the next start.
+        """
         if self.ongoing is None or self._recorder is not None or self._is_stopping:
             self.stop()
             return
@@ -265,7 +268,7 @@ class SessionRecordings(QObject):
         def end(opened: "OpenedLibrary") -> None:
             begun.result().stop(opened)
 
-        self._controller.run(end, self._on_closed, self._on_not_closed, self)
+        self._controller.run(end, self._on_closed, self._on_not_started, self)
 
     def trouble_message(self) -> Message:
         """What befell the latest recording's journal, as its counters have it by now; nothing where nothing did."""
@@ -396,10 +399,6 @@ class SessionRecordings(QObject):
     def _on_closed(self, _nothing: None) -> None:
         self.ongoing = None
         self.changed.emit()
-
-    def _on_not_closed(self, what: str, remedy: str) -> None:
-        """What was recorded, if anything was, is found at the next start."""
-        self._on_not_started(what, remedy)
 
     def _on_started(self, recorder: Recorder) -> None:
         if self._is_closed:

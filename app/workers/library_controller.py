@@ -60,6 +60,7 @@ class LibraryController(QObject):
         self._is_locked = self._is_to_be_locked = False
         self._held: list[Callable[[], object]] = []  # what was asked under the lock
         self._key_change: Job | None = None  # that goes on
+        self._opening: Job | None = None  # asked for last
         self._long = Background(self)
         self._long.progressed.connect(self._on_long_progressed)
         self._long.done.connect(self._on_long_done)
@@ -264,7 +265,8 @@ class LibraryController(QObject):
 
     def _open(self, opening: Callable[[], OpenedState | NotOpened]) -> None:
         self._end_library()
-        self._calls.ask(Job(opening, None, None, ref(self)))
+        self._opening = Job(opening, None, None, ref(self))
+        self._calls.ask(self._opening)
 
     def _begin_long(
         self,
@@ -310,11 +312,13 @@ class LibraryController(QObject):
         self._end_watch()
         if self._state is not None:
             self._calls.ask(Job(self._recordings.passed().wait, None, None, ref(self)))
-        self._state = self._key_change = None
+        self._state = self._key_change = self._opening = None
 
     def _on_told(self, job: Job, outcome: object) -> None:
         if isinstance(outcome, Refusal):
             self._tell_refusal(job, outcome.what, outcome.remedy)
+        elif isinstance(outcome, OpenedState | NotOpened) and job is not self._opening:
+            pass  # another was asked for meanwhile, or none: it is closed again, or will be at once
         elif isinstance(outcome, OpenedState):
             self._state = outcome
             self._begin_watch(outcome)

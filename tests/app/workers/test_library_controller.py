@@ -211,6 +211,28 @@ def test_calls_before_opening_and_after_closing_are_refused(
     assert controller.state is None
 
 
+@pytest.mark.parametrize("passphrase", [PASSPHRASE, "no words of theirs"])
+def test_of_an_opening_that_another_or_a_closing_followed_nothing_is_told(
+    qtbot: QtBot, controller: LibraryController, folder: Path, passphrase: str
+) -> None:
+    told: list[object] = []
+    controller.opened.connect(told.append)
+    controller.not_opened.connect(lambda *words: told.append(words))
+    with qtbot.waitSignal(controller.closed, timeout=WAIT_MS):
+        controller.open(folder, passphrase, "hk")
+        controller.close()
+    assert told == []
+    state = controller.state
+    assert state is None
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
+        controller.open(folder, passphrase, "hk")
+        controller.open_demonstration()
+    assert [type(one) for one in told] == [OpenedState]
+    state = controller.state
+    assert state is not None
+    assert state.is_demonstration
+
+
 def test_a_wrong_passphrase_is_told_apart_from_other_trouble(
     qtbot: QtBot, controller: LibraryController, folder: Path, tmp_path: Path
 ) -> None:

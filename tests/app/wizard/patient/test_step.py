@@ -147,3 +147,22 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
     assert stored is not None
     assert visit.patient.told == stored.told == step.page.draft.patient
     assert (stored.told.birth_year, stored.told.mass_kg) == (1982, 70.0)
+
+
+def test_another_patient_chosen_while_the_first_is_read_anew_is_the_one(
+    qtbot: QtBot, controller: LibraryController, visit: Visit, step: PatientStep
+) -> None:
+    made: list[StoredPatient] = []
+
+    def make_two(opened: OpenedLibrary) -> None:
+        made.extend(opened.library.patients.create(Patient(code=code)) for code in ("DEMO-11", "DEMO-12"))
+
+    controller.run(make_two, None, None, step)
+    qtbot.waitUntil(lambda: len(made) == 2, timeout=5000)
+    visit.patient.choose_from_list(made[0])
+    visit.patient.choose(made[1])
+    step.enter()
+    with qtbot.waitSignal(step.done, timeout=5000):
+        step.on_primary()
+    assert visit.patient.stored == made[1]
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.patient_id == made[1].id, timeout=5000)
