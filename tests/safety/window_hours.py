@@ -117,11 +117,8 @@ def main() -> int:
         behind = acquisition.dropped_from_preview
         stopped_s = time.monotonic()
         wizard._on_primary()
-        wait(
-            application,
-            lambda: not visit.recordings.is_recording and not visit.recordings.is_stopping,
-            ANALYSED_WITHIN_S,
-        )
+        # "is_stopping" ends after a few seconds, so that the next may begin; hours take longer to be read back
+        wait(application, lambda: visit.recordings.is_idle, ANALYSED_WITHIN_S)
         read_s = time.monotonic() - stopped_s
         wait(application, lambda: not visit.evaluation.is_busy, ANALYSED_WITHIN_S)
         analysed_s = time.monotonic() - stopped_s - read_s
