@@ -4,7 +4,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, QObject, Qt, Signal
-from PySide6.QtGui import QColor, QFont, QFontDatabase, QPalette
+from PySide6.QtGui import QColor, QFont, QFontDatabase, QGuiApplication, QPalette
 from PySide6.QtWidgets import QApplication, QStyle, QToolTip, QWidget
 
 from app.colours import DARK, LIGHT, Colours
@@ -13,6 +13,7 @@ from app.tokens import Theme
 
 FONT_FILES = ("Inter-Regular.otf", "Inter-Medium.otf", "Inter-SemiBold.otf", "InterDisplay-SemiBold.otf")
 
+POINTS_PER_INCH = 72.0
 SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 
 
@@ -61,13 +62,20 @@ class Look(QObject):
         palette = _palette(self.theme.colours)
         app.setPalette(palette)
         QToolTip.setPalette(palette)
-        app.setFont(self.theme.font(14))
-        choices = self.theme.font(16, QFont.Weight.DemiBold)
+        app.setFont(_in_points(self.theme.font(14)))
+        choices = _in_points(self.theme.font(16, QFont.Weight.DemiBold))
         app.setFont(choices, "QComboBox")  # type: ignore[arg-type]  # the stubs ask for bytes, which it refuses
         for window in app.topLevelWidgets():
             for change in (QEvent.Type.ApplicationFontChange, QEvent.Type.ApplicationPaletteChange):
                 app.sendEvent(window, QEvent(change))  # which Qt would post, after the new style had been measured by
             _tell_style_changed(window, style)
+
+
+def _in_points(font: QFont) -> QFont:
+    """The same font, of the same height: Qt's own dialogs reckon with points, of which one in pixels has none."""
+    font = QFont(font)
+    font.setPointSizeF(font.pixelSize() * POINTS_PER_INCH / QGuiApplication.primaryScreen().logicalDotsPerInchY())
+    return font
 
 
 def _tell_style_changed(widget: QWidget, style: QStyle) -> None:
