@@ -2,6 +2,7 @@
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -217,6 +218,8 @@ class SessionScreen(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_done(self, opened: "Opened") -> None:
+        from app.reports.patient_report.answer import answer_of
+        from app.reports.patient_report.request import Visit
         from app.reports.reference_bands import age_and_height
 
         if self._results is None:
@@ -231,7 +234,13 @@ class SessionScreen(Themed):
         self._opened, session = opened, opened.session
         is_prosthetic = session.patient.prosthetic_side in set(Side)
         who = age_and_height(session)
-        self._results.show_analysis(opened.analysis, session.recordings, is_prosthetic=is_prosthetic, who=who)
+        self._results.show_analysis(
+            opened.analysis,
+            session.recordings,
+            is_prosthetic=is_prosthetic,
+            who=who,
+            answer=partial(answer_of, Visit(session, opened.analysis)),
+        )
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )

@@ -1,6 +1,6 @@
 """What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
 from app.reports.comparison import conditions_of
+from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.reference_bands import NOBODY, sides_with_band
 from app.theme import Look
 from app.widgets.button import Button, Kind
@@ -22,6 +23,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.facts_table import FactsTable
 from app.widgets.findings_list import FindingsList
+from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -44,6 +46,13 @@ THREE_COLUMNS_FROM = 1264  # what the charts and both tables need side by side
 LEAST_FINDINGS = 48  # under the peaks; what does not fit scrolls
 SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
 TWO_CHARTS_FROM = 680
+ANSWER_PX = 22
+ANSWER_ICONS = {
+    Outcome.DIFFERS: Icon.WARNING,
+    Outcome.NOTHING: Icon.CHECK,
+    Outcome.OPEN: Icon.INFO,
+    Outcome.UNREADABLE: Icon.GRAVE,
+}
 
 HINTS = {
     RESULT: later("Pale: certainty, ± 2 SD."),
@@ -94,6 +103,7 @@ class ResultPage(Themed):
         self._look = look
         self._analysis: Analysis | None = None
         self._can_choose = False
+        self._answer: Callable[[RecordingAnalysis], Answer] | None = None
         self._who = NOBODY
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
         self._is_compact = False
@@ -125,6 +135,7 @@ class ResultPage(Themed):
                 (BOTH, tr("Both"), tr("result and published")),
             ],
         )
+        self.answer = Notice(look, ANSWER_PX, padding=4)
         self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
         self.band = Toggle(look, tr("Band"), "B", is_on=True)
         self.cycles = parts.cycles
@@ -148,6 +159,7 @@ class ResultPage(Themed):
         is_prosthetic: bool = False,
         can_choose: bool = False,
         who: AgeAndHeight = NOBODY,
+        answer: Callable[[RecordingAnalysis], Answer] | None = None,
     ) -> None:
         """Show the recording that was on the screen, if `analysis` has it, else its first walk or first recording.
 
@@ -161,8 +173,10 @@ class ResultPage(Themed):
             Whether somebody keeps which strides are left out: see `strides`.
         who
             Whose walks they are, as far as that chooses a band.
+        answer
+            Gives the sentences that stand over a walk's curves.
         """
-        self._analysis, self._can_choose, self._who = analysis, can_choose, who
+        self._analysis, self._can_choose, self._who, self._answer = analysis, can_choose, who, answer
         shown = self.recordings.currentText()
         parts = conditions_of(analysis, session)
         self.compare.show_conditions(analysis, parts, is_prosthetic, who)
@@ -265,6 +279,7 @@ class ResultPage(Themed):
             self._columns.addWidget(widget, share)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
+        self._page.addWidget(self.answer)
         self._page.addLayout(self._columns, 1)
         policy = self.whole.sizePolicy()
         policy.setRetainSizeWhenHidden(True)  # what comes and goes must not move what stays
@@ -351,6 +366,8 @@ class ResultPage(Themed):
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
         self._against.setVisible(view == COMPARE)
         self.compare.setVisible(view == COMPARE)
+        has_answer = view == (MEAN if self.view.segments[0].isEnabled() else WHOLE)
+        self.answer.setVisible(has_answer and bool(self.answer.text))
         self._toggles.setVisible(view == MEAN or (view == STRIDES and not self._is_narrow))
         self.single_strides.setVisible(view == MEAN)
         self._curves.setVisible(view == WHOLE)
@@ -362,7 +379,8 @@ class ResultPage(Themed):
         self.cycles.peaks.setVisible(has_figures)
         self.cycles.time_distance.setVisible(has_figures and (self._columns_wanted != 2 or view == FIGURES))
         self._joints.setVisible(view == FACTS or (view == WHOLE and is_wide))
-        has_findings = view == FACTS or (is_wide and view not in (COMPARE, STRIDES, FIGURES))
+        is_answered = not self.answer.isHidden() and self._columns_wanted == 2  # which takes the findings' room
+        has_findings = view == FACTS or (is_wide and view not in (COMPARE, STRIDES, FIGURES) and not is_answered)
         self._noticed.setVisible(has_findings)
         self._beside.setVisible((is_wide and view not in (COMPARE, STRIDES)) or view in (FIGURES, FACTS))
         is_row = (view == FACTS and not self._is_narrow) or (view == FIGURES and self._columns_wanted == 2)
@@ -399,10 +417,18 @@ class ResultPage(Themed):
         calibrated, is_simulated = self._analysis.calibrated_for(recording), self._analysis.is_simulated
         self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
         self.cycles.show_walk(recording, is_simulated, self._who, sides_with_band(recording))
+        self._tell_answer(recording)
         self.strides.show_walk(recording, self._can_choose)
         self.facts.show_joints(calibrated)
         self._on_method_chosen()
         self._offer()
+
+    def _tell_answer(self, recording: RecordingAnalysis) -> None:
+        if self._answer is None or recording.kind is not RecordingKind.WALKING:
+            self.answer.tell(None, "")
+            return
+        answer = self._answer(recording)
+        self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, answer.then)
 
     def _on_method_chosen(self) -> None:
         recording = self.recording

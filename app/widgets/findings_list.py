@@ -20,6 +20,7 @@ SEVERITY_WORDS = {
     Severity.INFO: later("info"),
 }
 NOTHING = later("Nothing stands out.")
+USUAL = frozenset({"not_a_hinge"})  # of living joints: a figure of theirs, which summary.json has
 
 
 class FindingsList(QScrollArea):
@@ -33,6 +34,7 @@ class FindingsList(QScrollArea):
         self.setAccessibleName(tr("Findings"))
 
     def show_findings(self, findings: Sequence[Finding]) -> None:
+        findings = [one for one in findings if one.key not in USUAL]
         page = QWidget()
         column = QVBoxLayout(page)
         column.setContentsMargins(0, 0, self._look.theme.px(8), 0)
@@ -45,6 +47,8 @@ class FindingsList(QScrollArea):
             column.addWidget(FindingRow(self._look, Icon.CHECK, Severity.INFO, tr(NOTHING)))
         column.addStretch(1)
         self.setWidget(page)
+        page.setAutoFillBackground(False)  # which a scroll area turns on: the card behind it has the colour
+        self.viewport().setAutoFillBackground(False)
         self.setAccessibleDescription(" ".join(sentence(finding) for finding in findings) or tr(NOTHING))
 
     def sizeHint(self) -> QSize:

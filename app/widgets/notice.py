@@ -14,11 +14,11 @@ PADDING = 10
 
 
 class Notice(Themed):
-    """Keeps its place while it has nothing to say, unless it is hidden."""
+    """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
-    def __init__(self, look: Look, size: float = 18) -> None:
+    def __init__(self, look: Look, size: float = 18, padding: int = PADDING) -> None:
         super().__init__()
-        self._look = look
+        self._look, self._padding = look, padding
         self._icon: Icon | None = None
         self._is_caution = False
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)  # fixed ones may not wrap
@@ -70,5 +70,6 @@ class Notice(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._row.setContentsMargins(px(PADDING + ICON + 8), px(PADDING), px(PADDING), px(PADDING))
+        above = px(self._padding)
+        self._row.setContentsMargins(px(PADDING + ICON + 8), above, px(PADDING), above)
         self._words.setSpacing(px(2))

@@ -13,7 +13,7 @@ from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, 
 from app.reports.patient_report.panels import peak_name
 from app.reports.patient_report.peaks_page import COLUMNS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
-from app.wording import capitalised, name_of, tr
+from app.wording import capitalised, later, name_of, tr
 from core.body import Joint, Side
 from core.results import ZeroKind
 from core.verdicts.measurement_error import Z95, ComparisonKind, Difference, sigma_of
@@ -22,6 +22,7 @@ from core.verdicts.quantities import QUANTITIES, QuantityClass
 from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
+BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the sources on its last page
 MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
 MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
 BETWEEN_LEGS = (
@@ -61,35 +62,53 @@ Topic = tuple[Joint | Side | None, Rank | None, bool]
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed."""
+    """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed.
+
+    `said` is its sentence, `evidence` a second one that says what it exceeds, where the first does not.
+    """
 
     rank: Rank
     ratio: float
     topics: tuple[Topic, ...]
     said: str
+    evidence: str = ""
 
 
 def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
     """At most three findings and one caveat; without any, that there is none."""
-    found = findings(facts, comparison)
-    said = found or [_nothing_found(facts, comparison)]
+    said = findings(facts, comparison) or [" ".join(nothing_found(facts, comparison))]
     return [heading(tr("What stands out")), bullets([*said, *caveat(facts, comparison)])]
 
 
 def findings(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """The sentences, the weightiest kind first, then what exceeds its error most; one per joint and direction."""
-    candidates = [*_changes(facts, comparison), *_between_legs(facts), *_beyond_band(facts), *_heights(facts)]
-    told: list[str] = []
+    """The sentences of the findings that are told on paper, the weightiest first."""
+    ranked = ranked_findings(facts, comparison, BANDS_ON_PAPER)
+    return [" ".join(filter(None, (one.said, one.evidence))) for one in ranked]
+
+
+def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:
+    """What is told: the weightiest kind first, then what exceeds its error most; one per joint and direction.
+
+    `bands` names the cited groups of the curves and of time and distance, inside a sentence.
+    """
+    candidates = [
+        *_changes(facts, comparison),
+        *_between_legs(facts),
+        *_beyond_band(facts, bands),
+        *_heights(facts),
+    ]
+    told: list[Candidate] = []
     known: set[Topic] = set()
     for candidate in sorted(candidates, key=lambda one: (one.rank, -one.ratio)):
         if known.isdisjoint(candidate.topics):
-            told.append(candidate.said)
+            told.append(candidate)
         known.update(candidate.topics)
     return told[:MAX_FINDINGS]
 
 
-def _nothing_found(facts: Facts, comparison: Comparison | None) -> str:
-    judged = [row for row in _differences(facts, comparison) if row.is_told and row.error > 0]
+def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
+    """What is said where no finding is told: whether anything exceeds its error, and whether the band holds all."""
+    judged = judged_differences(facts, comparison)
     away = [abs(sd) for side, column in _peaks(facts) if math.isfinite(sd := facts.away_sd(side, column))]
     said = []
     if judged:
@@ -101,7 +120,12 @@ def _nothing_found(facts: Facts, comparison: Comparison | None) -> str:
         )
     if away and max(away) <= MAX_AWAY_SD:
         said.append(tr("Every peak that could be judged lies within 2\u00a0SD of the band, at its curve's height."))
-    return " ".join(said) or tr("Nothing could be judged.")
+    return said or [tr("Nothing could be judged.")]
+
+
+def judged_differences(facts: Facts, comparison: Comparison | None) -> list[Difference]:
+    """Those that are told and have an error, whether they exceed it or not."""
+    return [one for one in _differences(facts, comparison) if one.is_told and one.error > 0]
 
 
 def _differences(facts: Facts, comparison: Comparison | None) -> Iterator[Difference]:
@@ -133,19 +157,49 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
         unit, decimals = _unit(column)
-        said = tr("{measure}: {first} {value}, {second} {other}; difference {difference}, error {error}.").format(
-            measure=capitalised(_measure(column)),
-            first=role(facts, first),
-            second=role(facts, second),
-            value=fixed(facts.value(first, column).mean, decimals) + unit,
-            other=fixed(facts.value(second, column).mean, decimals) + unit,
-            difference=signed(found.difference, decimals) + unit,
-            error=fixed(found.error, decimals) + unit,
-        )
-        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said)
+        evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
+        said = _leg_beside_leg(facts, column, found)
+        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence)
 
 
-def _beyond_band(facts: Facts) -> Iterator[Candidate]:
+def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
+    """How one leg's figure differs from the other's, in the words of who would say it."""
+    first, second = facts.first_and_second
+    unit, decimals = _unit(column)
+    is_less = found.difference < 0
+    match column:
+        case "knee_range_deg" | "ankle_range_deg":
+            pattern = (
+                tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} moves {size} more over the stride than the {second}: {value} against {other}.")
+            )
+        case "stance_percent":
+            pattern = (
+                tr("Stance is {size} of the stride shorter {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("Stance is {size} of the stride longer {first} than {second}: {value} against {other}.")
+            )
+        case "step_time_s":
+            pattern = (
+                tr("The step takes {size} less {first} than {second}: {value} against {other}.")
+                if is_less
+                else tr("The step takes {size} more {first} than {second}: {value} against {other}.")
+            )
+        case _:
+            raise ValueError(f"{column} has no sentence between the legs")
+    joint = joint_of_column(column, first)
+    return pattern.format(
+        joint=f"{role(facts, first)} {tr('knee') if column.startswith('knee') else tr('ankle')}" if joint else "",
+        first=role(facts, first),
+        second=role(facts, second),
+        size=fixed(abs(found.difference), decimals) + unit,
+        value=fixed(facts.value(first, column).mean, decimals) + unit,
+        other=fixed(facts.value(second, column).mean, decimals) + unit,
+    )
+
+
+def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
     """Peaks more than 2 SD from band [1] laid at their curve's height; stance and stride length, from band [2]."""
     for side, column in _peaks(facts):
         away, band, kind = facts.away_sd(side, column), facts.band(column), column.split("_")[0]
@@ -153,12 +207,13 @@ def _beyond_band(facts: Facts) -> Iterator[Candidate]:
             continue
         offset = facts.offset_deg(side, kind)
         pattern = (
-            tr("{joint} {peak}: {value}°; band [1] at the curve's height {band}°: more than 2\u00a0SD below.")
+            tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD below.")
             if away < 0
-            else tr("{joint} {peak}: {value}°; band [1] at the curve's height {band}°: more than 2\u00a0SD above.")
+            else tr("{joint} {peak}: {value}°; {group} at the curve's height {band}°: more than 2\u00a0SD above.")
         )
         said = pattern.format(
             joint=capitalised(name_of(joint_of(kind, side))),
+            group=tr(bands[0]),
             peak=tr("at initial contact") if "initial_contact" in column else peak_name(column),
             value=fixed(facts.value(side, column).mean, 1),
             band=band_in_figures((band[0] + offset, band[1] + offset), 1),
@@ -175,13 +230,14 @@ def _beyond_band(facts: Facts) -> Iterator[Candidate]:
             if abs(away) > MAX_AWAY_SD:
                 unit, decimals = _unit(column)
                 pattern = (
-                    tr("{measure}, {side}: {value}; band [2] {band}: more than 2\u00a0SD below.")
+                    tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD below.")
                     if away < 0
-                    else tr("{measure}, {side}: {value}; band [2] {band}: more than 2\u00a0SD above.")
+                    else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
                 )
                 said = pattern.format(
                     measure=capitalised(_measure(column)),
                     side=role(facts, side),
+                    group=tr(bands[1]),
                     value=fixed(value.mean, decimals) + unit,
                     band=band_in_figures(figure.band, decimals) + unit,
                 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -176,6 +177,9 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
+        from app.reports.patient_report.answer import answer_of  # as the results' page, which has imported it
+        from app.reports.patient_report.request import Visit
+
         session = self._visit.evaluation.session
         if self._held is not None and self._held[0] is session and self._held[1] is analysis:
             return
@@ -186,6 +190,7 @@ class ResultsStep(Step):
             is_prosthetic=bool(self._visit.prosthetic_sides),
             can_choose=True,
             who=age_and_height(session) if session is not None else NOBODY,
+            answer=partial(answer_of, Visit(session, analysis)) if session is not None else None,
         )
 
     # how a joint was found

@@ -12,6 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.cycle_page import NO_SIDE, NO_SPEED
 from app.pages.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
+from app.reports.patient_report.answer import Answer, Outcome
 from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
 from app.theme import Look, load_fonts
 from core.analysis import analyse
@@ -288,3 +289,31 @@ def test_peaks_that_change_place_leave_no_layout_item_behind(page: ResultPage) -
     page.set_room(*WIDE)
     held = items_held()
     assert item_of(page.cycles.peaks, page._columns if page._columns_wanted != 2 else page._right) not in held
+
+
+def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
+    in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
+    page.set_room(*in_wizard)
+    assert not page.answer.isVisible()
+    told = Answer(Outcome.DIFFERS, "The left knee moves 21.3° less than the right: 41.7° against 63.0°.", "Error 9.5°.")
+    page.show_analysis(analysis, answer=lambda walk: told if walk is walk_of(analysis) else Answer(Outcome.OPEN, ""))
+    assert page.answer.isVisible()
+    assert page.answer.text == f"{told.first} {told.then}"
+    assert page.minimumSizeHint().height() <= in_wizard[1]
+    for view in (WHOLE, "strides"):
+        page.view.choose(view)
+        assert not page.answer.isVisible(), view
+    page.show_analysis(analysis)
+    page.view.choose(MEAN)
+    assert not page.answer.isVisible()
+    nothing = Answer(Outcome.UNREADABLE, "Nothing can be read of this walk.")
+    page.show_analysis(changed(analysis, gait={}), answer=lambda _walk: nothing)
+    assert page.view.choice == WHOLE
+    assert page.answer.isVisible()
+
+
+def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
+    assert "not_a_hinge" in {finding.key for finding in analysis.findings}
+    said = page.findings.accessibleDescription()
+    assert "simulated" in said
+    assert "more than one axis" not in said
