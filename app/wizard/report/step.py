@@ -48,6 +48,13 @@ if TYPE_CHECKING:
 _log = logging.getLogger(__name__)
 
 OTHERS = ("xlsx", "c3d", "mot", "fhir")
+LONGEST_CODE = 60  # of a folder's name
+
+
+def folder_name(code: str, started: str) -> str:
+    """The folder proposed for a session's results: the patient's code and the day, in letters that any system takes."""
+    safe = "".join(letter if letter.isalnum() or letter == "-" else "_" for letter in code)[:LONGEST_CODE]
+    return f"{safe or 'session'}_{started[:10]}"
 
 
 class ReportStep(Step):
@@ -143,7 +150,9 @@ class ReportStep(Step):
         self._dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
         self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
-        self._dialog.selectFile("gaitwright-results")
+        if self._visit.session is not None:
+            told = self._visit.session.told
+            self._dialog.selectFile(folder_name(told.patient.code, told.started))
         self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._dialog.fileSelected.connect(self._on_folder_selected)
         self._dialog.open()

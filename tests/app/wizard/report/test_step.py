@@ -16,7 +16,7 @@ from app.theme import Look
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
-from app.wizard.report.step import ReportStep
+from app.wizard.report.step import ReportStep, folder_name
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.analysis import analyse
@@ -134,11 +134,14 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert patient.told.code not in said.replace(shown["patient"], "")  # which begins as the code does
 
 
-def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep) -> None:
+def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
     step.on_primary()
     assert step._dialog is not None
     assert step.page.findChild(LeavingDialog) is None
+    assert visit.session is not None
+    told = visit.session.told
+    assert [Path(path).name for path in step._dialog.selectedFiles()] == [folder_name(told.patient.code, told.started)]
     step._dialog.close()
 
 
@@ -210,3 +213,18 @@ def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: p
     assert step.on_intent(Intent(KeyAction.SAVE))
     assert pressed == ["save"]
     assert not step.on_intent(Intent(KeyAction.RUN))
+
+
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [
+        ("P-0158", "P-0158_2026-11-20"),
+        ("../..", "______2026-11-20"),
+        ("a/b:c*", "a_b_c__2026-11-20"),
+        ("", "session_2026-11-20"),
+        ("Ä1", "Ä1_2026-11-20"),
+        ("x" * 300, "x" * 60 + "_2026-11-20"),
+    ],
+)
+def test_the_folder_proposed_is_named_by_code_and_day_and_by_nothing_a_system_refuses(code: str, name: str) -> None:
+    assert folder_name(code, "2026-11-20T10:00:00+00:00") == name
