@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import fields, replace
+from enum import Enum, auto
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
@@ -11,6 +12,15 @@ from app.workers.library_controller import LibraryController
 from core.samples import Patient
 
 SAVED_AFTER_MS = 500  # without a key pressed
+
+
+class RecordPhase(Enum):
+    """What is under way with the library, and whether what is held of the patient may be old."""
+
+    SETTLED = auto()  # nothing is under way; what is held is as it was read or saved last
+    BUSY = auto()  # saves, or reads a patient in whose place another was chosen
+    READING = auto()  # chosen from a list, and being read: what is held may be old
+    UNREAD = auto()  # chosen from a list, and could not be read: what is held may be old
 
 
 class PatientRecord(QObject):
@@ -36,8 +46,7 @@ class PatientRecord(QObject):
         """So another code is a correction of this patient's."""
         self.told = Patient()
         self.stored: StoredPatient | None = None
-        self._is_busy = False  # saves or reads
-        self._is_to_be_read = False
+        self._phase = RecordPhase.SETTLED
         self._pause = QTimer(self)
         self._pause.setSingleShot(True)
         self._pause.setInterval(SAVED_AFTER_MS)
@@ -45,15 +54,20 @@ class PatientRecord(QObject):
 
     @property
     def is_saved(self) -> bool:
-        return not self._is_to_be_read and self.stored is not None and self.stored.told == self.told
+        return not self._may_be_old and self.stored is not None and self.stored.told == self.told
+
+    @property
+    def _may_be_old(self) -> bool:
+        return self._phase in (RecordPhase.READING, RecordPhase.UNREAD)
 
     def choose(self, stored: StoredPatient) -> None:
-        self._is_to_be_read = False
+        if self._may_be_old:
+            self._phase = RecordPhase.BUSY if self._phase is RecordPhase.READING else RecordPhase.SETTLED
         self._choose(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
         """Choose a patient as a list has it: the visit before may have changed what was told since it was read."""
-        self._is_to_be_read = True
+        self._phase = RecordPhase.READING
         self._choose(listed)
         self._read(listed)
 
@@ -66,9 +80,9 @@ class PatientRecord(QObject):
     def commit(self) -> None:
         """Save what is on the screen now, and make the patient if there is none yet."""
         self._pause.stop()
-        if self._is_busy or self.is_saved or not self.told.code:
+        if self._phase in (RecordPhase.BUSY, RecordPhase.READING) or self.is_saved or not self.told.code:
             return
-        if self._is_to_be_read and self.stored is not None:
+        if self._may_be_old and self.stored is not None:
             self._read(self.stored)
             return
         if self.stored is not None and self.told.code != self.stored.told.code:
@@ -77,7 +91,7 @@ class PatientRecord(QObject):
                 self.told = self.stored.told  # what was typed is another's
                 self.refused.emit(what, remedy)
                 return
-        self._is_busy = True
+        self._phase = RecordPhase.BUSY
         stored, told = self.stored, self.told
         is_renamed = self.has_this_session_only
 
@@ -100,15 +114,14 @@ class PatientRecord(QObject):
         self.changed.emit()
 
     def _read(self, listed: StoredPatient) -> None:
-        self._is_busy = True
+        self._phase = RecordPhase.READING
         self._controller.run(
             lambda opened: opened.library.patients.get(listed.id), self._on_read, self._on_refused, self
         )
 
     def _on_read(self, stored: StoredPatient) -> None:
-        self._is_busy = False
-        if self._is_to_be_read and self.stored is not None:  # else another was chosen meanwhile
-            self._is_to_be_read = False
+        is_awaited, self._phase = self._may_be_old, RecordPhase.SETTLED
+        if is_awaited and self.stored is not None:  # else another was chosen meanwhile
             listed, self.stored = self.stored.told, stored
             every = ((field.name, getattr(self.told, field.name)) for field in fields(Patient))
             typed = {name: told for name, told in every if told != getattr(listed, name)}
@@ -120,7 +133,7 @@ class PatientRecord(QObject):
             self._pause.start()  # typed meanwhile
 
     def _on_saved(self, stored: StoredPatient | None) -> None:
-        self._is_busy = False
+        self._end_work()
         if stored is None:
             self.code_taken.emit(self.told.code)
             return
@@ -129,6 +142,10 @@ class PatientRecord(QObject):
         if not self.is_saved:
             self._pause.start()  # typed on meanwhile
 
+    def _end_work(self) -> None:
+        """Nothing is saved or read any more: what was to be read still is."""
+        self._phase = RecordPhase.UNREAD if self._may_be_old else RecordPhase.SETTLED
+
     def _on_refused(self, what: str, remedy: str) -> None:
-        self._is_busy = False
+        self._end_work()
         self.refused.emit(what, remedy)

@@ -4,6 +4,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from datetime import datetime
+from enum import Enum, auto
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
@@ -65,6 +66,17 @@ class SessionRecording:
         return self.stored.told
 
 
+class RecordingPhase(Enum):
+    """How far the recording is that was asked for last."""
+
+    IDLE = auto()  # nothing is recorded: the next may begin
+    BEGINNING = auto()  # asked for; the library has not answered, so nothing is written yet
+    BEGINNING_TO_STOP = auto()  # the same, and stopped already: it ends as soon as it has begun
+    WRITING = auto()  # what comes in is written
+    STOPPING = auto()  # stopped, and waited for: until it is read back, or for a few seconds
+    CLOSED = auto()  # the visit ended before it had begun: the library ends it itself
+
+
 class _Unread(NamedTuple):
     """What was stopped and is not read back yet; `strides` as in `SessionRecording`. Not kept: it was broken off."""
 
@@ -92,8 +104,8 @@ class SessionRecordings(QObject):
         self.session: StoredSession | None = None
         self.ongoing: Ongoing | None = None
         self.every: tuple[SessionRecording, ...] = ()
-        self._recorder: Recorder | None = None
-        self._latest: Recorder | None = None  # the same, also once it has been stopped
+        self._phase = RecordingPhase.IDLE
+        self._latest: Recorder | None = None  # also once it has been stopped; none before the library has answered
         self._trouble: Trouble | None = None  # of the latest
         self._is_without_row = False
         self._acquisition: Acquisition | None = None
@@ -101,10 +113,9 @@ class SessionRecordings(QObject):
         self._unread: list[_Unread] = []  # oldest first
         self._readings = 0  # of the oldest
         self._is_reading = False
-        self._must_stop, self._must_keep = False, True
+        self._must_keep = True
         self._strides: Mapping[Side, int] | None = None
-        self._is_stopping = False
-        self._is_restrapped = self._is_closed = False
+        self._is_restrapped = False
         self._beginning: Future[Recorder]
         self._again = QTimer(self)
         self._again.setSingleShot(True)
@@ -125,12 +136,12 @@ class SessionRecordings(QObject):
     @property
     def has_begun(self) -> bool:
         """Whether what comes now is being written; just asked for, it is not yet."""
-        return self._recorder is not None
+        return self._phase is RecordingPhase.WRITING
 
     @property
     def is_stopping(self) -> bool:
         """Whether a recording has been stopped and is waited for: until it is read back, or for a few seconds."""
-        return self._is_stopping
+        return self._phase is RecordingPhase.STOPPING
 
     @property
     def is_idle(self) -> bool:
@@ -216,7 +227,9 @@ class SessionRecordings(QObject):
             is_restrapped_before=self._is_restrapped,
         )
         self.ongoing = Ongoing(told, acquisition.now_s)
-        self._must_stop, self._must_keep, self._strides = False, True, None
+        if self._phase is not RecordingPhase.CLOSED:
+            self._phase = RecordingPhase.BEGINNING
+        self._must_keep, self._strides = True, None
         self._latest, self._trouble, self._is_without_row = None, None, False
         self._acquisition, self._lost_before = acquisition, acquisition.lost()
         session_id = self.session.id
@@ -237,17 +250,16 @@ class SessionRecordings(QObject):
 
         Not `is_kept`: it was broken off and does not count; nothing is deleted.
         """
-        if self.ongoing is None or self._is_stopping:
+        if self._phase in (RecordingPhase.BEGINNING, RecordingPhase.BEGINNING_TO_STOP):
+            self._phase, self._must_keep, self._strides = RecordingPhase.BEGINNING_TO_STOP, is_kept, strides
+        if self._phase is not RecordingPhase.WRITING or self._latest is None or self.ongoing is None:
             return
-        self._must_stop, self._must_keep, self._strides = True, is_kept, strides
-        if self._recorder is None:
-            return
-        recorder, self._recorder = self._recorder, None
+        recorder = self._latest
 
         def halt(_opened: "OpenedLibrary", _turn: "Future[None]") -> None:
             recorder.halt()
 
-        self._is_stopping = True
+        self._phase = RecordingPhase.STOPPING
         self._unread.append(_Unread(recorder, self.ongoing.told.name, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
         self._waited.start()
@@ -260,10 +272,10 @@ class SessionRecordings(QObject):
 
         Where that fails, what was recorded is found at the next start.
         """
-        if self.ongoing is None or self._recorder is not None or self._is_stopping:
+        if self.ongoing is None or self._phase in (RecordingPhase.WRITING, RecordingPhase.STOPPING):
             self.stop()
             return
-        begun, self._is_closed = self._beginning, True
+        begun, self._phase = self._beginning, RecordingPhase.CLOSED
 
         def end(opened: "OpenedLibrary") -> None:
             begun.result().stop(opened)
@@ -308,12 +320,12 @@ class SessionRecordings(QObject):
     @property
     def is_written(self) -> bool:
         """Whether the journal takes all that comes in, and nothing of it waits for long or was dropped."""
-        return self._recorder is not None and is_written(self._recorder.status)
+        return self.has_begun and self._latest is not None and is_written(self._latest.status)
 
     def mark(self, text: str) -> None:
         """Note in the journal what happens now."""
-        if self._recorder is not None:
-            self._recorder.mark(text)
+        if self.has_begun and self._latest is not None:
+            self._latest.mark(text)
 
     def say_restrapped(self) -> None:
         """What is recorded next is a new calibration's."""
@@ -381,8 +393,8 @@ class SessionRecordings(QObject):
 
     def _go_on(self) -> None:
         """The next recording may begin."""
-        if self._is_stopping:
-            self.ongoing, self._is_stopping = None, False
+        if self._phase is RecordingPhase.STOPPING:
+            self.ongoing, self._phase = None, RecordingPhase.IDLE
             self._waited.stop()
 
     def _on_trouble(self, trouble: Trouble) -> None:
@@ -401,15 +413,16 @@ class SessionRecordings(QObject):
         self.changed.emit()
 
     def _on_started(self, recorder: Recorder) -> None:
-        if self._is_closed:
+        if self._phase is RecordingPhase.CLOSED:
             return
-        self._recorder = self._latest = recorder
+        must_stop = self._phase is RecordingPhase.BEGINNING_TO_STOP
+        self._phase, self._latest = RecordingPhase.WRITING, recorder
         self._is_restrapped = False
         self._is_without_row = not recorder.has_row
         self.begun.emit()
         if self.trouble_message() != NOTHING:
             self.troubled.emit(*self.trouble_message())
-        if self._must_stop:
+        if must_stop:
             self.stop(self._strides, is_kept=self._must_keep)
 
     def _moved(self) -> Message:
@@ -450,12 +463,14 @@ class SessionRecordings(QObject):
 
     def _on_not_started(self, what: str, remedy: str) -> None:
         self.ongoing = None
+        if self._phase is not RecordingPhase.CLOSED:
+            self._phase = RecordingPhase.IDLE
         self.changed.emit()
         self.refused.emit(what, remedy)
 
     def _on_not_read_back(self, what: str, _remedy: str) -> None:
         """What was recorded is on the disk: try for a while to read it back, then leave that to the next start."""
-        is_first = self._is_stopping or self._readings == 1
+        is_first = self.is_stopping or self._readings == 1
         self._is_reading = False
         self._go_on()
         if self._controller.state is not None and (self._controller.is_gone or self._readings < MOST_READINGS):

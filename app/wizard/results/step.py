@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from enum import Enum, auto
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -39,13 +40,21 @@ if TYPE_CHECKING:
     from core.samples import Recording, Session
 
 
+class Shown(Enum):
+    """Which part of the step somebody asked for."""
+
+    RESULTS = auto()  # the curves and figures, or why there are none yet
+    CORRECTIONS = auto()  # what can be put right about the walks
+    DIAGNOSTICS = auto()  # how a joint was found, of the analysis that is shown
+
+
 class ResultsStep(Step):
     def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
         self._held: tuple[object, Analysis] | None = None  # by the page of results, which may be out of sight
-        self._is_correcting = self._is_asking = False
+        self._part = Shown.RESULTS
         self._how_found: DiagnosticsController | None = None
         self._undos: list[Callable[[], object]] = []  # the latest last
         self._strides = StrideChoice(visit.recordings, self)
@@ -96,10 +105,10 @@ class ResultsStep(Step):
     def bar(self) -> BarState:
         if self._shown is None or not self._kept_walks:
             return BarState()
-        if self._is_asking:
+        if self._part is Shown.DIAGNOSTICS:
             return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
         quiet: tuple[BarAction, ...] = ()
-        if not self._is_correcting:
+        if self._part is not Shown.CORRECTIONS:
             quiet = (
                 BarAction(tr("Correct"), icon=Icon.REPEAT),
                 BarAction(tr("Review in Rerun"), icon=Icon.PLAY),
@@ -113,7 +122,7 @@ class ResultsStep(Step):
 
     def on_quiet(self, number: int) -> None:
         if number == 0 and self.bar().quiet:
-            self._is_correcting = True
+            self._part = Shown.CORRECTIONS
             self._show()
             self.page.correct().focus()
         elif number == 1 and self.bar().quiet:
@@ -125,7 +134,7 @@ class ResultsStep(Step):
             self._ask()
 
     def on_intent(self, intent: Intent) -> bool:
-        if self._is_asking and intent.action in (KeyAction.BACK, KeyAction.UNFILL):
+        if self._part is Shown.DIAGNOSTICS and intent.action in (KeyAction.BACK, KeyAction.UNFILL):
             self._on_answered()
             return True
         return False
@@ -136,7 +145,7 @@ class ResultsStep(Step):
             self._undos.pop()()
 
     def leave(self) -> None:
-        self._is_correcting = self._is_asking = False
+        self._part = Shown.RESULTS
         self._visit.looking.stop()
 
     def _evaluate_if_stale(self) -> None:
@@ -148,10 +157,12 @@ class ResultsStep(Step):
 
     def _show(self) -> None:
         page, evaluation = self.page, self._visit.evaluation
-        self._is_asking &= evaluation.analysis is self._shown and not evaluation.is_busy
-        if self._is_correcting:
+        is_of_shown = evaluation.analysis is self._shown and not evaluation.is_busy
+        if self._part is Shown.DIAGNOSTICS and not is_of_shown:
+            self._part = Shown.RESULTS
+        if self._part is Shown.CORRECTIONS:
             self._show_corrections()
-        elif self._is_asking:
+        elif self._part is Shown.DIAGNOSTICS:
             page.setCurrentWidget(page.found())
         elif evaluation.is_busy:
             page.working.begin(tr("Analysing the walks"))
@@ -199,7 +210,7 @@ class ResultsStep(Step):
         evaluation, recording = self._visit.evaluation, self.page.results().recording
         if evaluation.session is None or evaluation.analysis is None or recording is None:
             return
-        self._is_asking = True
+        self._part = Shown.DIAGNOSTICS
         self._controller_of_found().show(evaluation.session, evaluation.analysis, recording)
         self._show()
         self.page.found().focus()
@@ -215,7 +226,7 @@ class ResultsStep(Step):
         return self._how_found
 
     def _on_answered(self) -> None:
-        self._is_asking = False
+        self._part = Shown.RESULTS
         self._visit.looking.stop()
         self._show()
 
@@ -321,7 +332,7 @@ class ResultsStep(Step):
         self._offer(tr("Left and right are swapped."), self._visit.swap_sides)
 
     def _on_corrected(self) -> None:
-        self._is_correcting = False
+        self._part = Shown.RESULTS
         self._show()
 
     def _offer(self, words: str, undo: Callable[[], object]) -> None:
@@ -346,14 +357,14 @@ class ResultsStep(Step):
         if self._is_in_sight():
             was_busy = self._visit.evaluation.is_busy
             self._evaluate_if_stale()
-            if self._is_correcting:
+            if self._part is Shown.CORRECTIONS:
                 self._show_corrections()
             elif self._visit.evaluation.is_busy and not was_busy:
                 self._show()
         self.changed.emit()
 
     def _on_visit_changed(self) -> None:
-        if self._is_correcting and self._is_in_sight():
+        if self._part is Shown.CORRECTIONS and self._is_in_sight():
             self._show_corrections()
 
     def _on_evaluated(self) -> None:

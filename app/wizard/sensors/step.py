@@ -1,6 +1,7 @@
 """Six sensors on, and each known: heard through a source, and told where they are worn."""
 
 import datetime
+from enum import Enum, auto
 from pathlib import Path
 from typing import TYPE_CHECKING
 from uuid import UUID
@@ -42,6 +43,14 @@ TRACE_S, TRACE_POINTS = 5.0, 250
 TURNS_MORE = 2.0  # times the variance that another axis needs before the trace goes over to it
 
 
+class SensorsShown(Enum):
+    """What the step asks about, while the source it has goes on sending."""
+
+    NOTHING = auto()  # another step is in sight
+    SOURCE = auto()  # the source, and who wears which of its sensors
+    STORED = auto()  # which stored session is to be replayed
+
+
 class SensorsStep(Step):
     """The library is told who wears what when the step is left, and only if that is news."""
 
@@ -50,12 +59,11 @@ class SensorsStep(Step):
         self._page: SensorsPage | None = None
         self._estimator: PlacingEstimator | None = None
         self._shakes = self._ticks = 0
-        self._is_in_sight = False
+        self._asks = SensorsShown.NOTHING
         self._wanted: dict[str, Site] = {}  # where sensors go that are being looked for again
         self._without_light: set[str] = set()
         self._axis: dict[str, int] = {}  # which of a sensor's axes its trace shows
         self._silent_site: Site | None = None
-        self._is_choosing = False  # which stored session is to be replayed
         self._told_of = ""  # the choice of which it was said whom it asks on the network
         self._names: dict[UUID, str] = {}  # of stored sessions
         self._dialog: QFileDialog | None = None
@@ -123,14 +131,14 @@ class SensorsStep(Step):
         return "sensors"
 
     def enter(self) -> None:
-        self._is_in_sight = True
+        self._asks = SensorsShown.SOURCE
         self._visit.begin_session()
         self._begin_estimator()
         self._show()
         self.page.focus()
 
     def leave(self) -> None:
-        self._is_in_sight = self._is_choosing = False
+        self._asks = SensorsShown.NOTHING
         self._told_of = ""
         self._replays.stop()
         self._telling.end()
@@ -220,6 +228,18 @@ class SensorsStep(Step):
         if intent.action is KeyAction.IDENTIFY:
             return self.page.identify_selected()
         return False
+
+    @property
+    def _is_in_sight(self) -> bool:
+        return self._asks is not SensorsShown.NOTHING
+
+    @property
+    def _is_choosing(self) -> bool:
+        return self._asks is SensorsShown.STORED
+
+    def _end_choosing(self) -> None:
+        if self._is_choosing:
+            self._asks = SensorsShown.SOURCE
 
     @property
     def _known_places(self) -> dict[str, Site]:
@@ -369,7 +389,7 @@ class SensorsStep(Step):
         choice = next((one for one in known if one.key == key), None)
         if choice is None:
             return
-        self._is_choosing = False
+        self._end_choosing()
         self._telling.end()
         is_told, self._told_of = key == self._told_of, ""
         if any(choice.asks) and not is_told:
@@ -413,7 +433,7 @@ class SensorsStep(Step):
 
     def _choose_stored(self) -> None:
         """Ask which: what sends now goes on doing so meanwhile."""
-        self._is_choosing = True
+        self._asks = SensorsShown.STORED
         self.page.stored.tell("")
         session = self._visit.session
         self._replays.list_sessions(session.id if session is not None else None)
@@ -427,7 +447,7 @@ class SensorsStep(Step):
         self._names = {line.id: tr("{code}, {when}").format(code=line.code, when=line.when) for line in shown}
         page = self.page
         page.stored.show_sessions(shown)
-        if self._is_in_sight and self._is_choosing:
+        if self._is_choosing:
             page.focus()
             self.changed.emit()
 
@@ -449,7 +469,7 @@ class SensorsStep(Step):
         self.changed.emit()
 
     def _on_stored_left(self) -> None:
-        self._is_choosing = False
+        self._end_choosing()
         self._show()
         self.page.focus()
         self.changed.emit()
@@ -457,7 +477,7 @@ class SensorsStep(Step):
     def _on_replay_read(self, choice: SourceChoice) -> None:
         if not self._is_in_sight:
             return
-        self._is_choosing = False
+        self._end_choosing()
         self.page.stored.tell("")
         self._visit.sensors.search(choice)
 
