@@ -29,6 +29,7 @@ from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
+from app.widgets.themed import Themed
 from app.widgets.toast import Toast
 from app.wording import place, tr
 from app.workers.background import Report
@@ -64,7 +65,7 @@ class _Sessions:
     recovered: frozenset[UUID]
 
 
-class Home(QWidget):
+class Home(Themed):
     session_wished = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
     demonstration_wished = Signal()
@@ -253,7 +254,6 @@ class Home(QWidget):
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
         self.deleting.refused.connect(self._on_refused)
-        self._look.changed.connect(self._on_look_changed)
         for keys, slot in (
             ("Ctrl+F", self._on_find),
             ("Ctrl+N", self._on_new_patient),

@@ -409,15 +409,13 @@ class _FiguresCard(Card):
     """All figures of the joint as a list of names and values."""
 
     def __init__(self, look: Look) -> None:
+        self._grid = QGridLayout()
         super().__init__(look)
         self._figures: Sequence[FoundFigure] = ()
         self._columns = 2
-        self._grid = QGridLayout()
         self.column.addWidget(Text(look, tr("In figures"), size=16, weight=SEMIBOLD))
         self.column.addLayout(self._grid)
         self._texts: list[Text] = []
-        look.changed.connect(self._space)
-        self._space()
 
     def show_figures(self, figures: Sequence[FoundFigure]) -> None:
         self._figures = figures
@@ -450,7 +448,8 @@ class _FiguresCard(Card):
                 column, self._look.theme.px(24) if column == 2 < 3 * self._columns - 1 else 0
             )
 
-    def _space(self) -> None:
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         self._grid.setHorizontalSpacing(self._look.theme.px(12))
         self._grid.setVerticalSpacing(self._look.theme.px(4))
 

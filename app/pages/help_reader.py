@@ -2,7 +2,7 @@
 
 import re
 
-from PySide6.QtCore import Qt, QUrl
+from PySide6.QtCore import QEvent, Qt, QUrl
 from PySide6.QtGui import (
     QColor,
     QFont,
@@ -45,7 +45,6 @@ class HelpReader(QTextBrowser):
         self.setLineWrapMode(QTextEdit.LineWrapMode.FixedPixelWidth)
         self.setOpenLinks(False)  # nothing leads out of this computer
         self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -194,6 +193,11 @@ class HelpReader(QTextBrowser):
                     under.setBottomBorderStyle(QTextFrameFormat.BorderStyle.BorderStyle_Solid)
                     under.setBottomBorderBrush(QColor(theme.colours.line))
                     cell.setFormat(under)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._on_look_changed()
 
     def _on_look_changed(self) -> None:
         self.setFont(self._look.theme.font(BODY))

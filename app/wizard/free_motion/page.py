@@ -14,6 +14,7 @@ from app.widgets.button import Button, Kind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.notice import Notice
+from app.widgets.themed import Themed
 from core.body import Joint, Site
 
 USUAL_S = 10.0
@@ -32,7 +33,7 @@ class FreeMotionView:
     worn: Mapping[Site, SensorMark] = field(default_factory=dict)
 
 
-class FreeMotionPage(QWidget):
+class FreeMotionPage(Themed):
     """Its gauges are laid out like the patient who faces you; where there is little room, without the figure.
 
     Signals
@@ -63,7 +64,6 @@ class FreeMotionPage(QWidget):
         self._column.addWidget(self.band)
         self._column.addLayout(self._grid, 1)
         self.question.answered.connect(self.answered)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -140,7 +140,7 @@ class FreeMotionPage(QWidget):
         self.update()
 
 
-class _Question(QWidget):
+class _Question(Themed):
     """What has to be answered by somebody who sees the patient; hidden while nothing has."""
 
     answered = Signal(int)
@@ -157,7 +157,6 @@ class _Question(QWidget):
             self._row.addWidget(button)
         self.buttons[0].clicked.connect(self._on_first_clicked)
         self.buttons[1].clicked.connect(self._on_second_clicked)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.hide()
 

@@ -30,6 +30,7 @@ class BandCard(Card):
     """The group that the patient's curves will lie on, and whether the patient is like them."""
 
     def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+        self._advice = QHBoxLayout()
         super().__init__(look, padding=20, spacing=6)
         self._ages_years = curves.ages_years
         group = tr("{n} young adults, barefoot on a treadmill at {speed} m/s. Fukuchi 2018.").format(
@@ -37,15 +38,12 @@ class BandCard(Card):
         )
         self._mark = IconMark(look, Icon.INFO)
         self._words = Text(look, size=14, wraps=True)
-        self._advice = QHBoxLayout()
         self._advice.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
         self._advice.addWidget(self._words, 1)
         self.column.addWidget(Text(look, tr("Reference band"), size=16, weight=SEMIBOLD))
         self.column.addWidget(Text(look, group, size=14, wraps=True))
         self.column.addWidget(_BandDrawing(look, curves))
         self.column.addLayout(self._advice)
-        look.changed.connect(self._on_spacing_changed)
-        self._on_spacing_changed()
 
     def judge(self, age: int | None) -> None:
         """Say whether a patient of `age` years is of the group's age."""
@@ -60,7 +58,8 @@ class BandCard(Card):
             words = tr("Of the patient's age. The speed still has to fit, for which the height is needed.")
         self._words.setText(words)
 
-    def _on_spacing_changed(self) -> None:
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         self._advice.setSpacing(self._look.theme.px(10))
 
 
@@ -78,7 +77,6 @@ class _BandDrawing(QWidget):
                 angle=f"{curves.knee_mean_deg[peak]:.0f}", percent=peak
             )
         )
-        look.changed.connect(self.updateGeometry)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -137,18 +135,16 @@ class LastVisitCard(Card):
     """What was worn and recorded last time, and the way to have the same again."""
 
     def __init__(self, look: Look) -> None:
+        self._facts = QGridLayout()
         super().__init__(look, padding=20, spacing=10)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self.same = Button(look, tr("Same set-up as last visit"), Kind.SECONDARY, Icon.REPEAT)
-        self._facts = QGridLayout()
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
         self.column.addWidget(self._title)
         self.column.addLayout(self._facts)
         self.column.addStretch(1)
         self.column.addWidget(self.same)
-        look.changed.connect(self._on_spacing_changed)
-        self._on_spacing_changed()
 
     def show_visit(self, visit: LastVisit) -> None:
         self._title.setText(visit.title)
@@ -166,7 +162,8 @@ class LastVisitCard(Card):
                 self._facts.addWidget(text, row, column, Qt.AlignmentFlag.AlignTop)
                 self._shown.append(text)
 
-    def _on_spacing_changed(self) -> None:
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         px = self._look.theme.px
         self._facts.setHorizontalSpacing(px(16))
         self._facts.setVerticalSpacing(px(8))

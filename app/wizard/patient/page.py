@@ -22,6 +22,7 @@ from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
 from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wizard.patient.cards import BandCard, LastVisit, LastVisitCard, TakenCard
 from app.wording import tr
 from core.body import Side
@@ -46,7 +47,7 @@ class PatientDraft:
     without_ankle: frozenset[Side] = frozenset()
 
 
-class PatientPage(QWidget):
+class PatientPage(Themed):
     """What was typed stays on the page, right or wrong.
 
     Signals
@@ -119,7 +120,6 @@ class PatientPage(QWidget):
         self.show_draft(PatientDraft())
         self.show_last_visit(None)
         self._taken.hide()
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -340,7 +340,7 @@ class PatientPage(QWidget):
         self._fit()
 
 
-class _Captioned(QWidget):
+class _Captioned(Themed):
     """A control under its label, as a field has it, with a few words at the label's right."""
 
     def __init__(self, look: Look, content: QWidget, caption: str, note: str = "") -> None:
@@ -356,7 +356,6 @@ class _Captioned(QWidget):
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addLayout(self._above)
         self._column.addWidget(content)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def set_note(self, note: str) -> None:
@@ -375,7 +374,6 @@ class _Line(QWidget):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self.update)
 
     def sizeHint(self) -> QSize:
         return QSize(0, 1)

@@ -13,6 +13,7 @@ from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 WORDS_WIDTH = 320
@@ -27,7 +28,7 @@ QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
 FIRST_CHOICE = ("csv", "rrd")
 
 
-class ReportPage(QWidget):
+class ReportPage(Themed):
     """Shown pages as pictures.
 
     Signals
@@ -99,7 +100,6 @@ class ReportPage(QWidget):
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_wanted.connect(self.sharper_wanted)
         self.show_visits([])
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -220,7 +220,6 @@ class _Sheets(QWidget):
         self.setAccessibleName(tr("No pages yet"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        look.changed.connect(self.updateGeometry)
 
     @property
     def count(self) -> int:

@@ -14,6 +14,7 @@ from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 PADDING = 24
@@ -53,7 +54,7 @@ class ColumnsTold:
         )
 
 
-class ColumnsForm(QWidget):
+class ColumnsForm(Themed):
     """
     Signals
     -------
@@ -98,7 +99,6 @@ class ColumnsForm(QWidget):
         self.back = Button(look, tr("Other sources"), Kind.QUIET)
         self._build()
         self.back.clicked.connect(self.back_pressed)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property

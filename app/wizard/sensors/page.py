@@ -22,6 +22,7 @@ from app.widgets.choice import Choice
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wizard.sensors.columns_form import ColumnsForm
 from app.wizard.sensors.sensor_list import SensorList
 from app.wizard.sensors.sensor_places import PlaceShown, SensorPlaces
@@ -47,7 +48,7 @@ class Way(StrEnum):
     MOTION = "motion"
 
 
-class SensorsPage(QWidget):
+class SensorsPage(Themed):
     """
     Signals
     -------
@@ -324,7 +325,6 @@ class SensorsPage(QWidget):
         self.list.identify_pressed.connect(self.identify_pressed)
         self.list.reconnect_pressed.connect(self.reconnect_pressed)
         self._flash_end.timeout.connect(self._end_flash)
-        self._look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def _show(self, page: QWidget) -> None:

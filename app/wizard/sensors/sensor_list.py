@@ -10,6 +10,7 @@ from app.theme import Look
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.widgets.themed import Themed
 from app.wizard.sensors.sensor_places import segment_name
 from app.wizard.sensors.sensor_row import CHEVRON, CHIP, ROW, SensorRow, SensorRowView
 from app.wording import tr
@@ -24,7 +25,7 @@ IDENTIFY = 44
 TRACE_AT_LEAST = 48
 
 
-class SensorList(QWidget):
+class SensorList(Themed):
     """
     Signals
     -------
@@ -52,7 +53,6 @@ class SensorList(QWidget):
         self._column.addStretch(1)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Preferred)
         self.setAccessibleName(tr("Sensors"))
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def show_sensors(self, sensors: Sequence[SensorRow]) -> None:

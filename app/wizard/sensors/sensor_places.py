@@ -26,6 +26,7 @@ from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.widgets.themed import Themed
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
 
@@ -53,7 +54,7 @@ class PlaceShown:
     is_flashing: bool = False
 
 
-class SensorPlaces(QWidget):
+class SensorPlaces(Themed):
     """
     Signals
     -------
@@ -83,7 +84,6 @@ class SensorPlaces(QWidget):
         self.tiles = {site: _Tile(look, site, self) for site in Site}
         for tile in self.tiles.values():
             tile.clicked.connect(self._on_tile_clicked)
-        look.changed.connect(self._arrange)
 
     def show_places(self, places: Mapping[Site, PlaceShown]) -> None:
         """Show what is worn at each of the six sites."""
@@ -193,6 +193,9 @@ class SensorPlaces(QWidget):
 
     def _beside_legs(self) -> int:
         return self._edge() + self._tile_width() + self._look.theme.px(BESIDE_LEGS)
+
+    def _on_look_changed(self) -> None:
+        self._arrange()
 
     def _arrange(self) -> None:
         """Put the figure in the middle and each tile beside its place, none over another."""

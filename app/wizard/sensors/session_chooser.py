@@ -13,13 +13,14 @@ from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 LINES_AT_LEAST = 1.4  # in sight, so that it is seen that there are more
 LINE = 72
 
 
-class SessionChooser(QWidget):
+class SessionChooser(Themed):
     """
     Signals
     -------
@@ -77,7 +78,6 @@ class SessionChooser(QWidget):
         self.sessions.opened.connect(self.opened)
         self.folder.clicked.connect(self.folder_pressed)
         self.back.clicked.connect(self.back_pressed)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self.show_sessions(())
         self.tell("")

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtWidgets import QProgressBar, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 
 from app.icons import Icon
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr
 
 
@@ -23,7 +24,7 @@ class SourceOption:
     note: str = ""
 
 
-class NoSource(QWidget):
+class NoSource(Themed):
     """One sentence, the sources that can be opened, and why others are not among them."""
 
     chosen = Signal(str)
@@ -47,7 +48,6 @@ class NoSource(QWidget):
         self._column.addLayout(self._row)
         self._column.addWidget(self._left_out)
         self._column.addStretch(2)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def tell(self, what: str, then: str) -> None:
@@ -97,7 +97,7 @@ class NoSource(QWidget):
             button.setMinimumWidth(px(320))
 
 
-class Searching(QWidget):
+class Searching(Themed):
     """What is looked for or read, and the way out."""
 
     def __init__(self, look: Look) -> None:
@@ -115,7 +115,6 @@ class Searching(QWidget):
         self._column.addWidget(self._line, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addWidget(self.stop, 0, Qt.AlignmentFlag.AlignHCenter)
         self._column.addStretch(2)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def begin(self, sentence: str) -> None:

@@ -17,6 +17,7 @@ from app.widgets.field import NumberField
 from app.widgets.notice import Notice
 from app.widgets.stillness import INSET, STEPS, CountRing, MovementBars, RingFace
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import name_of, tr
 from core.body import Joint, Side, Site
 from core.calibration.rest import MAX_SPREAD_RAD_S
@@ -74,7 +75,7 @@ class StandStillView:
         return bool(self.moved) and is_waiting and self.still_s < MOVED_FOR_S
 
 
-class StandStillPage(QWidget):
+class StandStillPage(Themed):
     """Words go L then R.
 
     Signals
@@ -109,7 +110,6 @@ class StandStillPage(QWidget):
         self._row = QHBoxLayout(self)
         self._row.addWidget(self._count, 1)
         self._row.addWidget(self.zero)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self._show()
 
@@ -215,19 +215,17 @@ class _ZeroCard(Card):
     edited = Signal(object, object)
 
     def __init__(self, look: Look) -> None:
+        self._headings: list[QHBoxLayout] = []
+        self._inside = QWidget()
+        self._column, self._grid = QVBoxLayout(self._inside), QGridLayout()
         super().__init__(look, padding=20, spacing=12)
-        self._look = look
         self._is_compact = False
         self._view = StandStillView()
         self._worn: frozenset[Joint] = frozenset(Joint)
-        self._headings: list[QHBoxLayout] = []
         self.fields: dict[Joint, NumberField] = {}
-        self._inside = QWidget()
-        self._column = QVBoxLayout(self._inside)
         self._column.addWidget(Text(look, tr("Zero angle"), size=20, weight=SEMIBOLD))
         explained = tr("0° if the joint is straight now. Type the goniometer value for a contracture.")
         self._column.addWidget(Text(look, explained, size=14, tone="ink2", wraps=True))
-        self._grid = QGridLayout()
         self._add_joint(tr("Knee"), tr("flexion is +"), tr("Knee flexion"), KNEE_DEG, is_knee=True)
         self._add_joint(tr("Ankle"), tr("dorsiflexion is +"), tr("Ankle dorsiflexion"), ANKLE_DEG, is_knee=False)
         self._column.addLayout(self._grid)
@@ -245,8 +243,7 @@ class _ZeroCard(Card):
         self.column.addWidget(self._scroll, 1)
         self.column.addWidget(self.note)
         self.column.addWidget(self.button)
-        look.changed.connect(self._on_theme_changed)
-        self._on_theme_changed()
+        self._on_look_changed()
         self._show()
 
     @property
@@ -267,7 +264,7 @@ class _ZeroCard(Card):
 
     def set_compact(self, is_compact: bool) -> None:
         self._is_compact = is_compact
-        self._on_theme_changed()
+        self._on_look_changed()
         self._show()
 
     def show_zero(self, zero_deg: Mapping[Joint, float]) -> None:
@@ -314,7 +311,8 @@ class _ZeroCard(Card):
             self.fields[joint] = one
             self._grid.addWidget(one, row + 1, column, Qt.AlignmentFlag.AlignTop)
 
-    def _on_theme_changed(self) -> None:
+    def _on_look_changed(self) -> None:
+        super()._on_look_changed()
         px = self._look.theme.px
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.setSpacing(px(8))

@@ -2,13 +2,14 @@
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QAbstractButton, QSizePolicy, QWidget
+from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import Look
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.field import Field
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
+from app.widgets.themed import Themed
 from app.wording import tr
 
 HEIGHT = 48  # as high as the field beside them
@@ -18,7 +19,7 @@ DIGITS = 9
 STEPS = {Qt.Key.Key_Right: 1, Qt.Key.Key_Down: 1, Qt.Key.Key_Left: -1, Qt.Key.Key_Up: -1}
 
 
-class LabelChooser(QWidget):
+class LabelChooser(Themed):
     """The labels wrap into as many lines as they need, the field for other words last. Arrows move and choose."""
 
     chosen = Signal(str)  # by the user
@@ -33,7 +34,6 @@ class LabelChooser(QWidget):
         self.setAccessibleName(tr("Next condition"))
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.own.committed.connect(self._on_own_committed)
-        look.changed.connect(self._arrange)
         self._arrange()
 
     @property
@@ -118,6 +118,9 @@ class LabelChooser(QWidget):
 
     def _height_for(self, width: int) -> int:
         return self._flow(width)[-1].bottom() + 1
+
+    def _on_look_changed(self) -> None:
+        self._arrange()
 
     def _arrange(self) -> None:
         for widget, place in zip([*self._options, self.own], self._flow(self.width()), strict=True):

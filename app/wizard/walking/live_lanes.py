@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
-from PySide6.QtWidgets import QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy
 
 from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
@@ -18,6 +18,7 @@ from app.theme import Look
 from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
+from app.widgets.themed import Themed
 from app.wizard.walking.live_strip import SHOWN_S
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from app.wizard.walking.scrolling_picture import ScrollingPicture
@@ -30,7 +31,7 @@ TICK_S = 2.0
 LEAST_WIDTH = 320
 
 
-class LiveLanes(QWidget):
+class LiveLanes(Themed):
     """Left above right over a time axis that ends now."""
 
     def __init__(self, look: Look) -> None:
@@ -44,7 +45,6 @@ class LiveLanes(QWidget):
         self._drawn: Mapping[Side, tuple[PhaseSpan, ...]] = {}
         self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._on_look_changed)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px

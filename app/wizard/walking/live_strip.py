@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 import pyqtgraph as pg
-from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
 from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
 
@@ -77,7 +77,6 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
         self._view.sigResized.connect(self._history.on_resized)
         self._view.sigResized.connect(self._set_range)
         self._set_range()
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     @property
@@ -124,6 +123,11 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self._history.update()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._on_look_changed()
 
     def _on_look_changed(self) -> None:
         theme = self._look.theme

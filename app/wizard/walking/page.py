@@ -19,6 +19,7 @@ from app.theme import Look
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
+from app.widgets.themed import Themed
 from app.wizard.walking.cards import ACROSS, DOWN, FIGURE, EmptyCard, NextCard, StoppedCard, WalkFigures
 from app.wizard.walking.charts import WalkingCharts, last_angles_in_words
 from app.wizard.walking.readout import WalkingReadout
@@ -38,7 +39,7 @@ DESCRIBED_EVERY_S = 1.0  # who listens is not told every frame
 ANY_WIDTH = 16777215  # what Qt calls no limit
 
 
-class WalkingPage(QWidget):
+class WalkingPage(Themed):
     """Its look follows the walks it is shown: none yet, one being recorded, or in between.
 
     Signals
@@ -81,7 +82,6 @@ class WalkingPage(QWidget):
         self._scroll = QScrollArea()
         self._build()
         self._connect()
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
         self._arrange()
 

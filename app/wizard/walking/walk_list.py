@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from enum import StrEnum
 
-from PySide6.QtCore import QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -23,6 +23,7 @@ from app.widgets.card import Card
 from app.widgets.icons import IconMark
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
 BADGE = 28
@@ -141,7 +142,7 @@ class WalkList(Card):
         self._fit()
 
 
-class _Row(QWidget):
+class _Row(Themed):
     def __init__(self, look: Look, owner: WalkList) -> None:
         super().__init__()
         self._look, self._owner = look, owner
@@ -160,7 +161,6 @@ class _Row(QWidget):
         self._row.addWidget(self._mark)
         self._row.addWidget(self.undo)
         self.undo.clicked.connect(self._on_undo_clicked)
-        look.changed.connect(self._on_look_changed)
         self._on_look_changed()
 
     def show_walk(self, walk: WalkRow) -> None:
@@ -233,8 +233,12 @@ class ActionRow(QAbstractButton):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        look.changed.connect(self._fit)
         self._fit()
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() is QEvent.Type.StyleChange:
+            self._fit()
 
     def sizeHint(self) -> QSize:
         return QSize(self._look.theme.px(180), self.minimumHeight())
