@@ -91,12 +91,17 @@ class MainWindow(QWidget):
         self.session = SessionScreen(look)
         self.entry = Entry(look, self.controller, settings, library, self) if library is not None else None
         self.screens = QStackedWidget()
-        self.idle = IdleLock(time.time, self._lock)
+        self.idle = IdleLock(time.time, self.lock)
         self._poll = QTimer(self)
         self._poll.setInterval(POLL_MS)
         self._build()
         self._connect()
         self._begin()
+
+    @property
+    def wizard(self) -> "Wizard | None":
+        """Made when a visit begins, or ahead of it; none before."""
+        return self._wizard
 
     @property
     def home(self) -> "Home | None":
@@ -381,7 +386,7 @@ class MainWindow(QWidget):
                 self.entry.show_recording(self._is_recording)
             self.entry.look_again()
 
-    def _lock(self) -> None:
+    def lock(self) -> None:
         """Cover what the library shows; a recording goes on under it."""
         state = self.controller.state
         if self.entry is None or state is None or state.is_demonstration or self.entry.is_showing_key:

@@ -327,7 +327,7 @@ class Home(Themed):
         if self.current is not self.page:
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
-        patient = self._patient
+        patient = self.patient
         if patient is None:
             return BarState(quiet=(new,), has_back=False)
         words = tr("New session for {code}").format(code=patient.told.code)
@@ -336,7 +336,8 @@ class Home(Themed):
         return BarState(begin, quiet=(new,), note=note, has_back=False)
 
     @property
-    def _patient(self) -> "stored.StoredPatient | None":
+    def patient(self) -> "stored.StoredPatient | None":
+        """The patient whose sessions are shown."""
         return self._patients.get(self.page.patient_id) if self.page.patient_id is not None else None
 
     def _on_patients(self, patients: _Patients) -> None:
@@ -380,8 +381,8 @@ class Home(Themed):
     def _on_primary(self) -> None:
         if self.current is self.import_page:
             self._import()
-        elif self.current is self.page and self._patient is not None:
-            self.session_wished.emit(self._patient)
+        elif self.current is self.page and self.patient is not None:
+            self.session_wished.emit(self.patient)
 
     def _on_quiet(self, _number: int) -> None:
         self._on_new_patient()
@@ -452,7 +453,7 @@ class Home(Themed):
 
     def _on_folder_read(self, session: "Session") -> None:
         self._to_import = session
-        code = session.patient.code or (self._patient.told.code if self._patient is not None else "")
+        code = session.patient.code or (self.patient.told.code if self.patient is not None else "")
         names = [recording.name for recording in session.recordings]
         self.import_page.show_session(
             str(self._folder), names, code, session.findings, is_simulated=session.is_simulated

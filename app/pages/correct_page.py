@@ -61,8 +61,8 @@ class CorrectPage(Themed):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._walks: dict[str, _WalkRow] = {}
-        self._joints: dict[Joint, _JointRow] = {}
+        self.walk_rows: dict[str, _WalkRow] = {}
+        self.joint_rows: dict[Joint, _JointRow] = {}
         self.back = Button(look, tr("Back to the results"), Kind.SECONDARY, Icon.BACK)
         self.note = Text(
             look, tr("Every correction is kept with who made it, and can be undone."), tone="ink2", wraps=True
@@ -82,32 +82,32 @@ class CorrectPage(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        walks = [widget for row in self._walks.values() for widget in (row.condition, row.kept)]
-        return [self.back, *walks, *(row.turned for row in self._joints.values()), self.swap]
+        walks = [widget for row in self.walk_rows.values() for widget in (row.condition, row.kept)]
+        return [self.back, *walks, *(row.turned for row in self.joint_rows.values()), self.swap]
 
     def show_walks(self, lines: Sequence[WalkLine]) -> None:
         """Show the walks; what is being typed stays."""
-        for key in [key for key in self._walks if key not in {line.key for line in lines}]:
-            row = self._walks.pop(key)
+        for key in [key for key in self.walk_rows if key not in {line.key for line in lines}]:
+            row = self.walk_rows.pop(key)
             row.hide()
             row.deleteLater()
         for line in lines:
-            if line.key not in self._walks:
-                row = self._walks[line.key] = _WalkRow(self._look, line)
+            if line.key not in self.walk_rows:
+                row = self.walk_rows[line.key] = _WalkRow(self._look, line)
                 row.condition.committed.connect(self._on_condition_committed)
                 row.kept.toggled.connect(self._on_kept_toggled)
                 self.walks.column.insertWidget(self.walks.column.count() - 1, row)
-            self._walks[line.key].show_line(line)
+            self.walk_rows[line.key].show_line(line)
 
     def show_joints(self, lines: Sequence[JointLine]) -> None:
         for line in lines:
-            if line.joint not in self._joints:
-                row = self._joints[line.joint] = _JointRow(self._look, line.joint)
+            if line.joint not in self.joint_rows:
+                row = self.joint_rows[line.joint] = _JointRow(self._look, line.joint)
                 row.turned.toggled.connect(self._on_sign_toggled)
                 self.joints.column.insertWidget(self.joints.column.count() - 1, row)
-            self._joints[line.joint].show_line(line)
+            self.joint_rows[line.joint].show_line(line)
         known = {line.joint for line in lines}
-        for joint, row in self._joints.items():
+        for joint, row in self.joint_rows.items():
             row.setVisible(joint in known)
 
     def show_sides(self, why_not: str) -> None:
@@ -120,7 +120,7 @@ class CorrectPage(Themed):
         is_narrow = width < 940
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._columns.setDirection(way)
-        for row in self._walks.values():
+        for row in self.walk_rows.values():
             row.set_narrow(is_narrow and width < 700)
 
     def focus(self) -> None:
@@ -149,19 +149,19 @@ class CorrectPage(Themed):
 
     def _on_condition_committed(self) -> None:
         field = self.sender()
-        for key, row in self._walks.items():
+        for key, row in self.walk_rows.items():
             if row.condition is field:
                 self.condition_typed.emit(key, row.condition.text.strip())
 
     def _on_kept_toggled(self, is_kept: bool) -> None:
         toggle = self.sender()
-        for key, row in self._walks.items():
+        for key, row in self.walk_rows.items():
             if row.kept is toggle:
                 self.kept_turned.emit(key, is_kept)
 
     def _on_sign_toggled(self, is_turned: bool) -> None:
         toggle = self.sender()
-        for joint, row in self._joints.items():
+        for joint, row in self.joint_rows.items():
             if row.turned is toggle:
                 self.sign_turned.emit(str(joint), is_turned)
 

@@ -38,11 +38,11 @@ class FirstStartPage(EntryPage):
 
     def __init__(self, look: Look, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
-        self._shortest, self._is_same_key, self._key = shortest, is_same_key, ""
+        self._shortest, self._is_same_key, self.recovery_key = shortest, is_same_key, ""
         self._missing = ""
         self._is_asking = False
         self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
-        self._missing_lead = Text(look, tone="ink2", wraps=True)
+        self.missing_lead = Text(look, tone="ink2", wraps=True)
         self.look_again = Button(look, tr("Look again"), Kind.PRIMARY, None, tr("Enter"))
         self.make_another = Button(look, tr("Make a new, empty library instead"), Kind.QUIET, height=44)
         self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
@@ -108,7 +108,7 @@ class FirstStartPage(EntryPage):
 
         `waiting` recordings are on this computer until their library is back.
         """
-        self._missing, self._key, self._is_asking = folder, "", False
+        self._missing, self.recovery_key, self._is_asking = folder, "", False
         told = [tr("It was in {folder}, and is not there now.").format(folder=folder)]
         if waiting:
             kept = tr_n(
@@ -118,12 +118,12 @@ class FirstStartPage(EntryPage):
             )
             told.append(kept.format(count=waiting))
         told.append(tr("Connect its disk, or put its folder back: it then opens by itself."))
-        self._missing_lead.setText(" ".join(told))
+        self.missing_lead.setText(" ".join(told))
         self._show()
 
     def show_recovery_key(self, key: str) -> None:
         """Show the key, once, and forget the passphrase."""
-        self._key, self._is_asking = key, False
+        self.recovery_key, self._is_asking = key, False
         groups = key.split("-")
         lines = [groups[k : k + GROUPS] for k in range(0, len(groups), GROUPS)]
         self._key_words.setText("\n".join("   ".join(line) for line in lines))
@@ -134,7 +134,7 @@ class FirstStartPage(EntryPage):
 
     def ask_for_recovery_key(self) -> None:
         """Let the key be typed back that was shown earlier."""
-        self._key, self._is_asking = "", True
+        self.recovery_key, self._is_asking = "", True
         self.typed.set_text("")
         self._show()
         self.focus()
@@ -157,7 +157,7 @@ class FirstStartPage(EntryPage):
         self.code.setFocus()
 
     def focus(self) -> None:
-        key_part = self.typed if self._is_asking else self.print if self._key else None
+        key_part = self.typed if self._is_asking else self.print if self.recovery_key else None
         (key_part or (self.look_again if self._missing else self.code)).setFocus()
 
     def _build(self) -> None:
@@ -180,7 +180,7 @@ class FirstStartPage(EntryPage):
         self._missing_card = Card(self._look, padding=24, spacing=16)
         self._missing_card.column.addWidget(self.look_again)
         self._missing_card.column.addWidget(self.make_another)
-        for one in (self._missing_title, self._missing_lead, self._missing_card):
+        for one in (self._missing_title, self.missing_lead, self._missing_card):
             self.column.addWidget(one)
         self.column.addWidget(self._title)
         self.column.addWidget(self._lead)
@@ -208,9 +208,9 @@ class FirstStartPage(EntryPage):
             field.line_edit.returnPressed.connect(self._on_make)
 
     def _show(self) -> None:
-        has_key, is_asking = bool(self._key), self._is_asking
+        has_key, is_asking = bool(self.recovery_key), self._is_asking
         is_first = not has_key and not is_asking
-        for block in (self._missing_title, self._missing_lead, self._missing_card):
+        for block in (self._missing_title, self.missing_lead, self._missing_card):
             block.setVisible(is_first and self.is_missing)
         for block in (self._title, self._lead, self._first):
             block.setVisible(is_first and not self.is_missing)
@@ -256,10 +256,10 @@ class FirstStartPage(EntryPage):
             self.made.emit(code, self.name.text.strip(), self.passphrase.text)
 
     def _on_print(self) -> None:
-        self.print_wished.emit(self._key)
+        self.print_wished.emit(self.recovery_key)
 
     def _on_save(self) -> None:
-        self.save_wished.emit(self._key)
+        self.save_wished.emit(self.recovery_key)
 
     def _on_typed(self, _text: str) -> None:
         self.typed.set_wrong("")
@@ -268,11 +268,11 @@ class FirstStartPage(EntryPage):
         if self._is_asking:
             self.typed_back.emit(self.typed.text)
             return
-        if not self._is_same_key(self.typed.text, self._key):
+        if not self._is_same_key(self.typed.text, self.recovery_key):
             self.typed.set_wrong(tr("This is not the key above. Compare it group by group."))
             self.typed.setFocus()
             return
-        self._key = ""
+        self.recovery_key = ""
         self._key_words.setText("")
         self.typed.set_text("")
         self.done.emit()

@@ -116,11 +116,11 @@ class SettingsPage(Themed):
     ) -> None:
         """Show what the operator may set, whose code and name are `own`; nothing typed for another is kept."""
         self._own = own
-        self._access.setVisible(has_access)
-        self._backup.setVisible(has_backup)
-        self._deleted.setVisible(has_deleted)
+        self.access_card.setVisible(has_access)
+        self.backup_card.setVisible(has_backup)
+        self.deleted_card.setVisible(has_deleted)
         self._clinic.setVisible(has_operators)
-        self._operators.setVisible(has_operators)
+        self.operators_card.setVisible(has_operators)
         self.forget_typed()
         self.show_recovery_key("")
 
@@ -141,7 +141,7 @@ class SettingsPage(Themed):
 
     def show_recovery_key(self, key: str) -> None:
         """Show a new recovery key, until another page is shown."""
-        self._key = key
+        self.recovery_key = key
         self._key_words.setText(key.replace("-", "  "))
         for part in (self._key_words, self._key_hint, self.print, self.save):
             part.setVisible(bool(key))
@@ -150,26 +150,26 @@ class SettingsPage(Themed):
         self.clinic.set_text(name)
 
     def show_operators(self, operators: Sequence[OperatorLine]) -> None:
-        while (item := self._rows.takeAt(0)) is not None:
+        while (item := self.operator_rows.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:
                 widget.hide()
                 widget.deleteLater()
         for operator in operators:
             row = _OperatorRow(self._look, operator)
             row.switched.connect(self._on_operator_switched)
-            self._rows.addWidget(row)
+            self.operator_rows.addWidget(row)
 
     def show_deleted(self, lines: Sequence[DeletedLine]) -> None:
         """Show what can still be had back."""
-        while (item := self._deleted_rows.takeAt(0)) is not None:
+        while (item := self.deleted_rows.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:
                 widget.hide()
                 widget.deleteLater()
         for line in lines:
             row = _DeletedRow(self._look, line)
             row.restored.connect(self.restore_wished)
-            self._deleted_rows.addWidget(row)
-        self._none_deleted.setVisible(not lines)
+            self.deleted_rows.addWidget(row)
+        self.none_deleted.setVisible(not lines)
 
     def refuse_operator(self, sentence: str) -> None:
         self.code.set_wrong(sentence)
@@ -200,7 +200,7 @@ class SettingsPage(Themed):
 
     def _build_access(self) -> None:
         look = self._look
-        self._access = self._card(tr("Your passphrase and the recovery key"))
+        self.access_card = self._card(tr("Your passphrase and the recovery key"))
         self.old = Field(look, tr("Passphrase until now"), is_secret=True)
         self.new = Field(look, tr("New passphrase"), is_secret=True)
         self._strength = Text(look, strength_in_words("", self._shortest), tone="ink2", wraps=True)
@@ -220,45 +220,45 @@ class SettingsPage(Themed):
         )
         self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
         self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
-        self._access.column.addWidget(self.old)
-        self._access.column.addWidget(self.new)
-        self._access.column.addWidget(self._strength)
-        self._access.column.addWidget(self.again)
-        self._add_left(self._access, self.change)
-        self._access.column.addWidget(self._said)
-        self._add_left(self._access, self.renew)
-        self._access.column.addWidget(self._key_words)
-        self._access.column.addWidget(self._key_hint)
-        self._add_left(self._access, self.print, self.save)
+        self.access_card.column.addWidget(self.old)
+        self.access_card.column.addWidget(self.new)
+        self.access_card.column.addWidget(self._strength)
+        self.access_card.column.addWidget(self.again)
+        self._add_left(self.access_card, self.change)
+        self.access_card.column.addWidget(self._said)
+        self._add_left(self.access_card, self.renew)
+        self.access_card.column.addWidget(self._key_words)
+        self.access_card.column.addWidget(self._key_hint)
+        self._add_left(self.access_card, self.print, self.save)
         self.show_recovery_key("")
 
     def _build_backup(self) -> None:
         look = self._look
         self._is_backing_up = False
-        self._backup = self._card(tr("Backup"))
+        self.backup_card = self._card(tr("Backup"))
         hint = tr(
             "A second copy of all patients and recordings, encrypted, best on another disk. What is deleted here is "
             "in older copies for up to 90 days."
         )
-        self._backup_folder = Text(look, tone="ink2", wraps=True)
-        self._backup_said = Text(look, weight=MEDIUM, wraps=True)
+        self.backup_folder = Text(look, tone="ink2", wraps=True)
+        self.backup_said = Text(look, weight=MEDIUM, wraps=True)
         self.back_up = Button(look, tr("Back up now"))
         self.choose_folder = Button(look, tr("Choose the folder"), Kind.QUIET, Icon.FOLDER)
-        self._backup.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
-        self._backup.column.addWidget(self._backup_folder)
-        self._backup.column.addWidget(self._backup_said)
-        self._add_left(self._backup, self.back_up, self.choose_folder)
+        self.backup_card.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
+        self.backup_card.column.addWidget(self.backup_folder)
+        self.backup_card.column.addWidget(self.backup_said)
+        self._add_left(self.backup_card, self.back_up, self.choose_folder)
         self.show_backup("", "")
 
     def _build_deleted(self) -> None:
         look = self._look
-        self._deleted = self._card(tr("Deleted in the last 30 days"))
-        self._deleted_rows = QVBoxLayout()
-        self._none_deleted = Text(
+        self.deleted_card = self._card(tr("Deleted in the last 30 days"))
+        self.deleted_rows = QVBoxLayout()
+        self.none_deleted = Text(
             look, tr("Nothing. What is deleted can be had back from here."), tone="ink2", wraps=True
         )
-        self._deleted.column.addLayout(self._deleted_rows)
-        self._deleted.column.addWidget(self._none_deleted)
+        self.deleted_card.column.addLayout(self.deleted_rows)
+        self.deleted_card.column.addWidget(self.none_deleted)
 
     def _build_clinic(self) -> None:
         self._clinic = self._card(tr("Your clinic"))
@@ -267,15 +267,15 @@ class SettingsPage(Themed):
 
     def _build_operators(self) -> None:
         look = self._look
-        self._operators = self._card(tr("Who works with this library"))
-        self._rows = QVBoxLayout()
-        self._operators.column.addLayout(self._rows)
+        self.operators_card = self._card(tr("Who works with this library"))
+        self.operator_rows = QVBoxLayout()
+        self.operators_card.column.addLayout(self.operator_rows)
         self._leaving = ""
-        self._leaving_words = Text(look, wraps=True)
+        self.leaving_words = Text(look, wraps=True)
         self.remove = Button(look, tr("Remove and change the key"))
         self.keep = Button(look, tr("Cancel"), Kind.QUIET)
-        self._operators.column.addWidget(self._leaving_words)
-        self._add_left(self._operators, self.remove, self.keep)
+        self.operators_card.column.addWidget(self.leaving_words)
+        self._add_left(self.operators_card, self.remove, self.keep)
         self._show_leaving("")
         self.code = Field(look, tr("Code of a new operator"), is_code=True)
         self.name = Field(look, tr("Name"))
@@ -284,12 +284,12 @@ class SettingsPage(Themed):
             self.role.addItem(words, key)
         self.first = Field(look, tr("First passphrase, to be changed by its owner"), is_secret=True)
         self.add = Button(look, tr("Add the operator"), Kind.SECONDARY, Icon.ADD)
-        self._operators.column.addWidget(self.code)
-        self._operators.column.addWidget(self.name)
-        self._operators.column.addWidget(Text(look, tr("Role"), weight=MEDIUM))
-        self._add_left(self._operators, self.role)
-        self._operators.column.addWidget(self.first)
-        self._add_left(self._operators, self.add)
+        self.operators_card.column.addWidget(self.code)
+        self.operators_card.column.addWidget(self.name)
+        self.operators_card.column.addWidget(Text(look, tr("Role"), weight=MEDIUM))
+        self._add_left(self.operators_card, self.role)
+        self.operators_card.column.addWidget(self.first)
+        self._add_left(self.operators_card, self.add)
 
     def _connect(self) -> None:
         self.scheme.chosen.connect(self.scheme_chosen)
@@ -311,11 +311,11 @@ class SettingsPage(Themed):
 
     def show_key_change(self, sentence: str, *, is_running: bool) -> None:
         """Say how far the change of the library's key is, or how it ended."""
-        self._leaving_words.setText(sentence)
-        self._leaving_words.setVisible(bool(sentence))
+        self.leaving_words.setText(sentence)
+        self.leaving_words.setVisible(bool(sentence))
         for button in (self.remove, self.keep):
             button.hide()
-        self._operators.setEnabled(not is_running)
+        self.operators_card.setEnabled(not is_running)
 
     def _show_leaving(self, code: str) -> None:
         """Ask before somebody is removed, and say what is out of reach; without a code nothing is asked."""
@@ -353,9 +353,9 @@ class SettingsPage(Themed):
 
     def show_backup(self, sentence: str, folder: str, *, is_running: bool = False) -> None:
         """Say how the latest backup went, and where backups go."""
-        self._backup_said.setText(sentence)
-        self._backup_said.setVisible(bool(sentence))
-        self._backup_folder.setText(
+        self.backup_said.setText(sentence)
+        self.backup_said.setVisible(bool(sentence))
+        self.backup_folder.setText(
             tr("Backups go to {folder}.").format(folder=folder)
             if folder
             else tr("No folder is chosen for backups yet.")
@@ -404,10 +404,10 @@ class SettingsPage(Themed):
         self.clinic_named.emit(self.clinic.text.strip())
 
     def _on_print(self) -> None:
-        self.print_wished.emit(self._key)
+        self.print_wished.emit(self.recovery_key)
 
     def _on_save(self) -> None:
-        self.save_wished.emit(self._key)
+        self.save_wished.emit(self.recovery_key)
 
     def _on_back_up(self) -> None:
         (self.stop_wished if self._is_backing_up else self.backup_wished).emit()
@@ -433,8 +433,8 @@ class SettingsPage(Themed):
         self.setMaximumWidth(px(COLUMN + 48))
         self._column.setContentsMargins(px(24), px(16), px(24), px(20))
         self._column.setSpacing(px(16))
-        self._rows.setSpacing(px(4))
-        self._deleted_rows.setSpacing(px(4))
+        self.operator_rows.setSpacing(px(4))
+        self.deleted_rows.setSpacing(px(4))
 
 
 class _OperatorRow(QWidget):

@@ -28,8 +28,8 @@ class Banner(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._what = Text(look, size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._next = Text(look, size=14, tone="caution_ink", wraps=True)
-        self._act = Button(look, "", Kind.SECONDARY, height=44)
-        self._dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
+        self.act = Button(look, "", Kind.SECONDARY, height=44)
+        self.dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addStretch(1)
@@ -38,10 +38,10 @@ class Banner(Themed):
         words.addStretch(1)
         self._row = QHBoxLayout(self)
         self._row.addLayout(words, 1)
-        self._row.addWidget(self._act)
-        self._row.addWidget(self._dismiss)
-        self._act.clicked.connect(self.acted)
-        self._dismiss.clicked.connect(self._on_dismiss_clicked)
+        self._row.addWidget(self.act)
+        self._row.addWidget(self.dismiss)
+        self.act.clicked.connect(self.acted)
+        self.dismiss.clicked.connect(self._on_dismiss_clicked)
         self._on_look_changed()
         self.hide()
 
@@ -51,8 +51,8 @@ class Banner(Themed):
 
     def tell(self, what: str, then: str = "", verb: str = "") -> None:
         """Show what happened, in bold, and what follows or what to do; `verb` names a way on, which `acted` tells."""
-        self._act.setText(verb)
-        self._act.setVisible(bool(verb))
+        self.act.setText(verb)
+        self.act.setVisible(bool(verb))
         self._what.setText(what)
         self._next.setText(then)
         self._next.setVisible(bool(then))

@@ -31,16 +31,16 @@ class Header(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self._mark = Mark(look)
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
-        self._code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
-        self._facts = Text(look, size=14, tone="ink2", wraps=True)
-        self._simulated = _Tag(look, tr("SIMULATED"))
+        self.code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
+        self.facts = Text(look, size=14, tone="ink2", wraps=True)
+        self.simulated = _Tag(look, tr("SIMULATED"))
         self.fold = StripButton(look)
         self.stopwatch = Stopwatch(look)
-        self._left: list[QWidget] = [self._mark, self._name, self._code, self._facts, self._simulated]
+        self._left: list[QWidget] = [self._mark, self._name, self.code, self.facts, self.simulated]
         self._right: list[QWidget] = [self.fold, self.stopwatch]
         for widget in (*self._left, *self._right):
             widget.setParent(self)
-        for widget in (*self._right, self._simulated):
+        for widget in (*self._right, self.simulated):
             widget.hide()
         self._mark.setVisible(has_mark)
         self.fold.resized.connect(self._arrange)
@@ -53,11 +53,11 @@ class Header(Themed):
         if (shown := (code, facts, is_simulated)) == self._shown:
             return
         self._shown = shown
-        for label, text in ((self._code, code), (self._facts, facts)):
+        for label, text in ((self.code, code), (self.facts, facts)):
             label.setText(text)
             label.setVisible(bool(text))
         self._name.setVisible(self._has_mark and not code)
-        self._simulated.setVisible(is_simulated)
+        self.simulated.setVisible(is_simulated)
         self._arrange()
 
     def show_elapsed(self, elapsed_s: float | None) -> None:
@@ -98,26 +98,26 @@ class Header(Themed):
         room = max(self.width(), px(LEAST)) - 2 * margin
         left = [widget for widget in self._left if not widget.isHidden()]
         right = [widget for widget in self._right if not widget.isHidden()]
-        facts = self._facts.fontMetrics().horizontalAdvance(self._facts.text()) + px(2) if self._facts in left else 0
-        others = sum(widget.sizeHint().width() for widget in left if widget is not self._facts)
+        facts = self.facts.fontMetrics().horizontalAdvance(self.facts.text()) + px(2) if self.facts in left else 0
+        others = sum(widget.sizeHint().width() for widget in left if widget is not self.facts)
         others += gap * max(len(left) - 1, 0)
         taken = sum(widget.sizeHint().width() + gap for widget in right)
         is_one_line = others + min(facts, px(FACTS_AT_LEAST)) + taken <= room
         free = room - others - (taken if is_one_line else 0)
         has_own_line = facts > 0 and free < min(facts, px(FACTS_AT_LEAST))  # below the rest, from edge to edge
         width = max(min(facts, room if has_own_line else free), 1)
-        high = self._facts.heightForWidth(width) if facts else 0
+        high = self.facts.heightForWidth(width) if facts else 0
         height = max(0 if has_own_line else high, line - px(8))
         top = px(4)
         x = margin
         for widget in left:
-            if widget is self._facts and has_own_line:
+            if widget is self.facts and has_own_line:
                 continue
-            size = QSize(width, high) if widget is self._facts else widget.sizeHint()
+            size = QSize(width, high) if widget is self.facts else widget.sizeHint()
             widget.setGeometry(QRect(QPoint(x, top + (height - size.height()) // 2), size))
             x += size.width() + gap
         if has_own_line:
-            self._facts.setGeometry(margin, top + height, width, high)
+            self.facts.setGeometry(margin, top + height, width, high)
             height += high
         rows = [right]
         if not is_one_line:

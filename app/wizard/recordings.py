@@ -119,11 +119,9 @@ class SessionRecordings(QObject):
         self._beginning: Future[Recorder]
         self._again = QTimer(self)
         self._again.setSingleShot(True)
-        self._again.setInterval(READ_AGAIN_MS)
         self._again.timeout.connect(self._read_back)
         self._waited = QTimer(self)
         self._waited.setSingleShot(True)
-        self._waited.setInterval(WAITED_MS)
         self._waited.timeout.connect(self._on_waited)
         self._met.connect(self._on_met)
         controller.gone.connect(self.troubled)
@@ -237,7 +235,7 @@ class SessionRecordings(QObject):
 
         def start(opened: "OpenedLibrary", turn: "Future[None]") -> Recorder:
             try:
-                begun.set_result(Recorder.begin(opened, acquisition, session_id, told, self._on_trouble, turn))
+                begun.set_result(Recorder.begin(opened, acquisition, session_id, told, self.meet, turn))
             except BaseException as error:
                 begun.set_exception(error)
             return begun.result()
@@ -262,7 +260,7 @@ class SessionRecordings(QObject):
         self._phase = RecordingPhase.STOPPING
         self._unread.append(_Unread(recorder, self.ongoing.told.name, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
-        self._waited.start()
+        self._waited.start(WAITED_MS)
         if not self._again.isActive():
             self._read_back()
         self.changed.emit()
@@ -397,7 +395,8 @@ class SessionRecordings(QObject):
             self.ongoing, self._phase = None, RecordingPhase.IDLE
             self._waited.stop()
 
-    def _on_trouble(self, trouble: Trouble) -> None:
+    def meet(self, trouble: Trouble) -> None:
+        """Take note of what befell the journal; any thread may say it, and what follows is done by the screen's."""
         self._met.emit(str(trouble))
 
     @Slot(str)
@@ -474,7 +473,7 @@ class SessionRecordings(QObject):
         self._is_reading = False
         self._go_on()
         if self._controller.state is not None and (self._controller.is_gone or self._readings < MOST_READINGS):
-            self._again.start()
+            self._again.start(READ_AGAIN_MS)
             self.changed.emit()
             if is_first:
                 self.refused.emit(what, self._where(is_tried_again=True))

@@ -80,6 +80,11 @@ class WizardShell(Themed):
         """The page in sight."""
         return self._pages.currentWidget()
 
+    @property
+    def pages(self) -> dict[int, QWidget]:
+        """Those that are made, by their step's number."""
+        return dict(self._by_index)
+
     def add_page(self, index: int, page: QWidget) -> None:
         """Take in a page; one that had the same index is given up."""
         if (before := self._by_index.get(index)) is page:

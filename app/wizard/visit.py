@@ -70,7 +70,7 @@ class Visit(QObject):
     ) -> None:
         super().__init__(parent)
         self._controller, self._now_s = controller, now_s
-        self._choices = choices  # which may become more
+        self.known_choices = choices  # which may become more
         self.session: StoredSession | None = None
         self.patient = PatientRecord(controller, self, self._refuses_code)
         self.sensors = WornSensors(self)
@@ -177,7 +177,7 @@ class Visit(QObject):
     @property
     def choices(self) -> tuple[SourceChoice, ...]:
         """What this patient's sensors can be heard through."""
-        return tuple(choice for choice in self._choices if self.may_simulate or not choice.is_simulated)
+        return tuple(choice for choice in self.known_choices if self.may_simulate or not choice.is_simulated)
 
     def begin_session(self) -> None:
         """Make the session's row, once the patient has one; `changed` follows."""

@@ -94,6 +94,21 @@ class Wizard(QWidget):
         return self._steps[self._current] if self._steps else None
 
     @property
+    def step_number(self) -> int:
+        """Of the step that is in sight, from 0."""
+        return self._current
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """All of the visit, in their order; none while there is no visit."""
+        return tuple(self._steps)
+
+    @property
+    def to_prepare(self) -> tuple[Step, ...]:
+        """Steps whose pages are still to be made ahead."""
+        return tuple(self._to_prepare)
+
+    @property
     def is_recording(self) -> bool:
         return self._visit is not None and self._visit.recordings.is_recording
 
@@ -150,7 +165,7 @@ class Wizard(QWidget):
         shell.bar.sound_pressed.connect(self._on_sound_pressed)
         shell.toast.undone.connect(self._on_undo)
         shell.room_changed.connect(self._on_room_changed)
-        self._keys.pressed.connect(self._on_intent)
+        self._keys.pressed.connect(self.act_on)
         self._timer.timeout.connect(self._on_tick)
         self._preparing.timeout.connect(self._on_prepare)
         self._settings.changed.connect(self._on_settings_changed)
@@ -290,7 +305,8 @@ class Wizard(QWidget):
         if not step.prepare():
             del self._to_prepare[0]
 
-    def _on_intent(self, intent: Intent) -> None:
+    def act_on(self, intent: Intent) -> None:
+        """Do what a key asks for: the step that is in sight is asked first."""
         if not self._steps or (intent.action in (KeyAction.RUN, KeyAction.PRIMARY) and self._has_just_turned()):
             return
         step = self._steps[self._current]
@@ -300,7 +316,7 @@ class Wizard(QWidget):
             case KeyAction.STEP:
                 self.go_to(intent.number - 1)
             case KeyAction.PRIMARY:
-                self._on_primary()
+                self.press_primary()
             case KeyAction.BACK:
                 self._on_back()
             case KeyAction.NEXT_REGION:
@@ -324,9 +340,10 @@ class Wizard(QWidget):
 
     def _on_primary_pressed(self) -> None:
         if not self._has_just_turned():
-            self._on_primary()
+            self.press_primary()
 
-    def _on_primary(self) -> None:
+    def press_primary(self) -> None:
+        """Do what the bar's main button says, where it can be pressed."""
         if self._steps and (verb := self._bar().primary) is not None and verb.is_enabled:
             self._steps[self._current].on_primary()
 

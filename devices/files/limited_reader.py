@@ -88,7 +88,8 @@ class LimitedReader:
     def __init__(self, memory_bytes: int = MEMORY_BYTES) -> None:
         self._memory_bytes = memory_bytes
         self._lock = threading.Lock()
-        self._process: Process | None = None
+        self.process: Process | None = None
+        """That reads; none before the first reading, and none once it is closed."""
         self._ending: Callable[[], object] | None = None
         self._files_left = 0
 
@@ -123,7 +124,7 @@ class LimitedReader:
         while not self._lock.acquire(timeout=WAIT_S):
             waiting()
         try:
-            process = self._process = self._ready()
+            process = self.process = self._ready()
             self._files_left -= len(files)
             answer, arrays = _exchange(process, asked, monotonic() + deadline_s, waiting)
             return made_of(_details(answer, where), arrays)
@@ -145,14 +146,14 @@ class LimitedReader:
 
     def close(self) -> None:
         """End the process, if there is one; who waits for it gets a refusal."""
-        if (process := self._process) is not None:
+        if (process := self.process) is not None:
             process.kill()
         with self._lock:
             self._end()
 
     def _ready(self) -> "Process":
-        if self._process is not None and self._process.poll() is None:
-            return self._process
+        if self.process is not None and self.process.poll() is None:
+            return self.process
         self._end()
         self._files_left = FILES_EACH
         process = start(self._memory_bytes)
@@ -160,7 +161,7 @@ class LimitedReader:
         return process
 
     def _end(self) -> None:
-        self._process = None
+        self.process = None
         if self._ending is not None:
             self._ending()
 

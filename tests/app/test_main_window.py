@@ -130,7 +130,7 @@ def test_home_and_wizard_are_made_while_somebody_types_the_passphrase(
     typing, shown = QApplication.focusWidget(), window.screens.currentWidget()
     assert typing is page.passphrase.line_edit
     window.preparing.done.emit(None)
-    qtbot.waitUntil(lambda: window._wizard is not None, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: window.wizard is not None, timeout=WAIT_MS)
     assert window.home is not None
     assert window.screens.currentWidget() is shown
     assert QApplication.focusWidget() is typing
@@ -158,7 +158,7 @@ def test_the_first_start_makes_a_library_and_shows_its_recovery_key_once(
     QTest.keyClicks(page.again.line_edit, PASSPHRASE[-1])
     QTest.mouseClick(page.make, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: page.typed.isVisible(), timeout=WAIT_MS)
-    key = page._key
+    key = page.recovery_key
     QTest.keyClicks(page.typed.line_edit, key[:-1] + "?")
     QTest.keyClick(page.typed.line_edit, Qt.Key.Key_Return)
     assert page.typed.is_wrong
@@ -233,9 +233,9 @@ def test_a_recovery_key_that_is_lost_is_made_anew(qtbot: QtBot, open_window: Ope
     QTest.keyClick(log_in.passphrase.line_edit, Qt.Key.Key_Return)
     qtbot.waitUntil(page.renew.isVisible, timeout=WAIT_MS)
     page.renew.click()
-    qtbot.waitUntil(lambda: bool(page._key), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
     assert page.print.isVisible()
-    page.typed.set_text(page._key)
+    page.typed.set_text(page.recovery_key)
     page.go.click()
     assert window.screens.currentWidget() is window.home
     qtbot.waitUntil(lambda: slots.is_recovery_key_confirmed, timeout=WAIT_MS)
@@ -277,7 +277,7 @@ def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_w
     logged_in(qtbot, window)
     assert window.home is not None
     QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
-    wizard = window._wizard
+    wizard = window.wizard
     assert wizard is not None
     assert window.screens.currentWidget() is wizard
     assert wizard.visit is not None
@@ -291,7 +291,7 @@ def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, o
     logged_in(qtbot, window)
     assert window.home is not None
     QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
-    wizard = window._wizard
+    wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit
     wizard.settings_wanted.emit()
@@ -338,7 +338,7 @@ def test_five_minutes_without_anybody_cover_the_library(qtbot: QtBot, open_windo
     window = open_window(folder)
     logged_in(qtbot, window)
     assert SECRET_CODE in words_in_sight(window)
-    window._lock()
+    window.lock()
     assert window.is_covered
     assert SECRET_CODE not in words_in_sight(window)
     for key in (Qt.Key.Key_O, Qt.Key.Key_D):
@@ -381,7 +381,7 @@ def test_activity_puts_the_cover_off(open_window: Open, folder: Path, monkeypatc
 def test_another_operator_leaves_nothing_behind(qtbot: QtBot, open_window: Open, folder: Path) -> None:
     window = open_window(folder)
     logged_in(qtbot, window)
-    window._lock()
+    window.lock()
     assert window.entry is not None
     with qtbot.waitSignal(window.controller.closed, timeout=WAIT_MS):
         QTest.mouseClick(window.entry.log_in.leave, Qt.MouseButton.LeftButton)
@@ -506,12 +506,12 @@ def test_every_word_fits(
         assert home is not None
         entry.log_in.show_operators(("hk", "vi"), ("hk",), "vi", can_remember=True)
         entry.log_in.refuse("This passphrase does not open the library. Type it again, or use the recovery key.", 5.0)
-        entry.first_start._on_make()
+        entry.first_start.make.click()
         showings: list[tuple[str, Callable[[], object]]] = [
             ("home", lambda: window._show(home)),
             ("settings", home.show_settings),
             ("log in", lambda: window._show(entry.log_in)),
-            ("recovery", entry.log_in._on_use_recovery),
+            ("recovery", entry.log_in.use_recovery.click),
             ("first start", lambda: window._show(entry.first_start)),
             ("recovery key", lambda: entry.first_start.show_recovery_key("-".join(["7K3M"] * 8 + ["X"]))),
         ]
@@ -555,9 +555,9 @@ def test_a_library_that_was_here_and_is_missing_is_not_made_anew(
     said = (
         f"It was in {folder}, and is not there now. Connect its disk, or put its folder back: it then opens by itself."
     )
-    assert page._missing_lead.text() == said
+    assert page.missing_lead.text() == said
     page.show_missing(str(folder), 2)
-    assert "2 recordings are kept on this computer until their library is back." in page._missing_lead.text()
+    assert "2 recordings are kept on this computer until their library is back." in page.missing_lead.text()
     assert page.look_again.isVisible()
     assert not page.make.isVisible()
     assert page.look_again.hasFocus()
@@ -590,7 +590,7 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     elsewhere = folder.with_name("renamed")
     folder.rename(elsewhere)
     qtbot.waitUntil(lambda: home.banner.text.startswith(f"The library is gone from {folder}."), timeout=WAIT_MS)
-    window._lock()
+    window.lock()
     entry = window.entry
     assert entry is not None
     # home may have been refused its list before the library was missed
@@ -623,7 +623,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     with qtbot.waitSignal(home.recovering.recovered, timeout=WAIT_MS):
         elsewhere.rename(folder)
     assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
-    home.banner._dismiss.click()
+    home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert [one.told.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
 
@@ -642,7 +642,7 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     library = state.library.library
     session_id = library.sessions.create(library.patients.search()[0].id, Session(())).id
     elsewhere, data_key, page = folder.with_name("renamed"), bytes(state.library.data_key or b""), entry.log_in
-    window._lock()
+    window.lock()
     qtbot.waitUntil(lambda: not state.library.data_key, timeout=WAIT_MS)
     for name in ("walk 1", "walk 2"):  # a disk that comes and goes
         with qtbot.waitSignal(window.controller.gone, timeout=WAIT_MS):

@@ -122,8 +122,9 @@ def _session(
     from app.wizard.results.step import ResultsStep
     from app.wizard.sensors.page import Way
 
-    window._on_session_wished(window.home._patient if window.home is not None else None)
-    wizard = window._wizard
+    assert window.home is not None
+    window.home.session_wished.emit(window.home.patient)
+    wizard = window.wizard
     assert wizard is not None
     yield _after(PAUSE_S)
     yield lambda: wizard.visit is not None and wizard.visit.patient.stored is not None
@@ -135,39 +136,39 @@ def _session(
     yield lambda: visit.sensors.acquisition is not None
     yield _after(4.0)
     _Watch.listen()
-    wizard._steps[1].page.way_chosen.emit(Way.MOTION)  # type: ignore[attr-defined]  # it is the sensors page
+    wizard.steps[1].page.way_chosen.emit(Way.MOTION)  # type: ignore[attr-defined]  # it is the sensors page
     yield _after(PAUSE_S)
     wizard.go_to(2)
     yield _after(PAUSE_S)
-    wizard._on_primary()
-    yield lambda: wizard._current == 3
-    free = wizard._steps[3]
+    wizard.press_primary()
+    yield lambda: wizard.step_number == 3
+    free = wizard.steps[3]
     assert isinstance(free, FreeMotionStep)
-    yield lambda: wizard._current == 4 or free._side.asked is not None
-    if wizard._current == 3:
+    yield lambda: wizard.step_number == 4 or free._side.asked is not None
+    if wizard.step_number == 3:
         yield _after(PAUSE_S)
-        free._on_answered(0)
-    yield lambda: wizard._current == 4
+        free.page.answered.emit(0)
+    yield lambda: wizard.step_number == 4
     yield lambda: not visit.evaluation.is_busy
     yield _after(PAUSE_S)
-    wizard._on_primary()
+    wizard.press_primary()
     yield lambda: wizard.is_recording
     yield _after(8.0)  # until every joint has its angle
     bench = _bench_page(window, wizard) if wanted.curves else None
     done: list[int] = []
     visit.evaluation.done.connect(lambda: done.append(1))
     watch = _Watch(wizard)
-    yield _asking_again(wizard._steps[4], _after(wanted.seconds)) if wanted.analyses else _after(wanted.seconds)
+    yield _asking_again(wizard.steps[4], _after(wanted.seconds)) if wanted.analyses else _after(wanted.seconds)
     measured |= watch.end() | {"analyses": len(done)}
     if bench is not None:
         window.screens.setCurrentWidget(wizard)
         yield _after(PAUSE_S)
-    wizard._on_primary()
+    wizard.press_primary()
     yield lambda: not visit.recordings.is_recording and not visit.recordings.is_stopping
     yield _after(PAUSE_S)
     visit.recordings.keep(visit.recordings.walks[-1], True)
     wizard.go_to(5)
-    results = wizard._steps[5]
+    results = wizard.steps[5]
     assert isinstance(results, ResultsStep)
     yield lambda: results._shown is not None and not visit.evaluation.is_busy
     yield _after(2 * PAUSE_S)

@@ -192,7 +192,7 @@ class WindowSession:
         for letter in code:
             self.press(Qt.Key(ord(letter)))
         self.press(Qt.Key.Key_Return)
-        self.wait(lambda: self.wizard._current == 1 and self.visit.session is not None, "sensors' step")
+        self.wait(lambda: self.wizard.step_number == 1 and self.visit.session is not None, "sensors' step")
         sources = self.visit.choices
         assert not any(source.is_simulated for source in sources), "they would not be kept of this patient"
         if kind == "csv":
@@ -207,15 +207,15 @@ class WindowSession:
 
     def tell_columns(self) -> None:
         """Say what the columns of lines of numbers mean, as the page guesses it."""
-        step = self.wizard._steps[1]
+        step = self.wizard.steps[1]
         assert isinstance(step, SensorsStep)
         self.wait(lambda: any(source.key == COLUMNS for source in self.visit.choices), "lines of numbers")
         step.page.source_chosen.emit(COLUMNS)
-        self.wait(lambda: step._telling.columns is not None, "columns")
+        self.wait(lambda: step.telling.columns is not None, "columns")
         self.linger(1.0)
-        assert step._telling.columns == EMULATED_COLUMNS
+        assert step.telling.columns == EMULATED_COLUMNS
         look(self, self.shots, "csv-columns")
-        self.wizard._on_primary()
+        self.wizard.press_primary()
 
     def place(self) -> None:
         """Wear each sensor at the site that its port is named for."""
@@ -248,19 +248,19 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
         session.place()
         session.linger(2.0)
         look(session, shots, f"{kind}-sensors")
-        wizard._on_primary()
-        session.wait(lambda: wizard._current == 2, "standing step")
+        wizard.press_primary()
+        session.wait(lambda: wizard.step_number == 2, "standing step")
         session.press(Qt.Key.Key_Space)
-        session.wait(lambda: visit.recordings.standing is not None and wizard._current == 3, "free motion step")
+        session.wait(lambda: visit.recordings.standing is not None and wizard.step_number == 3, "free motion step")
         session.wait(lambda: visit.recordings.is_recording, "free motion")
-        while wizard._current == 3:
+        while wizard.step_number == 3:
             ends_s = time.monotonic() + played.ask(RecordingKind.FREE_MOTION)
-            session.wait(lambda: wizard._current != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
+            session.wait(lambda: wizard.step_number != 3 or time.monotonic() > ends_s - 0.5, "walking step")  # noqa: B023  # it waits at once
         session.wait(lambda: time.monotonic() > ends_s, "standing still")
         for number in range(walks):
             session.press(Qt.Key.Key_1)
             session.press(Qt.Key.Key_Space)
-            session.wait(lambda: visit.recordings.is_recording and visit.recordings._recorder is not None, "walk")
+            session.wait(lambda: visit.recordings.is_recording and visit.recordings.has_begun, "walk")
             left_s = played.ask(RecordingKind.WALKING)
             session.linger(left_s + 0.3)
             look(session, shots, f"{kind}-walk-{number + 1}")
@@ -269,7 +269,7 @@ def run(application: QApplication, kind: str, rate_hz: int, walks: int, shots: P
             session.press(Qt.Key.Key_K)
             session.linger(0.5)
         session.press(Qt.Key.Key_Return)
-        session.wait(lambda: wizard._current == 5, "results")
+        session.wait(lambda: wizard.step_number == 5, "results")
         session.wait(lambda: has_evaluated(visit, walks), "results' figures")
         look(session, shots, f"{kind}-results")
         analysis = visit.evaluation.analysis

@@ -174,12 +174,12 @@ class RandomLife(QObject):
         self._has_library_answered = True
 
     def _left_open(self, held: HeldLibrary) -> list[str]:
-        wizard = self._window._wizard
+        wizard = self._window.wizard
         visits = [] if wizard is None else [*wizard._closing, *([wizard.visit] if wizard.visit is not None else [])]
         return [] if any(not visit.recordings.is_idle for visit in visits) else left_open(held)
 
     def _is_busy(self) -> bool:
-        wizard = self._window._wizard
+        wizard = self._window.wizard
         visit = wizard.visit if wizard is not None else None
         is_long = self._window.controller._long.is_busy
         if visit is None:

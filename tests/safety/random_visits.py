@@ -82,7 +82,7 @@ class SensibleUser(Hands):
             ("old", "new", "open", "settings", "help", "demonstration", "import", "search", "delete", "undo", "theme"),
             (40, 25, 25, 3, 2, 1, 3, 3, 2, 2, 1),
         )[0]
-        if deed == "old" and home._patient is not None:
+        if deed == "old" and home.patient is not None:
             for _ in range(self._chance.randrange(4)):
                 page.patients.step(self._chance.choice((-1, 1)))
             self.click(home.bar.primary)
@@ -309,10 +309,10 @@ class SensibleUser(Hands):
 
     def _on_report(self, wizard: "Wizard") -> str:
         step: Any = wizard.current
-        if step._is_saving:
+        if step.is_saving:
             return "waits"
-        if step._saved not in (None, self._last_saved):
-            self._last_saved = step._saved
+        if step.saved not in (None, self._last_saved):
+            self._last_saved = step.saved
             self.did("report saved")
         chance = self._chance.random()
         report = step.page.report

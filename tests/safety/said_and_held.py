@@ -69,7 +69,7 @@ def contradictions(window: "MainWindow", held: HeldLibrary) -> list[str]:
     screen = window.screens.currentWidget()
     if window.home is not None and screen is window.home:
         return [*_of_home(window.home, held), *_of_banner(window.home.banner, held)]
-    wizard = window._wizard
+    wizard = window.wizard
     if wizard is not None and screen is wizard and wizard.visit is not None and wizard.visit.session is not None:
         visit = wizard.visit
         if not held.ask("SELECT 1 FROM sessions WHERE id = ?", wizard.visit.session.id.hex):
@@ -118,20 +118,20 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
 
 
 def _of_settings(page: Any, held: HeldLibrary) -> Iterator[str]:
-    shown = page._deleted_rows.count()
+    shown = page.deleted_rows.count()
     (count,) = held.ask(
         "SELECT (SELECT COUNT(*) FROM patients WHERE deleted_at IS NOT NULL AND merged_into_id IS NULL) + "
         "(SELECT COUNT(*) FROM sessions s JOIN patients p ON p.id = s.patient_id "
         "WHERE s.deleted_at IS NOT NULL AND p.deleted_at IS NULL)"
     )[0]
-    if page._deleted.isVisible() and shown != count:
+    if page.deleted_card.isVisible() and shown != count:
         yield f"settings list {shown} deleted, held are {count}"
     operators = held.ask("SELECT COUNT(*) FROM operators")[0][0]
-    if page._operators.isVisible() and page._rows.count() != operators:
-        yield f"settings list {page._rows.count()} operators, held are {operators}"
-    said = re.match(r"Backups go to (.+)\.$", page._backup_folder.text())
+    if page.operators_card.isVisible() and page.operator_rows.count() != operators:
+        yield f"settings list {page.operator_rows.count()} operators, held are {operators}"
+    said = re.match(r"Backups go to (.+)\.$", page.backup_folder.text())
     kept = held.ask("SELECT value FROM settings WHERE name = 'backup_folder'")
-    if page._backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
+    if page.backup_folder.isVisible() and said is not None and (not kept or said[1] not in str(kept[0][0])):
         yield f"settings say {said[0]!r}, held is {kept}"
 
 
@@ -142,16 +142,16 @@ def _of_frame(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[s
     assert visit.session is not None
     ((code, birth_year, device),) = held.ask(PATIENT, visit.session.id.hex)
     header = wizard.shell.header
-    if wizard._current != 0:  # where it is being typed
-        if header._code.text() != code:
-            yield f"the header names {header._code.text()!r}, the session is held as {code!r}'s"
-        facts = header._facts.text()
+    if wizard.step_number != 0:  # where it is being typed
+        if header.code.text() != code:
+            yield f"the header names {header.code.text()!r}, the session is held as {code!r}'s"
+        facts = header.facts.text()
         if birth_year and str(birth_year) not in facts:
             yield f"the header says {facts!r}, held is the birth year {birth_year}"
         if device and device not in facts:
             yield f"the header says {facts!r}, held is the device {device!r}"
     is_simulated = held.ask("SELECT is_simulated FROM sessions WHERE id = ?", visit.session.id.hex)[0][0]
-    if is_simulated and header._simulated.isHidden():
+    if is_simulated and header.simulated.isHidden():
         yield "the session is held as simulated, the header does not say so"
 
 
@@ -216,7 +216,7 @@ def _of_walks(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[s
     if not isinstance(page, WalkingPage) or visit.session is None:
         return
     words = {"kept": True, "discarded": False}
-    shown = [row for row in page._rows if row.state != "recording"]
+    shown = [row for row in page.rows if row.state != "recording"]
     walks = held.ask(WALKS, visit.session.id.hex)
     said = [row.label for row in shown]
     are = [row[1] or row[0] for row in walks]
@@ -251,7 +251,7 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
 def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
     note = wizard.shell.bar.state.note
     step: Any = wizard.current
-    if (said := SAVED_AS.search(note)) is not None and not (step._saved / "report.pdf").exists():
+    if (said := SAVED_AS.search(note)) is not None and not (step.saved / "report.pdf").exists():
         yield f"the bar says {said[0]!r}, there is no report in it"
     if step._comment is not None and visit.session is not None:
         rows = held.ask("SELECT comment FROM sessions WHERE id = ?", visit.session.id.hex)

@@ -42,8 +42,8 @@ ANALYSED_WITHIN_S = 3600.0
 def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]":
     """Go from home to a walk that is being recorded."""
     assert window.home is not None
-    window._on_session_wished(window.home._patient)
-    wizard = window._wizard
+    window.home.session_wished.emit(window.home.patient)
+    wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit
     assert visit is not None
@@ -57,11 +57,11 @@ def lead(application: QApplication, window: MainWindow) -> "tuple[Wizard, Visit]
     visit.sensors.assign_all(dict(zip(visit.sensors.acquisition.sensors, Site, strict=True)))
     wizard.go_to(2)
     linger(application, 0.5)
-    wizard._on_primary()
-    wait(application, lambda: wizard._current == 3)
-    wait(application, lambda: wizard._current == 4, 3 * PATIENCE_S)
+    wizard.press_primary()
+    wait(application, lambda: wizard.step_number == 3)
+    wait(application, lambda: wizard.step_number == 4, 3 * PATIENCE_S)
     wait(application, lambda: not visit.evaluation.is_busy)
-    wizard._on_primary()
+    wizard.press_primary()
     wait(application, lambda: wizard.is_recording)
     return wizard, visit
 
@@ -116,7 +116,7 @@ def main() -> int:
         ]
         behind = acquisition.dropped_from_preview
         stopped_s = time.monotonic()
-        wizard._on_primary()
+        wizard.press_primary()
         # "is_stopping" ends after a few seconds, so that the next may begin; hours take longer to be read back
         wait(application, lambda: visit.recordings.is_idle, ANALYSED_WITHIN_S)
         read_s = time.monotonic() - stopped_s

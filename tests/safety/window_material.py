@@ -102,7 +102,7 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
         window.open_demonstration()
         wait(application, lambda: window.home is not None and window.home.isVisible())
         wait(application, lambda: window.preparing.is_idle)
-        wait(application, lambda: window.home is not None and window.home._patient is not None)
+        wait(application, lambda: window.home is not None and window.home.patient is not None)
         yield application, window
         window.close()
         window.finish()

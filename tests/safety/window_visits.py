@@ -33,8 +33,8 @@ LISTENS_S = 0.5
 def make_visit(application: QApplication, window: MainWindow) -> None:
     """Begin a session, put six sensors on, look at every page that may be entered, and leave."""
     assert window.home is not None
-    window._on_session_wished(window.home._patient)
-    wizard = window._wizard
+    window.home.session_wished.emit(window.home.patient)
+    wizard = window.wizard
     assert wizard is not None
     visit: Visit | None = wizard.visit
     assert visit is not None

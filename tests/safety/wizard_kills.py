@@ -62,12 +62,12 @@ class Guide:
         """Open the library, begin a session with its patient, put the sensors on, stand and move."""
         window = self._window
         window.controller.open(library, passphrase)
-        self._wait(lambda: window.home is not None and window.home._patient is not None)
+        self._wait(lambda: window.home is not None and window.home.patient is not None)
         assert window.home is not None
-        window._on_session_wished(window.home._patient)
-        assert window._wizard is not None
-        assert window._wizard.visit is not None
-        self.wizard, self.visit = window._wizard, window._wizard.visit
+        window.home.session_wished.emit(window.home.patient)
+        assert window.wizard is not None
+        assert window.wizard.visit is not None
+        self.wizard, self.visit = window.wizard, window.wizard.visit
         self._wait(lambda: self.visit.patient.stored is not None)
         self.wizard.go_to(1)
         self._wait(lambda: self.visit.session is not None)
@@ -84,18 +84,18 @@ class Guide:
 
     def walk(self) -> None:
         """Record a walk, and answer nothing."""
-        self.wizard._on_intent(Intent(KeyAction.RUN))
+        self.wizard.act_on(Intent(KeyAction.RUN))
         self._wait(lambda: self.visit.recordings.has_begun)
         self._began_s = self.acquisition.now_s
         linger(self._application, WALKED_S / SPEED)
 
     def stop(self) -> None:
         count = len(self.visit.recordings.walks)
-        self.wizard._on_intent(Intent(KeyAction.RUN))
+        self.wizard.act_on(Intent(KeyAction.RUN))
         self._wait(lambda: len(self.visit.recordings.walks) > count and self.visit.recordings.is_idle)
 
     def keep(self) -> None:
-        self.wizard._on_intent(Intent(KeyAction.KEEP))
+        self.wizard.act_on(Intent(KeyAction.KEEP))
         self._wait(lambda: self.visit.recordings.walks[-1].stored.is_decided)
 
     def correct(self) -> None:
@@ -125,7 +125,7 @@ class Guide:
         """Begin to write the report, and see that it has begun."""
         assert self._window.controller.state is not None
         out = self._window.controller.state.library.folder.parent / "out"
-        self._report._on_folder_selected(str(out))
+        self._report.save_in(str(out))
         self._wait(lambda: any(out.parent.glob(f".{out.name}-*/new/*")))
 
     def tell(self) -> None:
@@ -157,11 +157,11 @@ class Guide:
 
     @property
     def _results(self) -> ResultsStep:
-        return next(step for step in self.wizard._steps if isinstance(step, ResultsStep))
+        return next(step for step in self.wizard.steps if isinstance(step, ResultsStep))
 
     @property
     def _report(self) -> ReportStep:
-        return next(step for step in self.wizard._steps if isinstance(step, ReportStep))
+        return next(step for step in self.wizard.steps if isinstance(step, ReportStep))
 
     def _wait(self, until: Callable[[], bool]) -> None:
         wait(self._application, until)

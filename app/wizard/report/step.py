@@ -64,9 +64,9 @@ class ReportStep(Step):
         super().__init__(look, visit, parent)
         self._controller = controller
         self._frame: _ReportFrame | None = None
-        self._dialog: QFileDialog | None = None
-        self._saved: Path | None = None
-        self._is_saving = False
+        self.dialog: QFileDialog | None = None
+        self.saved: Path | None = None
+        self.is_saving = False
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
         self._comment: str | None = None  # typed here, not yet known to the session's row
         self._clinic = ""
@@ -92,11 +92,11 @@ class ReportStep(Step):
 
     @property
     def note(self) -> str:
-        return tr("saved") if self._saved is not None else ""
+        return tr("saved") if self.saved is not None else ""
 
     @property
     def state(self) -> StepState:
-        return StepState.DONE if self._saved is not None else StepState.TODO
+        return StepState.DONE if self.saved is not None else StepState.TODO
 
     @property
     def topic(self) -> str:
@@ -118,15 +118,15 @@ class ReportStep(Step):
         self._visit.preview.stop()
 
     def bar(self) -> BarState:
-        save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self._can_save())
-        if self._saved is None:
+        save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self.can_save())
+        if self.saved is None:
             return BarState(primary=save, note=tr("Only the code stands in it, no name."))
-        note = tr("Saved as {folder}. Saving again asks where.").format(folder=self._saved.name)
+        note = tr("Saved as {folder}. Saving again asks where.").format(folder=self.saved.name)
         show = BarAction(tr("Open the folder"), is_wished=False)
         return BarState(primary=replace(save, is_wished=False), others=(show,), note=note)
 
     def on_primary(self) -> None:
-        if not self._can_save() or self._is_saving:
+        if not self.can_save() or self.is_saving:
             return
         self.page.report.flush()
         session = self._visit.session
@@ -147,19 +147,19 @@ class ReportStep(Step):
         self._ask_where()
 
     def _ask_where(self) -> None:
-        self._dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
-        self._dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
-        self._dialog.setFileMode(QFileDialog.FileMode.AnyFile)
+        self.dialog = QFileDialog(self.page, tr("Save the report and the results into a new folder"))
+        self.dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
+        self.dialog.setFileMode(QFileDialog.FileMode.AnyFile)
         if self._visit.session is not None:
             told = self._visit.session.told
-            self._dialog.selectFile(folder_name(told.patient.code, told.started))
-        self._dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self._dialog.fileSelected.connect(self._on_folder_selected)
-        self._dialog.open()
+            self.dialog.selectFile(folder_name(told.patient.code, told.started))
+        self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        self.dialog.fileSelected.connect(self.save_in)
+        self.dialog.open()
 
     def on_other(self, number: int) -> None:
-        if self._saved is not None:
-            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self._saved)))
+        if self.saved is not None:
+            QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.saved)))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.SAVE:
@@ -167,7 +167,7 @@ class ReportStep(Step):
             return True
         return False
 
-    def _can_save(self) -> bool:
+    def can_save(self) -> bool:
         return self._has_results() and self._reading is None
 
     def _has_results(self) -> bool:
@@ -299,14 +299,15 @@ class ReportStep(Step):
         self._on_refused(what, remedy)
         self.changed.emit()
 
-    def _on_folder_selected(self, folder: str) -> None:
+    def save_in(self, folder: str) -> None:
+        """Write the report and the results into a new folder; `saved` names it once they are there."""
         session, analysis = self._visit.evaluation.session, self._visit.evaluation.analysis
         stored, request = self._visit.session, self._request()
         if session is None or analysis is None or stored is None:
             return
         out, session_id = Path(folder), stored.id
         chosen, kept = self.page.report.formats.chosen, self._kept
-        self._is_saving = True
+        self.is_saving = True
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:
             from app.exports.exports import Format, export_from_library
@@ -353,12 +354,12 @@ class ReportStep(Step):
         self._controller.run_long(save, self._on_saved, self._on_refused, None, self)
 
     def _on_saved(self, folder: Path) -> None:
-        self._is_saving, self._saved = False, folder
+        self.is_saving, self.saved = False, folder
         self.told.emit("", "")
         self.changed.emit()
 
     def _on_refused(self, what: str, remedy: str) -> None:
-        self._is_saving = False
+        self.is_saving = False
         self.told.emit(what, remedy)
 
 

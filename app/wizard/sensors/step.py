@@ -66,9 +66,9 @@ class SensorsStep(Step):
         self._silent_site: Site | None = None
         self._told_of = ""  # the choice of which it was said whom it asks on the network
         self._names: dict[UUID, str] = {}  # of stored sessions
-        self._dialog: QFileDialog | None = None
-        self._telling = ColumnsTelling(self)
-        self._telling.changed.connect(self.changed)
+        self.dialog: QFileDialog | None = None
+        self.telling = ColumnsTelling(self)
+        self.telling.changed.connect(self.changed)
         self._replays = Replays(visit.controller, self)
         self._replays.listed.connect(self._on_listed)
         self._replays.read.connect(self._on_replay_read)
@@ -141,7 +141,7 @@ class SensorsStep(Step):
         self._asks = SensorsShown.NOTHING
         self._told_of = ""
         self._replays.stop()
-        self._telling.end()
+        self.telling.end()
         sensors = self._visit.sensors
         if sensors.acquisition is not None:
             sensors.acquisition.set_estimator(None)
@@ -157,8 +157,8 @@ class SensorsStep(Step):
         self._ticks += 1
         if self._ticks % ROW_TICKS == 0:
             self._show_sources()  # a search beside the screen may have found some
-            self._telling.tick()
-        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self._telling.is_on:
+            self.telling.tick()
+        if self._visit.sensors.acquisition is None or self._is_choosing or self._replays.reading or self.telling.is_on:
             return
         if self._estimator is not None:
             state = self._estimator.state
@@ -176,8 +176,8 @@ class SensorsStep(Step):
         sensors = self._visit.sensors
         if self._replays.reading:
             return BarState()
-        if self._telling.is_on:
-            is_whole = self._telling.columns is not None
+        if self.telling.is_on:
+            is_whole = self.telling.columns is not None
             return BarState(primary=BarAction(tr("Use these columns"), tr("Enter"), is_enabled=is_whole))
         if self._is_choosing:
             is_any = self.page.stored.session is not None
@@ -203,7 +203,7 @@ class SensorsStep(Step):
         return BarState(primary=BarAction(go_on, tr("Enter"), is_wished=is_whole), note=sensors.price_of_missing())
 
     def on_primary(self) -> None:
-        if self._telling.is_on:
+        if self.telling.is_on:
             self._use_columns()
         elif self._is_choosing:
             if (session := self.page.stored.session) is not None:
@@ -262,7 +262,7 @@ class SensorsStep(Step):
             page.show_reading(self._replays.reading)
         elif sensors.is_searching and sensors.choice is not None:
             page.show_searching(sensors.choice.name)
-        elif self._telling.is_on:
+        elif self.telling.is_on:
             page.show_columns()
         elif self._is_choosing:
             page.show_stored()
@@ -390,7 +390,7 @@ class SensorsStep(Step):
         if choice is None:
             return
         self._end_choosing()
-        self._telling.end()
+        self.telling.end()
         is_told, self._told_of = key == self._told_of, ""
         if any(choice.asks) and not is_told:
             self._told_of = key
@@ -399,7 +399,7 @@ class SensorsStep(Step):
             self.changed.emit()
         elif choice.lines:
             sensors.close()  # they may be at the same ports
-            self._telling.begin(self.page.columns, choice.lines)
+            self.telling.begin(self.page.columns, choice.lines)
             self._show()
             self.page.focus()
             self.changed.emit()
@@ -409,14 +409,14 @@ class SensorsStep(Step):
     def _use_columns(self) -> None:
         """Remember what is told, and search again: all that is known is heard then."""
         try:
-            self._telling.keep()
+            self.telling.keep()
         except OSError as problem:
             self.told.emit(tr("What the columns mean cannot be kept."), str(problem))
             return
         self._on_source_chosen(SEARCH)
 
     def _on_columns_left(self) -> None:
-        self._telling.end()
+        self.telling.end()
         self._show()
         self.page.focus()
         self.changed.emit()
@@ -452,7 +452,7 @@ class SensorsStep(Step):
             self.changed.emit()
 
     def _choose_folder(self) -> None:
-        self._dialog = ask_for_folder(self.page, tr("Replay a session folder"), self._on_folder_selected)
+        self.dialog = ask_for_folder(self.page, tr("Replay a session folder"), self._on_folder_selected)
 
     def _on_folder_selected(self, folder: str) -> None:
         self.replay_folder(Path(folder))

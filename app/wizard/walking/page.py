@@ -64,9 +64,9 @@ class WalkingPage(Themed):
         super().__init__()
         self._look = look
         self._is_compact = False
-        self._rows: tuple[WalkRow, ...] = ()
+        self.rows: tuple[WalkRow, ...] = ()
         self._asked: WalkRow | None = None
-        self._live = WalkingReadout()
+        self.live = WalkingReadout()
         self._described_s = -math.inf
         self.notice = Notice(look, size=16)
         self._has_message = False
@@ -87,7 +87,7 @@ class WalkingPage(Themed):
 
     @property
     def is_recording(self) -> bool:
-        return any(row.state is WalkState.RECORDING for row in self._rows)
+        return any(row.state is WalkState.RECORDING for row in self.rows)
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -103,7 +103,7 @@ class WalkingPage(Themed):
 
     def show_view(self, live: WalkingReadout) -> None:
         """Draw the present, up to thirty times a second."""
-        self._live = live
+        self.live = live
         self.charts.show_live(live)
         self.figures.show_figures(live.strides, live.cadence_steps_min)
         if not 0.0 <= live.now_s - self._described_s < DESCRIBED_EVERY_S:
@@ -120,7 +120,7 @@ class WalkingPage(Themed):
             Of the walk that is asked about, in words: its length, its cadence.
         """
         was_recording, had_focus = self.is_recording, self._has_focus()
-        self._rows = rows
+        self.rows = rows
         asked = [row for row in rows if row.state in (WalkState.ASKING, WalkState.RECOVERED)]
         self._asked = next((row for row in reversed(asked) if row.state is WalkState.ASKING), next(iter(asked), None))
         self.walks.show_walks(rows)
@@ -222,7 +222,7 @@ class WalkingPage(Themed):
     def _arrange(self) -> None:
         """Show what belongs to this moment."""
         was_on_region = QApplication.focusWidget() in self._regions
-        is_recording, has_walks = self.is_recording, bool(self._rows)
+        is_recording, has_walks = self.is_recording, bool(self.rows)
         is_tabbed = self._is_compact and has_walks and not is_recording
         shows_curves = has_walks and (not self._is_compact or is_recording or self.tabs.choice == "curves")
         shows_walks = not self._is_compact or (not is_recording and not (is_tabbed and shows_curves))
@@ -268,8 +268,8 @@ class WalkingPage(Themed):
 
     def _name_next(self) -> None:
         """Say which letter the next walk gets: the one of its label, or the next."""
-        letters = {row.label: row.letter for row in self._rows}
-        self.next.name(letters.get(self.next.chooser.choice) or _next_letter(self._rows))
+        letters = {row.label: row.letter for row in self.rows}
+        self.next.name(letters.get(self.next.chooser.choice) or _next_letter(self.rows))
 
     def _on_chosen(self, label: str) -> None:
         self._name_next()

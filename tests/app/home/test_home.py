@@ -178,7 +178,7 @@ def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_
     QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     home.show_settings()
-    rows = home.settings.page._deleted_rows
+    rows = home.settings.page.deleted_rows
     qtbot.waitUntil(lambda: rows.count() == 1, timeout=WAIT_MS)
     home.toast.undo()
     qtbot.waitUntil(lambda: rows.count() == 0, timeout=WAIT_MS)
@@ -199,7 +199,7 @@ def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home
     restores(home)[session].click()
     qtbot.waitUntil(lambda: restores(home) == {}, timeout=WAIT_MS)
     qtbot.waitUntil(lambda: [one.sessions for one in lines(home)] == ["3 sessions", "0 sessions"], timeout=WAIT_MS)
-    assert not home.settings.page._none_deleted.isHidden()
+    assert not home.settings.page.none_deleted.isHidden()
 
 
 def test_a_deleted_session_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
@@ -243,7 +243,12 @@ def test_a_session_folder_is_imported_for_a_patient(qtbot: QtBot, home: Home, tm
 
 @pytest.mark.parametrize("is_done", [False, True])
 def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
-    qtbot: QtBot, home: Home, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, is_done: bool
+    qtbot: QtBot,
+    home: Home,
+    controller: LibraryController,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    is_done: bool,
 ) -> None:
     block = ImuBlock("LT-1", np.arange(300) / 100, np.zeros((300, 3)), np.tile([0.0, 0.0, 9.81], (300, 1)))
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
@@ -257,15 +262,15 @@ def test_a_stopped_import_says_what_came_of_it_once_that_is_known(
     monkeypatch.setattr("app.home.home.import_session", held)
     home.read_folder(tmp_path / "visit")
     qtbot.waitUntil(lambda: home.current is home.import_page, timeout=WAIT_MS)
-    home._import()
-    home._on_stop()
+    home.bar.primary_pressed.emit()
+    home.working.stop_pressed.emit()
     assert "being stopped" in home.banner.text
     assert "added to the library" not in home.banner.text
     go_on.set()
     what = "was done before it could be stopped. The session is in" if is_done else "stopped. No session was added to"
     qtbot.waitUntil(lambda: what in home.banner.text, timeout=WAIT_MS)
-    assert home._controller.state is not None
-    library = home._controller.state.library.library
+    assert controller.state is not None
+    library = controller.state.library.library
     patient = library.patients.find("P-0200")
     assert patient is not None
     assert len(library.sessions.list(patient.id)) == int(is_done)
@@ -278,7 +283,7 @@ def test_stop_ends_a_reading_that_would_never_end(qtbot: QtBot, home: Home, tmp_
     recording = Recording("walk 1", RecordingKind.WALKING, "walk_1", {Site.LEFT_THIGH: block})
     write_session(Session((recording,), Patient(code="P-0200")), tmp_path / "visit")
     read_foreign_session(tmp_path / "visit", lambda: None)
-    process = the_reader()._process
+    process = the_reader().process
     assert process is not None
     os.kill(process.pid, signal.SIGSTOP)
     home.read_folder(tmp_path / "visit")
@@ -431,16 +436,16 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     qtbot.waitUntil(home.banner.isVisible, timeout=WAIT_MS)
     assert "of walk 3 was recorded while the library did not answer. It is in its session now." in home.banner.text
     qtbot.waitUntil(lambda: any(line.needs_look for line in sessions(home)), timeout=WAIT_MS)
-    home.banner._dismiss.click()
+    home.banner.dismiss.click()
     assert home.banner.text.startswith("2 recordings, 00:00 in all, belong to no session.")
-    assert home.banner._act.text() == "Export"
+    assert home.banner.act.text() == "Export"
     home.recovering.export(tmp_path / "out")
     qtbot.waitUntil(lambda: "2 recordings were exported." in home.banner.text, timeout=WAIT_MS)
     assert len(list((tmp_path / "out").glob("*/LT-1.csv"))) == 2
-    assert home.banner._act.isHidden()
+    assert home.banner.act.isHidden()
     assert controller.state is not None
     left = list(controller.state.library.recordings.iterdir())
-    home.banner._dismiss.click()
+    home.banner.dismiss.click()
     looked_through: list[object] = []
     home.recovering.recovered.connect(lambda: looked_through.append(None))
     open_library(qtbot, controller, home, folder)
@@ -448,7 +453,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     assert controller.state is not None
     assert len(controller.state.interrupted) == 2  # they are kept, but told of no more
     assert home.banner.text.startswith("walk 3 of P-0163 was recovered earlier")
-    home.banner._dismiss.click()
+    home.banner.dismiss.click()
     assert home.banner.isHidden()
     assert set(left) <= set(controller.state.library.recordings.iterdir())
 
@@ -468,7 +473,7 @@ def test_nothing_is_left_for_whoever_comes_next(home: Home) -> None:
 
 
 def test_light_or_dark_is_set_for_the_next_start_too(home: Home, settings: Settings) -> None:
-    home._on_below_pressed("look")
+    home.rail.below_pressed.emit("look")
     assert settings.scheme is Scheme.DARK
 
 
@@ -489,8 +494,8 @@ def test_a_new_recovery_key_ends_the_old_one(qtbot: QtBot, home: Home, folder: P
     home.show_settings()
     page = home.settings.page
     QTest.mouseClick(page.renew, Qt.MouseButton.LeftButton)
-    qtbot.waitUntil(lambda: bool(page._key), timeout=WAIT_MS)
-    KeySlots(folder / KEYS).open_with_recovery_key(page._key)
+    qtbot.waitUntil(lambda: bool(page.recovery_key), timeout=WAIT_MS)
+    KeySlots(folder / KEYS).open_with_recovery_key(page.recovery_key)
     assert page.print.isVisible()
 
 
@@ -498,9 +503,9 @@ def test_a_backup_is_made_and_checked(qtbot: QtBot, home: Home, tmp_path: Path) 
     page = home.settings.page
     (tmp_path / "disk").mkdir()
     home.settings.set_backup_folder(str(tmp_path / "disk"))
-    qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
     page.backup_wished.emit()
-    qtbot.waitUntil(lambda: "checked" in page._backup_said.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "checked" in page.backup_said.text(), timeout=WAIT_MS)
     assert [one.name.startswith("gaitwright-backup-") for one in (tmp_path / "disk").iterdir()] == [True]
 
 
@@ -510,9 +515,9 @@ def test_the_settings_of_one_library_name_no_folder_of_another(
     page, state = home.settings.page, controller.state
     assert state is not None
     home.settings.set_backup_folder(str(tmp_path / "disk"))
-    qtbot.waitUntil(lambda: "disk" in page._backup_folder.text(), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: "disk" in page.backup_folder.text(), timeout=WAIT_MS)
     home.settings.show_library(replace(state, library=replace(state.library, data_key=None)))
-    assert page._backup_folder.text() == "No folder is chosen for backups yet."
+    assert page.backup_folder.text() == "No folder is chosen for backups yet."
 
 
 @pytest.mark.parametrize(("first", "role"), [(5, Role.ADMINISTRATOR), (5, Role.CLINICIAN)])
@@ -544,10 +549,10 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
         page.code.set_text("ab")
         page.name.set_text("A. Bauer")
         page.first.set_text(passphrase)
-        page._on_add()
+        page.add.click()
 
     def row() -> tuple[Button, str]:
-        found = page._rows.itemAt(0)
+        found = page.operator_rows.itemAt(0)
         widget = found.widget() if found is not None else None
         assert widget is not None
         button = widget.findChild(Button)
@@ -555,17 +560,17 @@ def test_an_operator_is_removed_with_a_change_of_the_key_and_comes_back_with_a_n
         return button, button.text()
 
     add("first words for now")
-    qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: page.operator_rows.count() == 2, timeout=WAIT_MS)
     shutil.copy(folder / KEYS, folder.parent / "old.json")
     row()[0].click()
-    assert "Backups that were made before keep their old key" in page._leaving_words.text()
+    assert "Backups that were made before keep their old key" in page.leaving_words.text()
     page.keep.click()
     assert not page.remove.isVisible()
     row()[0].click()
     page.remove.click()
-    assert not page._operators.isEnabled()
+    assert not page.operators_card.isEnabled()
     qtbot.waitUntil(lambda: row()[1] == "Works here again", timeout=WAIT_MS)
-    assert "has a new key" in page._leaving_words.text()
+    assert "has a new key" in page.leaving_words.text()
     stolen = KeySlots(folder.parent / "old.json").open("ab", "first words for now")
     with pytest.raises(LibraryError):
         Library.open(folder, stolen)
@@ -586,8 +591,8 @@ def test_an_operator_is_added_and_may_log_in(
     page.name.set_text("V. Iten")
     page.first.set_text("first words for now")
     page.role.setCurrentIndex(page.role.findData("viewer"))
-    page._on_add()
-    qtbot.waitUntil(lambda: page._rows.count() == 2, timeout=WAIT_MS)
+    page.add.click()
+    qtbot.waitUntil(lambda: page.operator_rows.count() == 2, timeout=WAIT_MS)
     controller.close()
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
         controller.open(folder, "first words for now", "vi")
@@ -595,9 +600,9 @@ def test_an_operator_is_added_and_may_log_in(
     assert state.operator.role is Role.VIEWER
     home.show_library(state)
     home.show_settings()
-    assert not page._operators.isVisible()
-    assert not page._backup.isVisible()
-    assert page._access.isVisible()
+    assert not page.operators_card.isVisible()
+    assert not page.backup_card.isVisible()
+    assert page.access_card.isVisible()
 
 
 def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_read(qtbot: QtBot, home: Home) -> None:

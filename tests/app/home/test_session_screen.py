@@ -185,8 +185,8 @@ def test_the_empty_window_offers_the_two_ways_on(window: SessionScreen) -> None:
 
 def test_a_session_is_shown_with_its_patient_and_its_first_walk(window: SessionScreen, results: ResultPage) -> None:
     assert window.pages.currentWidget() is results
-    assert window.header._code.text() == "P-0147"
-    assert window.header._facts.text() == "1968, male · left prosthetic"
+    assert window.header.code.text() == "P-0147"
+    assert window.header.facts.text() == "1968, male · left prosthetic"
     assert results.recordings.currentText() == "walk 1"
     for joint in Joint:
         expected = np.rad2deg(angle(joint, True).angle_rad)
@@ -237,7 +237,7 @@ def test_stopping_brings_the_session_before_back(
     open_work(endless(Event()))
     QTest.mouseClick(window.working.stop, Qt.MouseButton.LeftButton)
     assert window.pages.currentWidget() is results
-    assert window.header._code.text() == "P-0147"
+    assert window.header.code.text() == "P-0147"
 
 
 def test_stopping_for_good_waits_for_the_thread(qtbot: QtBot, window: SessionScreen, open_work: OpenWork) -> None:
@@ -259,7 +259,7 @@ def test_a_folder_that_is_no_session_is_refused_in_the_page(
     assert str(tmp_path) in window.banner.text
     assert QApplication.activeModalWidget() is None
     assert window.pages.currentWidget() is window.empty
-    QTest.mouseClick(window.banner._dismiss, Qt.MouseButton.LeftButton)
+    QTest.mouseClick(window.banner.dismiss, Qt.MouseButton.LeftButton)
     assert not window.banner.isVisible()
 
 
@@ -349,11 +349,11 @@ def test_the_way_back_to_the_whole_is_in_sight_when_it_is_needed(qtbot: QtBot, r
 def test_simulated_is_said_in_header_and_charts_and_only_then(
     qtbot: QtBot, window: SessionScreen, results: ResultPage, open_work: OpenWork
 ) -> None:
-    assert not window.header._simulated.isVisible()
+    assert not window.header.simulated.isVisible()
     assert not results.charts.knee._simulated.isVisible()
     open_work(lambda _report: opened(is_simulated=True))
     qtbot.waitUntil(lambda: not window.is_working)
-    assert window.header._simulated.isVisible()
+    assert window.header.simulated.isVisible()
     assert results.charts.knee._simulated.isVisible()
 
 
@@ -394,7 +394,7 @@ def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionSc
     qtbot.waitUntil(lambda: not window.is_working, timeout=60_000)
     page = window.results
     assert page is not None, window.banner.text
-    assert window.header._simulated.isVisible()
+    assert window.header.simulated.isVisible()
     for joint, lowest, highest in (
         (Joint.LEFT_KNEE, 45, 75),
         (Joint.RIGHT_KNEE, 45, 75),

@@ -106,7 +106,7 @@ def visit_of(wizard: Wizard) -> Visit:
 
 def place_of(wizard: Wizard) -> int:
     assert wizard.current is not None
-    return wizard._steps.index(wizard.current)
+    return wizard.steps.index(wizard.current)
 
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
@@ -157,7 +157,7 @@ def test_before_a_walk_was_kept_or_discarded(
     step = wizard.current
     assert isinstance(step, WalkingStep)
     assert (step.state, step.note) == (StepState.ATTENTION, "keep or discard?")
-    step._on_keep_pressed(str(visit.recordings.walks[0].id))
+    step.page.keep_pressed.emit(str(visit.recordings.walks[0].id))
     qtbot.waitUntil(lambda: visit.recordings.walks[0].stored.is_decided, timeout=WAIT_MS)
     wizard.show_session(UUID(told["session"]))
     qtbot.waitUntil(lambda: wizard.visit is not visit and wizard.shell.page is not None, timeout=WAIT_MS)
@@ -205,7 +205,7 @@ def test_amid_the_report(
     step = wizard.current
     assert isinstance(step, ReportStep)
     assert step.page.report.comment.toPlainText() == COMMENT
-    qtbot.waitUntil(step._can_save, timeout=WAIT_MS)
-    step._on_folder_selected(str(out))
-    qtbot.waitUntil(lambda: step._saved == out, timeout=WAIT_MS)
+    qtbot.waitUntil(step.can_save, timeout=WAIT_MS)
+    step.save_in(str(out))
+    qtbot.waitUntil(lambda: step.saved == out, timeout=WAIT_MS)
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF")

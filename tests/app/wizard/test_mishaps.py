@@ -22,7 +22,7 @@ from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.recordings import Ongoing
 from app.wizard.visit import Visit
-from app.wizard.walking.step import WalkingStep
+from app.wizard.walking.step import WATCH_TICKS, WalkingStep
 from app.wizard.wizard import DEAF_S, FREE_MOTION, RESULTS, WALKING, Wizard
 from app.workers.background import Report
 from app.workers.library_controller import LibraryController
@@ -89,7 +89,6 @@ def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
     qtbot: QtBot, looked_at: Visit, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(recordings_module, "READ_AGAIN_MS", 20)
-    looked_at.recordings._again.setInterval(20)
     monkeypatch.setattr(Recorder, "stop", failing_once_halted(2))
     told: list[tuple[str, str]] = []
     looked_at.recordings.refused.connect(lambda *words: told.append(words))
@@ -106,7 +105,7 @@ def test_a_library_that_stays_busy_does_not_hold_the_visit_for_ever(
 ) -> None:
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    recordings._again.setInterval(1)
+    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 1)
     monkeypatch.setattr(Recorder, "stop", failing(10_000, BUSY, Recorder.stop))
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
@@ -128,7 +127,7 @@ def test_a_full_disk_ends_the_recording_on_the_screen_too(
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)
     with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
-        threading.Thread(target=recordings._on_trouble, args=(trouble,)).start()  # as the journal's writer tells it
+        threading.Thread(target=recordings.meet, args=(trouble,)).start()  # as the journal's writer tells it
     assert all(sentence.endswith(".") for sentence in told.args)
     assert recordings.is_stopping is ends
     if ends:
@@ -152,11 +151,12 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     now = [replace(fine, stuck_s=3.0)]
     monkeypatch.setattr(Recorder, "status", property(lambda _recorder: now[0]))
     with qtbot.waitSignal(recordings.troubled, timeout=WAIT_MS) as told:
-        recordings._on_trouble(Trouble.DISK_SLOW)
+        recordings.meet(Trouble.DISK_SLOW)
     assert told.args == ["The disk answers late.", "Nothing is lost yet. Close programs that copy or download to it."]
 
     def said() -> str:
-        step._watch_sensors()
+        for _ in range(WATCH_TICKS):
+            step.tick()
         return step.page.notice.text
 
     recording = step.bar().recording
@@ -283,7 +283,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     again.recordings.every = (replace(walk, stored=recovered, is_decided=False),)
     step.tick()
     assert "was recovered, up to the last record on the disk" in step.page.notice.text
-    step._on_discard_pressed(str(walk.id))
+    step.page.discard_pressed.emit(str(walk.id))
     qtbot.waitUntil(lambda: not again.recordings.walks[0].told.is_kept, timeout=WAIT_MS)
     step.leave()
     again.finish()
@@ -296,7 +296,7 @@ def test_sensors_of_another_day_were_strapped_anew(
         record(qtbot, looked_at, kind, 0.5)
     assert looked_at.session is not None
     monkeypatch.setattr("app.wizard.visit._now", lambda: "2031-02-03T09:00:00+01:00")
-    again = Visit(controller, looked_at._choices)
+    again = Visit(controller, looked_at.known_choices)
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
     assert again.recordings.has_moved
@@ -373,7 +373,7 @@ def test_a_session_that_was_left_while_it_opened_does_not_open_in_the_next(
     wizard.begin(None)
     with qtbot.waitSignal(before.resumed, timeout=WAIT_MS):
         pass
-    assert wizard.current is not wizard._steps[RESULTS]
+    assert wizard.current is not wizard.steps[RESULTS]
     assert wizard.visit.session is None
 
 
@@ -412,12 +412,12 @@ def test_a_key_that_was_meant_for_the_page_before_does_nothing(wizard: Wizard, m
     monkeypatch.setattr("app.wizard.wizard.time.monotonic", lambda: now_s)
     wizard.begin(None)
     wizard._go_to(FREE_MOTION)
-    wizard._steps[FREE_MOTION].done.emit()
-    assert wizard._current == WALKING
-    wizard._on_intent(Intent(KeyAction.RUN))
+    wizard.steps[FREE_MOTION].done.emit()
+    assert wizard.step_number == WALKING
+    wizard.act_on(Intent(KeyAction.RUN))
     assert heard == []
-    wizard._on_intent(Intent(KeyAction.UNDO))
+    wizard.act_on(Intent(KeyAction.UNDO))
     assert heard == [Intent(KeyAction.UNDO)]
     now_s += DEAF_S + 0.01
-    wizard._on_intent(Intent(KeyAction.RUN))
+    wizard.act_on(Intent(KeyAction.RUN))
     assert heard[1:] == [Intent(KeyAction.RUN)]

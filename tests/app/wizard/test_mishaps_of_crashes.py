@@ -55,7 +55,7 @@ def landed(qtbot: QtBot, wizard: Wizard, left: Visit) -> int:
     wizard.show_session(left.session.id)
     qtbot.waitUntil(lambda: wizard.current is not None and wizard.shell.page is not None, timeout=WAIT_MS)
     assert wizard.current is not None
-    return wizard._steps.index(wizard.current)
+    return wizard.steps.index(wizard.current)
 
 
 def test_a_session_is_taken_up_where_something_is_to_be_done(qtbot: QtBot, wizard: Wizard, left: Visit) -> None:

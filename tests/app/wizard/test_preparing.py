@@ -28,8 +28,8 @@ def preparing(wizard: Wizard, monkeypatch: pytest.MonkeyPatch) -> Wizard:
 
 def test_all_pages_are_made_while_the_first_is_looked_at(qtbot: QtBot, preparing: Wizard) -> None:
     preparing.begin(None)
-    qtbot.waitUntil(lambda: not preparing._to_prepare, timeout=WAIT_MS)
-    made = dict(preparing.shell._by_index)
+    qtbot.waitUntil(lambda: not preparing.to_prepare, timeout=WAIT_MS)
+    made = preparing.shell.pages
     assert set(made) == set(range(PATIENT, REPORT + 1))
     assert preparing.shell.page is made[PATIENT]
     assert made[RESULTS].findChildren(ResultPage)
@@ -41,7 +41,7 @@ def test_nothing_is_made_ahead_amid_a_recording(
     monkeypatch.setattr(Wizard, "is_recording", True)
     preparing.begin(None)
     qtbot.wait(50)
-    assert list(preparing.shell._by_index) == [PATIENT]
+    assert list(preparing.shell.pages) == [PATIENT]
 
 
 @pytest.mark.endurance
@@ -56,7 +56,7 @@ def test_a_whole_session_never_holds_up_the_screen(
     wizard.begin(None)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: not wizard._to_prepare, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not wizard.to_prepare, timeout=WAIT_MS)
     visit.patient.edit(Patient(code="DEMO-9"))
     visit.patient.commit()
     qtbot.waitUntil(lambda: visit.patient.stored is not None, timeout=WAIT_MS)
@@ -68,14 +68,14 @@ def test_a_whole_session_never_holds_up_the_screen(
     qtbot.wait(LOOK_MS)
     wizard.go_to(STAND_STILL)
     qtbot.wait(LOOK_MS)
-    wizard._on_primary()
-    qtbot.waitUntil(lambda: wizard._current == FREE_MOTION, timeout=WAIT_MS)
-    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    wizard.press_primary()
+    qtbot.waitUntil(lambda: wizard.step_number == FREE_MOTION, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
     qtbot.wait(LOOK_MS)
-    wizard._on_primary()
+    wizard.press_primary()
     qtbot.waitUntil(lambda: wizard.is_recording, timeout=WAIT_MS)
     qtbot.wait(12_000)
-    wizard._on_primary()
+    wizard.press_primary()
     qtbot.waitUntil(lambda: bool(visit.recordings.walks) and not visit.evaluation.is_busy, timeout=WAIT_MS)
     visit.recordings.keep(visit.recordings.walks[-1], True)
     for step in (RESULTS, REPORT, PATIENT):

@@ -34,12 +34,12 @@ def hanging(until: Event) -> Callable[[OpenedLibrary], None]:
 
 @pytest.mark.endurance
 def test_no_call_of_the_library_holds_up_a_recording(
-    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site]
+    qtbot: QtBot, controller: LibraryController, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """While a call hangs a walk begins and ends, then another; both come when it is over, worn as was said before."""
     begin(qtbot, visit, worn)
     recordings, acquisition, over = visit.recordings, visit.sensors.acquisition, Event()
-    recordings._waited.setInterval(200)
+    monkeypatch.setattr("app.wizard.recordings.WAITED_MS", 200)
     assert acquisition is not None
     controller.run(hanging(over), None, None, controller)
     visit.place_sensors()  # behind it, and before the walk
@@ -88,7 +88,7 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
 
         monkeypatch.setattr(Recordings, name, call)
     recordings, acquisition = visit.recordings, visit.sensors.acquisition
-    recordings._again.setInterval(50)
+    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 50)
     assert acquisition is not None
     with qtbot.waitSignals([recordings.begun, recordings.troubled], timeout=WAIT_MS):
         recordings.begin(acquisition, RecordingKind.WALKING)

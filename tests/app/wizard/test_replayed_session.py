@@ -37,18 +37,18 @@ def lead_to_standing(qtbot: QtBot, wizard: Wizard, folder: Path) -> None:
     with qtbot.waitSignal(visit.sensors.opened, timeout=WAIT_MS):
         sensors.replay_folder(folder)
     assert set(visit.sensors.sensor_at) == set(Site)
-    wizard._on_primary()
-    assert wizard._current == STAND_STILL
+    wizard.press_primary()
+    assert wizard.step_number == STAND_STILL
 
 
 def record_walk(qtbot: QtBot, wizard: Wizard, seconds: float) -> None:
     visit = wizard.visit
     assert visit is not None
     with qtbot.waitSignal(visit.recordings.begun, timeout=WAIT_MS):
-        wizard._on_primary()
+        wizard.press_primary()
     qtbot.wait(round(1000 * seconds))
     with qtbot.waitSignal(visit.recordings.ended, timeout=WAIT_MS):
-        wizard._on_primary()
+        wizard.press_primary()
 
 
 def results(qtbot: QtBot, wizard: Wizard) -> Analysis:
@@ -73,12 +73,12 @@ def test_the_demonstrations_folder_gives_what_its_analysis_gives(qtbot: QtBot, w
     folder = tmp_path / "session"
     write_session(simulate(DEMONSTRATION).session, folder)
     lead_to_standing(qtbot, wizard, folder)
-    wizard._on_primary()
-    qtbot.waitUntil(lambda: wizard._current == FREE_MOTION, timeout=WAIT_MS)
+    wizard.press_primary()
+    qtbot.waitUntil(lambda: wizard.step_number == FREE_MOTION, timeout=WAIT_MS)
     qtbot.wait(30_000)
-    if wizard._current == FREE_MOTION:
-        wizard._on_primary()
-    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    if wizard.step_number == FREE_MOTION:
+        wizard.press_primary()
+    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
     record_walk(qtbot, wizard, 20.0)
     analysis, stored = results(qtbot, wizard), analyse(read_session(folder))
     visit = wizard.visit
@@ -103,8 +103,8 @@ def test_a_real_walk_without_standing_goes_as_far(
     lead_to_standing(qtbot, wizard, folder)
     wizard.go_to(FREE_MOTION)
     qtbot.wait(12_000)
-    wizard._on_primary()
-    qtbot.waitUntil(lambda: wizard._current == WALKING, timeout=WAIT_MS)
+    wizard.press_primary()
+    qtbot.waitUntil(lambda: wizard.step_number == WALKING, timeout=WAIT_MS)
     record_walk(qtbot, wizard, 24.0)
     analysis = results(qtbot, wizard)
     visit = wizard.visit

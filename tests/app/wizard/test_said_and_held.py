@@ -61,9 +61,9 @@ def session_in_sight(qtbot: QtBot, wizard: Wizard, opened: OpenedLibrary) -> Any
     wizard.show_session(line.id)
     visit = wizard.visit
     assert visit is not None
-    qtbot.waitUntil(lambda: wizard._current == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: wizard.step_number == RESULTS and not visit.evaluation.is_busy, timeout=WAIT_MS)
     wizard.go_to(WALKING)
-    return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, _wizard=wizard)
+    return SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: wizard), home=None, wizard=wizard)
 
 
 @pytest.fixture
@@ -75,7 +75,7 @@ def home_in_sight(
     qtbot.addWidget(home)
     home.show_library(controller.state)
     qtbot.waitUntil(lambda: bool(home.page.sessions.lines.lines), timeout=WAIT_MS)
-    yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, _wizard=None)
+    yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
     qapp.setStyleSheet("")
 
 

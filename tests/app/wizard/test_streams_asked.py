@@ -29,7 +29,7 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
-    visit._choices = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
+    visit.known_choices = Sources(SearchResult, ("127.0.0.1", "192.0.2.9"))
     step = SensorsStep(Look(), visit)
     qtbot.addWidget(step.page)
     step.enter()

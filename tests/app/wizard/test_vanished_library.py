@@ -41,7 +41,7 @@ def _own_data_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def looked_at(qtbot: QtBot, visit: Visit, worn: dict[str, Site], monkeypatch: pytest.MonkeyPatch) -> Visit:
     """A visit with sensors on, whose recordings nobody evaluates."""
     monkeypatch.setattr(visit, "evaluate", lambda: None)
-    visit.recordings._again.setInterval(50)
+    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 50)
     begin(qtbot, visit, worn)
     return visit
 
@@ -172,18 +172,19 @@ def notice_of(wizard: Wizard) -> str:
 
 @pytest.mark.endurance
 def test_a_whole_day_on_which_the_disk_comes_and_goes(
-    qtbot: QtBot, open_window: Opened, worn: dict[str, Site], tmp_path: Path
+    qtbot: QtBot, open_window: Opened, worn: dict[str, Site], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Gone amid a walk, closed while it is gone, started without it, back: both walks are in their session, once."""
     folder, elsewhere = tmp_path / "library", tmp_path / "renamed"
     window = open_window()
     log_in(qtbot, window)
-    window._on_session_wished(None)
-    wizard = window._wizard
+    assert window.home is not None
+    window.home.session_wished.emit(None)
+    wizard = window.wizard
     assert wizard is not None
     visit = wizard.visit
     assert visit is not None
-    visit.recordings._again.setInterval(100)
+    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 100)
     begin(qtbot, visit, worn)
     wizard._go_to(WALKING)
     start_walk(qtbot, visit)
@@ -203,7 +204,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     again = open_window()
     assert again.entry is not None
     assert again.entry.first_start.look_again.isVisible()
-    assert "2 recordings are kept on this computer" in again.entry.first_start._missing_lead.text()
+    assert "2 recordings are kept on this computer" in again.entry.first_start.missing_lead.text()
     assert not folder.exists()
     elsewhere.rename(folder)
     log_in(qtbot, again)

@@ -70,8 +70,8 @@ def read(folder: Path, reader: LimitedReader, waiting: Callable[[], object] = no
 
 
 def process_of(reader: LimitedReader) -> int:
-    assert reader._process is not None
-    return reader._process.pid
+    assert reader.process is not None
+    return reader.process.pid
 
 
 def same(one: object, other: object) -> bool:
@@ -238,7 +238,7 @@ def test_a_small_file_that_fills_the_memory_is_refused(make_session: MakeSession
     assert (folder / "walk_1" / "right_thigh.parquet").stat().st_size < 1_000_000
     with pytest.raises(ReadingEndedError, match=r"^walk_1/right_thigh.parquet: reading this takes more memory"):
         read(folder, reader)
-    assert reader._process is None
+    assert reader.process is None
 
 
 def test_small_files_that_hold_too_much_together_are_refused(
@@ -302,7 +302,7 @@ def test_the_process_is_renewed_after_many_files(
     read(folder, reader)
     first = process_of(reader)
     read(folder, reader)  # its four files are read
-    assert reader._process is None
+    assert reader.process is None
     read(folder, reader)
     assert process_of(reader) != first
 
@@ -311,12 +311,12 @@ def test_closing_ends_the_process_and_collecting_it_too(make_session: MakeSessio
     folder = make_session()
     reader = LimitedReader()
     read(folder, reader)
-    process = reader._process
+    process = reader.process
     assert process is not None
     reader.close()
     assert process.returncode is not None
     read(folder, reader)
-    process = reader._process
+    process = reader.process
     del reader
     assert process is not None
     assert process.poll() is not None

@@ -80,7 +80,7 @@ def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: Report
 def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, tmp_path: Path) -> None:
     out = tmp_path / "results"
     step.page.report.formats.choose(["csv"])
-    chosen: Callable[[str], None] = step._on_folder_selected
+    chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
     assert (out / "report.pdf").read_bytes().startswith(b"%PDF-")
@@ -119,11 +119,11 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     dialog.typed.buttons[0].click()
     assert dict(dialog.shown)["device"] == "Qx1 knee"
     dialog.go.click()
-    qtbot.waitUntil(lambda: step._dialog is not None, timeout=WAIT_MS)
-    assert step._dialog is not None
-    step._dialog.close()
+    qtbot.waitUntil(lambda: step.dialog is not None, timeout=WAIT_MS)
+    assert step.dialog is not None
+    step.dialog.close()
     out = tmp_path / "results"
-    chosen: Callable[[str], None] = step._on_folder_selected
+    chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
     with zipfile.ZipFile(out / "gaitwright.xlsx") as book:
@@ -137,12 +137,12 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     step.page.report.formats.choose(["csv", "rrd"])
     step.on_primary()
-    assert step._dialog is not None
+    assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
     told = visit.session.told
-    assert [Path(path).name for path in step._dialog.selectedFiles()] == [folder_name(told.patient.code, told.started)]
-    step._dialog.close()
+    assert [Path(path).name for path in step.dialog.selectedFiles()] == [folder_name(told.patient.code, told.started)]
+    step.dialog.close()
 
 
 def test_of_a_free_motion_alone_no_report_is_offered(step: ReportStep, visit: Visit, analysis: Analysis) -> None:
@@ -161,7 +161,7 @@ def test_whoever_cancels_writes_nothing(qtbot: QtBot, step: ReportStep) -> None:
     dialog = dialog_of(qtbot, step)
     dialog.cancel.click()
     qtbot.waitUntil(lambda: step.page.findChild(LeavingDialog) is None, timeout=WAIT_MS)
-    assert step._dialog is None
+    assert step.dialog is None
 
 
 @pytest.mark.endurance
@@ -190,7 +190,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     assert report.chosen_visit == earlier_id
     assert not step.bar().primary.is_enabled  # type: ignore[union-attr]  # nothing is saved yet, so it is there
     qtbot.waitUntil(lambda: step.bar().primary.is_enabled, timeout=WAIT_MS)  # type: ignore[union-attr]  # it is still there
-    chosen: Callable[[str], None] = step._on_folder_selected
+    chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
     text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / "report.pdf").pages)

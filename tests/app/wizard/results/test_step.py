@@ -138,7 +138,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
     page = step.page.correct()
     assert step.page.currentWidget() is page
     with qtbot.waitSignal(step.offered), qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
-        page._joints[Joint.LEFT_KNEE].turned.click()
+        page.joint_rows[Joint.LEFT_KNEE].turned.click()
     np.testing.assert_allclose(angle_of(visit, Joint.LEFT_KNEE), -before, atol=1e-9)
     analysis = visit.evaluation.analysis
     assert analysis is not None
@@ -156,7 +156,7 @@ def test_a_sign_is_turned_kept_in_the_history_and_undone(
 
 def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     step.on_quiet(0)
-    (row,) = step.page.correct()._walks.values()
+    (row,) = step.page.correct().walk_rows.values()
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         row.kept.click()
     assert visit.evaluation.analysis is not None
@@ -164,7 +164,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.undo()
     assert walk_of(visit).gait
-    ((key, _),) = step.page.correct()._walks.items()
+    ((key, _),) = step.page.correct().walk_rows.items()
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.page.correct().condition_typed.emit(key, "AFO")
     assert [recording.told.condition for recording in visit.recordings.walks] == ["AFO"]

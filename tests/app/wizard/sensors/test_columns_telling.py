@@ -39,7 +39,7 @@ def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
         raise SourceRefusedError("Searched", "again")
 
     lines = (LinesAt(PortInfo(place), 115200, 7), LinesAt(PortInfo("/dev/other"), 115200, 7))
-    visit._choices = (
+    visit.known_choices = (
         SourceChoice(COLUMNS, "Lines of numbers", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
         SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
     )
@@ -58,8 +58,8 @@ def asked(qtbot: QtBot, step: SensorsStep) -> ColumnsForm:
     step.page.source_chosen.emit(COLUMNS)
 
     def is_guessed() -> bool:
-        step._telling.tick()
-        return step._telling.columns is not None
+        step.telling.tick()
+        return step.telling.columns is not None
 
     qtbot.waitUntil(is_guessed)
     return step.page.columns
@@ -71,7 +71,7 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
     monkeypatch.setattr(kept, "_place", lambda: tmp_path / "columns.json")
     form = asked(qtbot, step)
     assert form.isVisible()
-    assert step._telling.columns == EMULATED
+    assert step.telling.columns == EMULATED
     assert form.notice.text.startswith("200 samples a second, 9.8 m/s²: this can be so.")
     primary = step.bar().primary
     assert primary is not None
@@ -80,22 +80,22 @@ def test_what_is_guessed_is_shown_with_what_comes_and_is_kept(
         step.on_primary()
     assert refused.args == ["Searched.", "again."]
     assert kept.known_columns() == {place: EMULATED, "/dev/other": EMULATED}
-    assert not step._telling.is_on
+    assert not step.telling.is_on
 
 
 def test_what_cannot_be_is_said(qtbot: QtBot, step: SensorsStep) -> None:
     form = asked(qtbot, step)
     form.force.setCurrentIndex(form.force.findData("m/s2"))
-    step._telling.tick()
+    step.telling.tick()
     assert "at rest it must be 9.8" in form.notice.text
     form.force.setCurrentIndex(form.force.findData("g"))
     form.time.setCurrentIndex(form.time.findData("s"))
-    step._telling.tick()
+    step.telling.tick()
     assert "samples come in a second" in form.notice.text
     form.meanings[3].setCurrentIndex(form.meanings[3].findData(str(Meaning.RATE_X)))
-    step._telling.tick()
+    step.telling.tick()
     assert "each once" in form.notice.text
-    assert step._telling.columns is None
+    assert step.telling.columns is None
     primary = step.bar().primary
     assert primary is not None
     assert not primary.is_enabled
@@ -104,12 +104,12 @@ def test_what_cannot_be_is_said(qtbot: QtBot, step: SensorsStep) -> None:
 def test_an_axis_can_be_turned_round(qtbot: QtBot, step: SensorsStep) -> None:
     form = asked(qtbot, step)
     form.meanings[2].setCurrentIndex(form.meanings[2].findData(f"-{Meaning.RATE_Y}"))
-    columns = step._telling.columns
+    columns = step.telling.columns
     assert columns is not None
     assert columns.signs == (1, -1, 1, 1, 1, 1)
 
 
 def test_other_sources_are_a_step_away(qtbot: QtBot, step: SensorsStep) -> None:
     asked(qtbot, step).back.click()
-    assert not step._telling.is_on
+    assert not step.telling.is_on
     assert step.page.nothing.isVisible()

@@ -97,7 +97,7 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
 def test_a_folder_is_chosen_beside_the_page(qtbot: QtBot, visit: Visit, step: SensorsStep, folder: Path) -> None:
     step.page.source_chosen.emit(REPLAY)
     step.page.stored.folder.click()
-    dialog = step._dialog
+    dialog = step.dialog
     assert dialog is not None
     assert dialog.fileMode() is QFileDialog.FileMode.Directory
     with qtbot.waitSignal(visit.sensors.opened, timeout=10_000):

@@ -147,7 +147,7 @@ def test_the_set_up_of_the_last_visit_is_worn_at_once(
 
 
 def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Visit) -> None:
-    visit._choices = ()
+    visit.known_choices = ()
     step = SensorsStep(Look(), visit)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == "Type the patient's code first."
@@ -161,10 +161,10 @@ def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Vis
 def test_what_a_search_finds_while_the_page_is_in_sight_is_offered(
     qtbot: QtBot, visit: Visit, step: SensorsStep
 ) -> None:
-    found = SourceChoice("ximu3", "x-io x-IMU3, 6 sensors", visit._choices[0].make)
+    found = SourceChoice("ximu3", "x-io x-IMU3, 6 sensors", visit.known_choices[0].make)
     step.page.activateWindow()
     step.page.nothing.buttons[0].setFocus()
-    visit._choices = (found, *visit._choices)  # as the thread of the search does it
+    visit.known_choices = (found, *visit.known_choices)  # as the thread of the search does it
     tick(step)
     assert [button.text() for button in step.page.nothing.buttons][:2] == [found.name, "Fast patient"]
     assert step.page.sources.itemText(0) == found.name
@@ -178,7 +178,7 @@ def test_a_search_that_is_stopped_gives_the_sources_back(visit: Visit, step: Sen
         may_end.wait(10)
         raise SourceRefusedError("No sensor was found", "Switch them on")
 
-    visit._choices = (SourceChoice("slow", "Slow", make),)
+    visit.known_choices = (SourceChoice("slow", "Slow", make),)
     step.page.source_chosen.emit("slow")
     assert step.page.searching.isVisible()
     step.page.searching.stop.click()
@@ -191,7 +191,7 @@ def test_what_is_refused_is_said_in_the_users_language(qtbot: QtBot, visit: Visi
     def make() -> Acquisition:
         raise SourceRefusedError("{place} is used by another program", "Close that program", place="COM{7}")
 
-    visit._choices = (SourceChoice("taken", "Taken", make),)
+    visit.known_choices = (SourceChoice("taken", "Taken", make),)
     with qtbot.waitSignal(visit.refused, timeout=5000) as refused:
         step.page.source_chosen.emit("taken")
     what, remedy = refused.args
@@ -258,7 +258,7 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     monkeypatch.setattr("app.wizard.wizard.DEMO_PATIENT", code)
     wizard.begin(None)
     first = wizard.visit
-    wizard._on_demonstration_wanted()
+    wizard.steps[0].demonstration_wanted.emit()
     assert wizard.visit is not first
     assert wizard.visit is not None
     patient = wizard.visit.patient
@@ -266,5 +266,5 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     assert (patient.stored is not None) is (code == "DEMO-1")
     assert wizard.visit.may_simulate
     with qtbot.waitSignal(wizard.visit.changed, timeout=5000):
-        wizard._on_primary()
+        wizard.press_primary()
     qtbot.waitUntil(lambda: isinstance(wizard.current, SensorsStep), timeout=5000)

@@ -82,7 +82,7 @@ def test_no_zero_is_called_set_while_the_library_has_not_taken_the_standing(
 
     monkeypatch.setattr(Recorder, "stop", refusing)
     monkeypatch.setattr("app.wizard.recordings.MOST_READINGS", 2)
-    visit.recordings._again.setInterval(200)
+    monkeypatch.setattr("app.wizard.recordings.READ_AGAIN_MS", 200)
     assert step.on_intent(SPACE)
     ticks(qtbot, step, lambda: phase(step) is StandPhase.DONE)
     assert (step.state, step.note) == (StepState.TODO, "being read back")

@@ -83,7 +83,7 @@ def walk(qtbot: QtBot, step: WalkingStep, visit: Visit, seconds: float) -> None:
 
 
 def states(step: WalkingStep) -> list[tuple[str, str, WalkState]]:
-    return [(row.letter, row.label, row.state) for row in step.page._rows]
+    return [(row.letter, row.label, row.state) for row in step.page.rows]
 
 
 def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
@@ -97,9 +97,9 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     assert recording is not None
     assert recording.title == "Recording Alignment A"
     assert step.cannot_leave
-    qtbot.waitUntil(lambda: max(step.page._live.strides.values(), default=0) >= 5, timeout=10_000)
-    assert set(step.page._live.knees) == set(step.page._live.ankles)
-    assert step.page._live.cadence_steps_min > 60
+    qtbot.waitUntil(lambda: max(step.page.live.strides.values(), default=0) >= 5, timeout=10_000)
+    assert set(step.page.live.knees) == set(step.page.live.ankles)
+    assert step.page.live.cadence_steps_min > 60
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     assert states(step) == [("A", "Alignment A", WalkState.ASKING)]
@@ -117,9 +117,9 @@ def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: 
     calibrate(qtbot, visit)
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)
-    qtbot.waitUntil(lambda: bool(step.page._live.ankles), timeout=10_000)
-    assert any(ankle.is_provisional for ankle in step.page._live.ankles.values())
-    qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page._live.ankles.values()), timeout=20_000)
+    qtbot.waitUntil(lambda: bool(step.page.live.ankles), timeout=10_000)
+    assert any(ankle.is_provisional for ankle in step.page.live.ankles.values())
+    qtbot.waitUntil(lambda: not any(ankle.is_provisional for ankle in step.page.live.ankles.values()), timeout=20_000)
     with qtbot.waitSignal(visit.recordings.ended, timeout=10_000):
         step.on_intent(RUN)
     results = ResultsStep(look, visit)
