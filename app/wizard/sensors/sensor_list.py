@@ -64,9 +64,7 @@ class SensorList(Themed):
         is_other = len(sensors) != len(self.rows)
         for place, sensor in enumerate(sensors, start=1):  # the heading is the first
             if sensor.name not in self.rows:
-                row = self.rows[sensor.name] = SensorRowView(self._look, sensor.name, self)
-                row.setParent(self)
-                row.show()
+                self._add_row(sensor.name)
             row = self.rows[sensor.name]
             if self._column.indexOf(row) != place:
                 self._column.insertWidget(place, row)
@@ -77,7 +75,7 @@ class SensorList(Themed):
         self._heading.setVisible(bool(sensors))
         if self.selection not in self.rows:
             self.select(next(iter(self.rows), ""))
-        self._let_tab_reach()
+        self._mark_selected()
 
     def show_traces(self, traces: Mapping[str, FloatArray]) -> None:
         """Draw how each sensor turned in the last 5 s, deg/s, oldest first; only the traces are drawn anew."""
@@ -89,9 +87,7 @@ class SensorList(Themed):
         """Let keys mean this sensor."""
         if name != self.selection:
             self.selection = name
-            self._let_tab_reach()
-            for row in self.rows.values():
-                row.update()
+            self._mark_selected()
             self.selected.emit(name)
 
     def set_narrow(self, is_narrow: bool) -> None:
@@ -100,10 +96,10 @@ class SensorList(Themed):
             self._is_narrow = is_narrow
             self._on_look_changed()
 
-    def step(self, row: SensorRowView, by: int) -> None:
-        """Go on to the row above or below."""
+    def step(self, name: str, by: int) -> None:
+        """Go on to the row above or below the one of `name`."""
         rows = list(self.rows.values())
-        at = rows.index(row) + by
+        at = list(self.rows).index(name) + by
         if 0 <= at < len(rows):
             self.select(rows[at].name)
             rows[at].setFocus(Qt.FocusReason.TabFocusReason)
@@ -174,10 +170,19 @@ class SensorList(Themed):
         width = self._measured(0)["identify"].right() + theme.px(6) + gap + trace
         return QSize(width, super().minimumSizeHint().height())
 
-    def _let_tab_reach(self) -> None:
-        """Let one row be in the way of the tabulator, with what can be pressed in it."""
+    def _add_row(self, name: str) -> None:
+        row = self.rows[name] = SensorRowView(self._look, name, self.columns, self.second_line)
+        row.selected.connect(self.select)
+        row.stepped.connect(self.step)
+        row.assigned.connect(self.assigned)
+        row.identify_pressed.connect(self.identify_pressed)
+        row.reconnect_pressed.connect(self.reconnect_pressed)
+        row.setParent(self)
+        row.show()
+
+    def _mark_selected(self) -> None:
         for name, row in self.rows.items():
-            row.set_reached(name == self.selection)
+            row.set_selected(name == self.selection)
 
     def _arrange(self) -> None:
         self._columns = None

@@ -12,18 +12,18 @@ from PySide6.QtGui import (
     QDragMoveEvent,
     QDropEvent,
     QFontMetrics,
-    QKeyEvent,
     QMouseEvent,
     QPainter,
     QPaintEvent,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QAbstractButton, QApplication, QSizePolicy, QWidget
+from PySide6.QtWidgets import QApplication, QSizePolicy, QWidget
 
 from app.theme import Look
 from app.tokens import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
+from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
@@ -250,17 +250,16 @@ class _Lines(QWidget):
             painter.drawPolyline([start, elbow, end])
 
 
-class _Tile(QAbstractButton):
+class _Tile(PaintedButton):
     """The place in two lines: which it is, and who is there. A sensor can be dragged away from it."""
 
     def __init__(self, look: Look, site: Site, places: SensorPlaces) -> None:
-        super().__init__(places)
-        self._look, self.site, self._places = look, site, places
+        super().__init__(look, places)
+        self.site, self._places = site, places
         self._place = PlaceShown()
         self._is_welcome = False
         self._pressed_at: QPoint | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.show_place(PlaceShown())
 
     def show_place(self, place: PlaceShown) -> None:
@@ -290,12 +289,6 @@ class _Tile(QAbstractButton):
         theme = self._look.theme
         word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site))
         return word + theme.px(CHIP + 6 + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.click()
-            return
-        super().keyPressEvent(event)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         self._pressed_at = event.position().toPoint()
@@ -329,10 +322,7 @@ class _Tile(QAbstractButton):
         radius = CONTROL_RADIUS * theme.scale
         box = QRectF(self.rect()).adjusted(1.25, 1.25, -1.25, -1.25)
         painter.drawRoundedRect(box, radius, radius)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+        self.paint_veil(painter, box)
         chip = px(CHIP)
         where = QRectF(px(PADDING), px(16) - chip / 2 + 1, chip, chip)
         if place.is_flashing:  # the legs' hues do not stand out on dark; the letter does

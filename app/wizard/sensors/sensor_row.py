@@ -1,7 +1,7 @@
 """How is one sensor now? Its row in the list, which is dragged, selected, and asks where the sensor is worn."""
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
@@ -19,20 +19,18 @@ from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
 from app.theme import Look
-from app.tokens import CONTROL_RADIUS
+from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.chip import paint_chip
+from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
 from app.wizard.sensors.sensor_places import drag_sensor, is_dragged, number_of, segment_name
 from app.wizard.sensors.sensor_trace import Trace
 from app.wording import name_of, tr
 from core.body import Site
-
-if TYPE_CHECKING:
-    from app.wizard.sensors.sensor_list import SensorList
 
 ROW, ROW_AT_LEAST = 58, 46  # six of the latter fit into a window 720 high
 CHIP = 20
@@ -91,11 +89,40 @@ class SensorRowView(QAbstractButton):
     """One sensor. It can be dragged onto the figure; Space asks where it is worn, Up and Down go on.
 
     Enter goes past it, to the primary button.
+
+    Parameters
+    ----------
+    columns
+        Where the columns of all rows lie, for a width.
+    second_line
+        What is said under a sensor's name.
+
+    Signals
+    -------
+    selected, identify_pressed, reconnect_pressed
+        The sensor's name.
+    stepped
+        Its name, and -1 or 1 for the row above or below.
+    assigned
+        Its name and the site it is worn at; None: nowhere.
     """
 
-    def __init__(self, look: Look, name: str, sensors: "SensorList") -> None:
+    selected = Signal(str)
+    stepped = Signal(str, int)
+    assigned = Signal(str, object)
+    identify_pressed = Signal(str)
+    reconnect_pressed = Signal(str)
+
+    def __init__(
+        self,
+        look: Look,
+        name: str,
+        columns: Callable[[int], Mapping[str, QRect]],
+        second_line: Callable[[SensorRow], str],
+    ) -> None:
         super().__init__()
-        self._look, self._list = look, sensors
+        self._look, self._columns, self._second_line = look, columns, second_line
+        self._is_selected = False
         self.name = name
         self.sensor = SensorRow(name)
         self._pressed_at: QPoint | None = None
@@ -112,7 +139,7 @@ class SensorRowView(QAbstractButton):
 
     def takes_other_room(self, sensor: SensorRow) -> bool:
         """Whether a column may have to be wider for `sensor` as it is now."""
-        one, other = self._list.second_line(sensor), self._list.second_line(self.sensor)
+        one, other = self._second_line(sensor), self._second_line(self.sensor)
         return not self.accessibleName() or len(one) > len(other)
 
     def show_sensor(self, sensor: SensorRow) -> None:
@@ -144,14 +171,17 @@ class SensorRowView(QAbstractButton):
         ]
         return QColor(*mixed)
 
-    def set_reached(self, is_reached: bool) -> None:
-        policy = Qt.FocusPolicy.StrongFocus if is_reached else Qt.FocusPolicy.ClickFocus
+    def set_selected(self, is_selected: bool) -> None:
+        """Frame it and let the tabulator reach it, with what can be pressed in it; or neither."""
+        self._is_selected = is_selected
+        self.update()
+        policy = Qt.FocusPolicy.StrongFocus if is_selected else Qt.FocusPolicy.ClickFocus
         for one in (self, self.worn, self.identify):
             one.setFocusPolicy(policy)
 
     def ask(self) -> None:
         """Open the list of places under the button that says the present one."""
-        self._list.select(self.name)
+        self.selected.emit(self.name)
         menu = _PlaceMenu(self._look, self.sensor.site, self)
         menu.chosen.connect(self._on_place_chosen)
         menu.popup(self.worn.mapToGlobal(QPoint(0, self.worn.height())))
@@ -173,7 +203,7 @@ class SensorRowView(QAbstractButton):
 
     def _places(self) -> dict[str, QRect]:
         """Where the columns lie, as high as the row."""
-        columns = self._list.columns(self.width()).items()
+        columns = self._columns(self.width()).items()
         return {key: QRect(box.x(), 0, box.width(), self.height()) for key, box in columns}
 
     def resizeEvent(self, event: QResizeEvent) -> None:
@@ -182,7 +212,7 @@ class SensorRowView(QAbstractButton):
 
     def focusInEvent(self, event: QFocusEvent) -> None:
         super().focusInEvent(event)
-        self._list.select(self.name)
+        self.selected.emit(self.name)
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         has_alt = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
@@ -194,9 +224,9 @@ class SensorRowView(QAbstractButton):
             case Qt.Key.Key_Down if has_alt:
                 self.ask()
             case Qt.Key.Key_Up:
-                self._list.step(self, -1)
+                self.stepped.emit(self.name, -1)
             case Qt.Key.Key_Down:
-                self._list.step(self, 1)
+                self.stepped.emit(self.name, 1)
             case _:
                 super().keyPressEvent(event)
 
@@ -218,7 +248,7 @@ class SensorRowView(QAbstractButton):
         sensor = self.sensor
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        is_caution, is_selected = sensor.wants_look, self._list.selection == self.name
+        is_caution, is_selected = sensor.wants_look, self._is_selected
         ink, second = (c.caution_ink, c.caution_ink) if is_caution else (c.ink, c.ink2)
         edge = c.caution_edge if is_caution else c.control if is_selected else c.line
         painter.setPen(theme.pen(edge, 1.75 if is_selected else 1.25))
@@ -252,9 +282,7 @@ class SensorRowView(QAbstractButton):
                 theme.font(16, SEMIBOLD, is_code=True),
                 tone,
             ),
-            PaintedText(
-                self._list.second_line(sensor), QRectF(name.x(), top + px(22), name.width(), px(18)), small, second
-            ),
+            PaintedText(self._second_line(sensor), QRectF(name.x(), top + px(22), name.width(), px(18)), small, second),
         ]
         if places["rate"].width():
             font, battery = theme.font(14, MEDIUM), QRectF(places["battery"])
@@ -265,47 +293,39 @@ class SensorRowView(QAbstractButton):
         return texts
 
     def _on_clicked(self) -> None:
-        self._list.select(self.name)
+        self.selected.emit(self.name)
         self.setFocus(Qt.FocusReason.MouseFocusReason)
 
     def _on_identify_clicked(self) -> None:
         if self.sensor.silent_s > 0:
-            self._list.reconnect_pressed.emit(self.name)
+            self.reconnect_pressed.emit(self.name)
         else:
-            self._list.identify_pressed.emit(self.name)
+            self.identify_pressed.emit(self.name)
 
     def _on_place_chosen(self, site: Site | None) -> None:
-        self._list.assigned.emit(self.name, site)
+        self.assigned.emit(self.name, site)
 
 
-class _WornOn(QAbstractButton):
+class _WornOn(PaintedButton):
     """Says the place, and opens the list of places."""
 
+    pressing_keys = (*PaintedButton.pressing_keys, Qt.Key.Key_Down)
+
     def __init__(self, look: Look, row: SensorRowView) -> None:
-        super().__init__(row)
-        self._look, self._row = look, row
+        super().__init__(look, row)
+        self._row = row
         self._site: Site | None = None
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
 
     def show_site(self, site: Site | None) -> None:
         self._site = site
         self.update()
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter, Qt.Key.Key_Down):
-            self.click()
-            return
-        super().keyPressEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
         if self._site is not None:
             chip = px(CHIP)
             paint_chip(painter, QRectF(0, (self.height() - chip) / 2, chip, chip), self._site.side, theme)
@@ -329,13 +349,12 @@ class _WornOn(QAbstractButton):
         ]
 
 
-class _Identify(QAbstractButton):
+class _Identify(PaintedButton):
     """Lights the sensor's LED; where the sensor is silent, looks for it again."""
 
     def __init__(self, look: Look, row: SensorRowView) -> None:
-        super().__init__(row)
-        self._look, self._row = look, row
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+        super().__init__(look, row)
+        self._row = row
 
     def show_sensor(self, sensor: SensorRow) -> None:
         is_silent = sensor.silent_s > 0
@@ -345,21 +364,12 @@ class _Identify(QAbstractButton):
         self.setVisible(is_silent or sensor.can_identify)
         self.update()
 
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.click()
-            return
-        super().keyPressEvent(event)
-
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(QRectF(self.rect()), px(4), px(4))
+        self.paint_veil(painter, QRectF(self.rect()), CHIP_RADIUS)
         sensor = self._row.sensor
         side = px(22)
         box = QRectF(self.width() - px(10) - side, (self.height() - side) / 2, side, side)

@@ -1,11 +1,11 @@
 """What is the next walk called? A label from the list, each with its digit, or words of one's own."""
 
 from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import Look
-from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
+from app.tokens import CHIP_RADIUS
 from app.widgets.field import Field
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -184,20 +184,13 @@ class _Option(QAbstractButton):
         theme = self._look.theme
         c = theme.colours
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        radius = CONTROL_RADIUS * theme.scale
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.setPen(theme.pen(c.ink, 1.75) if self.isChecked() else theme.pen(c.control, 1.25))
-        painter.setBrush(QColor(c.surface))
-        painter.drawRoundedRect(box, radius, radius)
+        line, width = (c.ink, 1.75) if self.isChecked() else (c.control, 1.25)
+        theme.paint_box(painter, box, c.surface, line, width)
         if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+            theme.paint_box(painter, box, theme.veil(self.isDown()))
         if self._digit:
-            painter.setPen(theme.pen(c.control, 1))
-            painter.setBrush(Qt.BrushStyle.NoBrush)
-            painter.drawRoundedRect(self._cap, CHIP_RADIUS * theme.scale, CHIP_RADIUS * theme.scale)
+            theme.paint_box(painter, self._cap, None, c.control, 1, CHIP_RADIUS)
         for text in self.painted_texts():
             text.paint(painter, c)
 

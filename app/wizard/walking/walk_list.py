@@ -4,9 +4,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from PySide6.QtCore import QEvent, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
+from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
-    QAbstractButton,
     QFrame,
     QHBoxLayout,
     QScrollArea,
@@ -21,6 +20,7 @@ from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
 from app.widgets.icons import IconMark
+from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -221,17 +221,16 @@ class _Row(Themed):
         self.update()
 
 
-class ActionRow(QAbstractButton):
+class ActionRow(PaintedButton):
     """A row that does something: an icon, what was the case, and below what follows. Both wrap."""
 
     def __init__(self, look: Look, icon: Icon, text: str, note: str) -> None:
-        super().__init__()
-        self._look, self._icon, self._note = look, icon, note
+        super().__init__(look)
+        self._icon, self._note = icon, note
         self.setText(text)
         self.setAccessibleName(text)
         self.setAccessibleDescription(note)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self._fit()
 
@@ -242,12 +241,6 @@ class ActionRow(QAbstractButton):
 
     def sizeHint(self) -> QSize:
         return QSize(self._look.theme.px(180), self.minimumHeight())
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self.click()
-            return
-        super().keyPressEvent(event)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -270,16 +263,9 @@ class ActionRow(QAbstractButton):
         theme = self._look.theme
         c, px = theme.colours, theme.px
         painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        radius = CONTROL_RADIUS * theme.scale
         box = QRectF(self.rect()).adjusted(1, 1, -1, -1)
-        painter.setPen(theme.pen(c.control, 1.25))
-        painter.setBrush(QColor(c.surface))
-        painter.drawRoundedRect(box, radius, radius)
-        if self.underMouse() or self.isDown():
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(theme.veil(self.isDown()))
-            painter.drawRoundedRect(box, radius, radius)
+        theme.paint_box(painter, box, c.surface, c.control)
+        self.paint_veil(painter, box)
         mark = QRectF(px(10), (self.height() - px(20)) / 2, px(20), px(20))
         paint_icon(painter, self._icon, mark, c.ink)
         for text in self.painted_texts():

@@ -1,0 +1,31 @@
+"""A button that paints itself: Enter presses it as Space does, and a veil lies over it under the mouse."""
+
+from PySide6.QtCore import QRectF, Qt
+from PySide6.QtGui import QKeyEvent, QPainter
+from PySide6.QtWidgets import QAbstractButton, QWidget
+
+from app.theme import Look
+from app.tokens import CONTROL_RADIUS
+
+
+class PaintedButton(QAbstractButton):
+    """`pressing_keys`: what presses it besides Space."""
+
+    pressing_keys: tuple[Qt.Key, ...] = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+
+    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._look = look
+        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in self.pressing_keys:
+            self.click()
+            return
+        super().keyPressEvent(event)
+
+    def paint_veil(self, painter: QPainter, box: QRectF, radius: float = CONTROL_RADIUS) -> None:
+        """Show that the mouse is over it; `radius` in pixels at scale 1."""
+        if self.underMouse() or self.isDown():
+            theme = self._look.theme
+            theme.paint_box(painter, box, theme.veil(self.isDown()), radius=radius)
