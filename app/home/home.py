@@ -158,7 +158,7 @@ class Home(Themed):
 
     def _on_rollback_accepted(self) -> None:
         if self._rollback is not None:
-            self._controller.accept_rollback(self._rollback, self._on_rollback_noted, self._on_refused, self)
+            self._controller.accept_rollback(self._rollback, self._on_rollback_noted, self.banner.tell, self)
 
     def _on_rollback_noted(self, _nothing: object) -> None:
         self._rollback = None
@@ -179,7 +179,7 @@ class Home(Themed):
     def refresh(self, chosen: UUID | None = None) -> None:
         """Read the patients anew, and choose one of them, else the one that was chosen."""
         self._chosen = chosen or self.page.patient_id
-        self._controller.run(_patients_in, self._on_patients, self._on_refused, self)
+        self._controller.run(_patients_in, self._on_patients, self.banner.tell, self)
 
     def show_settings(self) -> None:
         self.settings.read_deleted()
@@ -253,7 +253,7 @@ class Home(Themed):
         self.toast.undone.connect(self.deleting.undo)
         self.deleting.done.connect(self._on_deleted)
         self.deleting.undone.connect(self.refresh)
-        self.deleting.refused.connect(self._on_refused)
+        self.deleting.refused.connect(self.banner.tell)
         for keys, slot in (
             ("Ctrl+F", self._on_find),
             ("Ctrl+N", self._on_new_patient),
@@ -366,7 +366,7 @@ class Home(Themed):
         def read(opened: "OpenedLibrary") -> _Sessions:
             return _sessions_of(opened, own)
 
-        self._controller.run(read, self._on_sessions, self._on_refused, self)
+        self._controller.run(read, self._on_sessions, self.banner.tell, self)
 
     def _on_sessions(self, sessions: _Sessions) -> None:
         if sessions.patient_id != self.page.patient_id:
@@ -523,9 +523,6 @@ class Home(Themed):
 
     def _on_work_refused(self, what: str, remedy: str) -> None:
         self._go_to(self.page)
-        self.banner.tell(what, remedy)
-
-    def _on_refused(self, what: str, remedy: str) -> None:
         self.banner.tell(what, remedy)
 
     def _on_look_changed(self) -> None:

@@ -71,12 +71,12 @@ class Recovering(QObject):
         self._waiting, self._lost, self._brought_home = [], [], state.brought_home
         interrupted = state.interrupted
         if not interrupted:
-            self._controller.run(_still_undecided, self._say_outcome, self._on_refused, self)
+            self._controller.run(_still_undecided, self._say_outcome, self._banner.tell, self)
             return
         self._controller.run_long(
             lambda opened, report: _recover(opened, interrupted, report),
             self._on_recovered,
-            self._on_refused,
+            self._banner.tell,
             None,
             self,
         )
@@ -87,7 +87,7 @@ class Recovering(QObject):
         def work(opened: "OpenedLibrary", report: Report) -> _Outcome:
             return _recover(opened, find_interrupted(opened), report)._replace(undecided=[])
 
-        self._controller.run_long(work, self._on_come_home, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_come_home, self._banner.tell, None, self)
 
     def export(self, folder: Path) -> None:
         """Write what belongs to no session into `folder`, each recording into a folder of its own."""
@@ -99,7 +99,7 @@ class Recovering(QObject):
                 export_orphan(opened, one, folder / f"{number}{began}", DECODERS, report)
             return str(folder)
 
-        self._controller.run_long(work, self._on_exported, self._on_refused, None, self)
+        self._controller.run_long(work, self._on_exported, self._banner.tell, None, self)
 
     def _say(self, messages: Sequence[_Message]) -> None:
         self._waiting += messages
@@ -159,9 +159,6 @@ class Recovering(QObject):
         what = tr_n("{count} recording was exported.", "{count} recordings were exported.", len(self._lost))
         then = tr("Each sensor is a file in {folder}.").format(folder=folder)
         self._banner.tell(what.format(count=len(self._lost)), then)
-
-    def _on_refused(self, what: str, remedy: str) -> None:
-        self._banner.tell(what, remedy)
 
 
 def _recover(opened: "OpenedLibrary", interrupted: "Sequence[Interrupted]", report: Report) -> _Outcome:

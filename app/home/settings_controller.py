@@ -45,8 +45,9 @@ class SettingsController(QObject):
         self._look, self._controller, self._settings = look, controller, settings
         self._state: OpenedState | None = None
         self._backup_folder = ""
-        self._sheet: KeySheet | None = None
         self.page = SettingsPage(look, SHORTEST, tuple(_roles().items()))
+        self._sheet = KeySheet(self.page)
+        self._sheet.told.connect(self.told)
         self._show_screen()
         self._connect()
 
@@ -70,18 +71,14 @@ class SettingsController(QObject):
         self._on_backup_folder_read("")  # the one in sight is another library's
         if is_own:
             self._controller.run(_backup_folder_of, self._on_backup_folder_read, self._on_refused, self)
-            self._controller.run(
-                _clinic_of, self._on_clinic_read, self._on_refused, self
-            )  # no passphrase holds its name
+            # no passphrase holds its name
+            self._controller.run(_clinic_of, self.page.show_clinic, self._on_refused, self)
         if is_administrator:
             self._read_operators()
 
     def read_deleted(self) -> None:
         """Show what can be had back now."""
-        self._controller.run(_deleted_in, self._on_deleted_read, self._on_refused, self)
-
-    def _on_deleted_read(self, lines: tuple[DeletedLine, ...]) -> None:
-        self.page.show_deleted(lines)
+        self._controller.run(_deleted_in, self.page.show_deleted, self._on_refused, self)
 
     def _on_restore_wished(self, row_id: UUID, is_patient: bool) -> None:
         def restore(opened: "OpenedLibrary") -> None:
@@ -104,8 +101,8 @@ class SettingsController(QObject):
         page.sound_chosen.connect(self._on_sound_chosen)
         page.passphrase_wished.connect(self._on_passphrase_wished)
         page.recovery_key_wished.connect(self._on_recovery_key_wished)
-        page.print_wished.connect(self._on_print_wished)
-        page.save_wished.connect(self._on_save_wished)
+        page.print_wished.connect(self._sheet.print)
+        page.save_wished.connect(self._sheet.save)
         page.backup_wished.connect(self._on_backup_wished)
         page.backup_folder_wished.connect(self._on_backup_folder_wished)
         page.stop_wished.connect(self._on_stop_wished)
@@ -154,22 +151,7 @@ class SettingsController(QObject):
             assert opened.data_key is not None  # hidden in the demonstration
             return _slots(opened).renew_recovery_key(opened.data_key)
 
-        self._controller.run(renew, self._on_recovery_key, self._on_refused, self)
-
-    def _on_recovery_key(self, key: str) -> None:
-        self.page.show_recovery_key(key)
-
-    def _on_print_wished(self, key: str) -> None:
-        self._key_sheet().print(key)
-
-    def _on_save_wished(self, key: str) -> None:
-        self._key_sheet().save(key)
-
-    def _key_sheet(self) -> KeySheet:
-        if self._sheet is None:
-            self._sheet = KeySheet(self.page)
-            self._sheet.told.connect(self.told)
-        return self._sheet
+        self._controller.run(renew, self.page.show_recovery_key, self._on_refused, self)
 
     def _on_backup_folder_read(self, folder: str) -> None:
         self._backup_folder = folder
@@ -226,9 +208,6 @@ class SettingsController(QObject):
     def _on_backup_stopped(self, is_done: bool) -> None:
         stopped, done = tr("Stopped. There is no new backup."), tr("The backup was done before it could be stopped.")
         self.page.show_backup(done if is_done else stopped, self._backup_folder)
-
-    def _on_clinic_read(self, name: str) -> None:
-        self.page.show_clinic(name)
 
     def _on_clinic_named(self, name: str) -> None:
         def put(opened: "OpenedLibrary") -> None:
