@@ -9,24 +9,16 @@ branch_labels = None
 depends_on = None
 
 
+def _one_of(name: str, *words: str) -> sa.Enum:
+    return sa.Enum(*words, name=name, native_enum=False, create_constraint=True, length=20)
+
+
 def upgrade() -> None:
     op.create_table(
         "operators",
         sa.Column("code", sa.Text(), nullable=False),
         sa.Column("name", sa.Text(), nullable=False),
-        sa.Column(
-            "role",
-            sa.Enum(
-                "viewer",
-                "clinician",
-                "administrator",
-                name="role",
-                native_enum=False,
-                create_constraint=True,
-                length=20,
-            ),
-            nullable=False,
-        ),
+        sa.Column("role", _one_of("role", "viewer", "clinician", "administrator"), nullable=False),
         sa.Column("is_active", sa.Boolean(), nullable=False),
         sa.Column("created_at", sa.DateTime(timezone=True), nullable=False),
         sa.Column("version", sa.Integer(), nullable=False),
@@ -114,20 +106,7 @@ def upgrade() -> None:
         "joints",
         sa.Column("id", sa.Uuid(), nullable=False),
         sa.Column("session_id", sa.Uuid(), nullable=False),
-        sa.Column(
-            "joint",
-            sa.Enum(
-                "left_knee",
-                "left_ankle",
-                "right_knee",
-                "right_ankle",
-                name="joint",
-                native_enum=False,
-                create_constraint=True,
-                length=20,
-            ),
-            nullable=False,
-        ),
+        sa.Column("joint", _one_of("joint", "left_knee", "left_ankle", "right_knee", "right_ankle"), nullable=False),
         sa.Column("zero_rad", sa.Double(), nullable=True),
         sa.Column("turned_sign", sa.Integer(), nullable=True),
         sa.CheckConstraint("turned_sign IN (-1, 1)", name=op.f("ck_joints_turned_sign")),
@@ -152,11 +131,7 @@ def upgrade() -> None:
         "results",
         sa.Column("id", sa.Uuid(), nullable=False),
         sa.Column("session_id", sa.Uuid(), nullable=False),
-        sa.Column(
-            "kind",
-            sa.Enum("calibration", "analysis", name="kind", native_enum=False, create_constraint=True, length=20),
-            nullable=False,
-        ),
+        sa.Column("kind", _one_of("kind", "calibration", "analysis"), nullable=False),
         sa.Column("key", sa.Text(), nullable=False),
         sa.Column("inputs", sa.JSON(), nullable=False),
         sa.Column("algorithm", sa.Text(), nullable=False),
@@ -174,18 +149,7 @@ def upgrade() -> None:
         sa.Column("placement_id", sa.Uuid(), nullable=False),
         sa.Column(
             "site",
-            sa.Enum(
-                "left_thigh",
-                "left_shank",
-                "left_foot",
-                "right_thigh",
-                "right_shank",
-                "right_foot",
-                name="site",
-                native_enum=False,
-                create_constraint=True,
-                length=20,
-            ),
+            _one_of("site", "left_thigh", "left_shank", "left_foot", "right_thigh", "right_shank", "right_foot"),
             nullable=False,
         ),
         sa.Column("name", sa.Text(), nullable=False),
@@ -193,13 +157,7 @@ def upgrade() -> None:
         sa.Column("model", sa.Text(), nullable=False),
         sa.Column("firmware", sa.Text(), nullable=False),
         sa.Column("rate_hz", sa.Double(), nullable=True),
-        sa.Column(
-            "rate_kind",
-            sa.Enum(
-                "instantaneous", "averaged", name="rate_kind", native_enum=False, create_constraint=True, length=20
-            ),
-            nullable=True,
-        ),
+        sa.Column("rate_kind", _one_of("rate_kind", "instantaneous", "averaged"), nullable=True),
         sa.Column("unknown", sa.Text(), nullable=False),
         sa.ForeignKeyConstraint(
             ["placement_id"], ["placements.id"], name=op.f("fk_placed_sensors_placement_id"), ondelete="CASCADE"
@@ -214,13 +172,7 @@ def upgrade() -> None:
         sa.Column("placement_id", sa.Uuid(), nullable=True),
         sa.Column("number", sa.Integer(), nullable=False),
         sa.Column("name", sa.Text(), nullable=False),
-        sa.Column(
-            "kind",
-            sa.Enum(
-                "standing", "free_motion", "walking", name="kind", native_enum=False, create_constraint=True, length=20
-            ),
-            nullable=False,
-        ),
+        sa.Column("kind", _one_of("kind", "standing", "free_motion", "walking"), nullable=False),
         sa.Column("folder", sa.Text(), nullable=False),
         sa.Column("condition", sa.Text(), nullable=False),
         sa.Column("started", sa.Text(), nullable=False),
@@ -228,20 +180,7 @@ def upgrade() -> None:
         sa.Column("note", sa.Text(), nullable=False),
         sa.Column("is_restrapped_before", sa.Boolean(), nullable=False),
         sa.Column("is_simulated", sa.Boolean(), nullable=False),
-        sa.Column(
-            "state",
-            sa.Enum(
-                "open",
-                "closed",
-                "recovered",
-                "discarded",
-                name="state",
-                native_enum=False,
-                create_constraint=True,
-                length=20,
-            ),
-            nullable=False,
-        ),
+        sa.Column("state", _one_of("state", "open", "closed", "recovered", "discarded"), nullable=False),
         sa.Column("unknown", sa.Text(), nullable=False),
         sa.Column("version", sa.Integer(), nullable=False),
         sa.ForeignKeyConstraint(["placement_id"], ["placements.id"], name=op.f("fk_recordings_placement_id")),
