@@ -2,8 +2,9 @@
 
 import uuid
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from enum import StrEnum
-from typing import Any
+from typing import Any, TypeVar
 from uuid import UUID
 
 from sqlalchemy import ColumnElement, func, or_, select
@@ -14,7 +15,7 @@ from sqlalchemy.orm.attributes import flag_modified
 from app.storage.audit import about, note
 from app.storage.database.engine import changed_meanwhile
 from app.storage.database.ids import uuid7
-from app.storage.database.models import CorrectionRow, JointRow, PatientRow, RecordingRow, SessionRow
+from app.storage.database.models import CorrectionRow, JointRow, PatientRow, RecordingRow, SessionRow, Versioned
 from app.storage.stored import Action, Change, Correction, LibraryError, Role
 from app.storage.unit_of_work import UnitOfWork
 
@@ -22,6 +23,7 @@ CORRECTED: Mapping[str, type[DeclarativeBase]] = {
     row.__tablename__: row for row in (PatientRow, SessionRow, JointRow, RecordingRow)
 }
 Value = str | float | bool | None
+R = TypeVar("R", bound=Versioned)
 
 
 class Corrections:
@@ -58,6 +60,19 @@ class Corrections:
                 raise LibraryError("This correction was undone already", "Reload what is shown")
             back = [Change(c.table, c.row, c.field, old=c.new, new=c.old) for c in reversed(_changes(row))]
             apply(self._unit, session, back, row.patient_id, row.session_id, undoes=row.id)
+
+
+def unchanged(row: R, version: int) -> R:
+    """The row, as long as it has the version that somebody saw.
+
+    Raises
+    ------
+    ChangedMeanwhileError
+        It was changed since.
+    """
+    if row.version != version:
+        raise changed_meanwhile()
+    return row
 
 
 def corrections_of_patient(session: OrmSession, patient_id: UUID) -> tuple[Correction, ...]:
@@ -97,7 +112,7 @@ def apply(
         session_id=session_id,
         at=unit.now(),
         operator=unit.code,
-        changes=[_record(change) for change in changes],
+        changes=[{**asdict(change), "row": str(change.row)} for change in changes],
         undoes_id=undoes,
     )
     session.add(correction)
@@ -121,16 +136,6 @@ def _typed(row: type[DeclarativeBase], field: str, value: Value) -> object:
     if not isinstance(value, str):
         return value
     return row.__table__.columns[field].type.python_type(value)
-
-
-def _record(change: Change) -> dict[str, Any]:
-    return {
-        "table": change.table,
-        "row": str(change.row),
-        "field": change.field,
-        "old": change.old,
-        "new": change.new,
-    }
 
 
 def _changes(row: CorrectionRow) -> list[Change]:

@@ -8,8 +8,7 @@ from sqlalchemy import delete, select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, entry_of, note
-from app.storage.corrections import apply, corrections_of_patient, differences
-from app.storage.database.engine import changed_meanwhile
+from app.storage.corrections import apply, corrections_of_patient, differences, unchanged
 from app.storage.database.models import AuditRow, PatientRow, ResultRow, SessionRow, folded
 from app.storage.database.values import PATIENT_FIELDS, stored_patient, stored_patients, stored_result, stored_session
 from app.storage.sessions import refuse_early
@@ -196,10 +195,7 @@ def _existing(session: OrmSession, patient_id: UUID) -> PatientRow:
 
 
 def _current(session: OrmSession, patient: StoredPatient) -> PatientRow:
-    row = _existing(session, patient.id)
-    if row.version != patient.version:
-        raise changed_meanwhile()
-    return row
+    return unchanged(_existing(session, patient.id), patient.version)
 
 
 def _refuse_taken(session: OrmSession, code: str) -> None:

@@ -2,14 +2,14 @@
 
 import datetime
 from collections.abc import Mapping
+from dataclasses import asdict
 from uuid import UUID
 
 from sqlalchemy import select, update
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, note
-from app.storage.corrections import apply, differences
-from app.storage.database.engine import changed_meanwhile
+from app.storage.corrections import apply, differences, unchanged
 from app.storage.database.ids import uuid7
 from app.storage.database.models import JournalRow, PatientRow, RecordingRow, SessionRow
 from app.storage.database.values import RECORDING_FIELDS, left_out_in_row, stored_recording
@@ -98,14 +98,7 @@ class Recordings:
             row = _existing(session, recording_id)
             if any(other.segment == journal.segment for other in row.journals):
                 raise LibraryError("The recording has this segment already", "Recover it first")
-            row.journals.append(
-                JournalRow(
-                    segment=journal.segment,
-                    file=journal.file,
-                    wrapped_key=journal.wrapped_key,
-                    sha256=journal.sha256,
-                )
-            )
+            row.journals.append(JournalRow(**asdict(journal)))
 
     def close(self, recording_id: UUID, state: RecordingState, sha256: Mapping[int, str]) -> StoredRecording:
         """End a recording: closed with a footer, or recovered after a crash. `sha256` of each segment's file.
@@ -250,10 +243,7 @@ def current_recording(session: OrmSession, recording: StoredRecording) -> Record
     ChangedMeanwhileError
         It was changed since.
     """
-    row = _existing(session, recording.id)
-    if row.version != recording.version:
-        raise changed_meanwhile()
-    return row
+    return unchanged(_existing(session, recording.id), recording.version)
 
 
 def _free_number(session: OrmSession, visit: SessionRow, began_at: datetime.datetime | None) -> int:

@@ -10,8 +10,7 @@ from sqlalchemy import ColumnElement, delete, func, or_, select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.audit import about, note
-from app.storage.corrections import apply, differences
-from app.storage.database.engine import changed_meanwhile
+from app.storage.corrections import apply, differences, unchanged
 from app.storage.database.models import (
     JointRow,
     PatientRow,
@@ -148,9 +147,7 @@ class Sessions:
         """
         _refuse_wrong_joints(told)
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, visit.id)
-            if row.version != visit.version:
-                raise changed_meanwhile()
+            row = unchanged(_existing(session, visit.id), visit.version)
             wanted = {name: getattr(told, name) for name in CORRECTABLE}
             if comment is not None:
                 wanted["comment"] = comment
@@ -254,9 +251,7 @@ class Sessions:
 
     def _set_deleted(self, visit: StoredSession, at: datetime.datetime | None, action: Action) -> None:
         with self._unit.writing(Role.CLINICIAN) as session:
-            row = _existing(session, visit.id)
-            if row.version != visit.version:
-                raise changed_meanwhile()
+            row = unchanged(_existing(session, visit.id), visit.version)
             row.deleted_at = at
             note(self._unit, session, action, about("session", visit.id), is_deleted=at is not None)
 
