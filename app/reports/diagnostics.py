@@ -117,7 +117,7 @@ def names_of_files(joint: Joint, is_simulated: bool) -> dict[str, str]:
     return {what: f"{first}{joint}_{what}.csv" for what in (AXIS_COST, PROJECTED_RATES, TWO_WAYS, FIGURES)}
 
 
-def write_how_found(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
+def write_diagnostics(found: JointDiagnostics, is_simulated: bool, folder: Path) -> list[Path]:
     """Write every number that the page draws or says into `folder`, which is made where it is missing.
 
     Raises
