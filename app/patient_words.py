@@ -28,7 +28,7 @@ def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_rec
     )
 
 
-def session_line(line: "stored.SessionLine", now: datetime.datetime, recovered: Collection[UUID]) -> SessionLine:
+def session_line(line: "stored.SessionSummary", now: datetime.datetime, recovered: Collection[UUID]) -> SessionLine:
     is_recovered = line.id in recovered
     state = tr("recovered, look at it") if is_recovered else tr("simulated") if line.is_simulated else ""
     return SessionLine(

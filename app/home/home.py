@@ -61,7 +61,7 @@ class _Sessions:
     """The sessions of a patient, and which of them hold a walk that was recovered and is not decided yet."""
 
     patient_id: UUID
-    lines: "tuple[stored.SessionLine, ...]"
+    lines: "tuple[stored.SessionSummary, ...]"
     recovered: frozenset[UUID]
 
 

@@ -28,7 +28,7 @@ from app.storage.stored import (
     PlacedSensor,
     Placement,
     Role,
-    SessionLine,
+    SessionSummary,
     StoredRecording,
     StoredSession,
 )
@@ -111,7 +111,9 @@ class Sessions:
             note(self._unit, session, Action.VIEW, about("session", session_id))
             return stored_session(row)
 
-    def list(self, patient_id: UUID | None = None, text: str = "", is_deleted: bool = False) -> tuple[SessionLine, ...]:
+    def list(
+        self, patient_id: UUID | None = None, text: str = "", is_deleted: bool = False
+    ) -> tuple[SessionSummary, ...]:
         """Visits of one patient or of all, latest first, that hold `text` in their words, conditions or patient's code.
 
         Those of deleted patients are not listed; `is_deleted` lists the visits that were deleted by themselves.
@@ -292,7 +294,7 @@ def _existing(session: OrmSession, session_id: UUID) -> SessionRow:
     return row
 
 
-def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tuple[SessionLine, ...]:
+def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tuple[SessionSummary, ...]:
     # columns, not rows: a library may hold thousands of sessions
     visits = (
         select(
@@ -323,6 +325,6 @@ def _lines(session: OrmSession, is_wanted: Sequence[ColumnElement[bool]]) -> tup
         own = conditions.get(session_id, [])
         named = tuple(dict.fromkeys(condition for condition in own if condition))
         lines.append(
-            SessionLine(session_id, patient_id, code, started, operator, named, len(own), is_simulated, deleted_at)
+            SessionSummary(session_id, patient_id, code, started, operator, named, len(own), is_simulated, deleted_at)
         )
     return tuple(lines)

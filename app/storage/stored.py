@@ -192,7 +192,7 @@ class StoredSession:
 
 
 @dataclass(frozen=True, slots=True)
-class SessionLine:
+class SessionSummary:
     """One line of a list of sessions."""
 
     id: UUID

@@ -41,7 +41,7 @@ from devices.files.refusal import FileRefusedError
 if TYPE_CHECKING:
     from app.reports.patient_report.document import Preview
     from app.storage.opened import OpenedLibrary
-    from app.storage.stored import SessionLine
+    from app.storage.stored import SessionSummary
     from app.wizard.report.leaving_dialog import Rows
     from app.wizard.visit import Visit
 
@@ -260,14 +260,14 @@ class ReportStep(Step):
             return
         current = session
 
-        def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionLine]]":
+        def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary]]":
             lines = opened.library.sessions.list(current.patient_id)  # latest first
             before = [line for line in lines if line.id != current.id and line.started < current.told.started]
             return str(opened.library.settings.get(CLINIC, "")), before
 
         self._controller.run(read, self._on_choices, self._on_refused, self)
 
-    def _on_choices(self, found: "tuple[str, list[SessionLine]]") -> None:
+    def _on_choices(self, found: "tuple[str, list[SessionSummary]]") -> None:
         clinic, lines = found
         self.page.report.show_visits([(line.id, _words_of(line)) for line in lines])
         if clinic != self._clinic:
@@ -376,7 +376,7 @@ def _previews(opened: "OpenedLibrary", session_id: UUID) -> "dict[frozenset[str]
     }
 
 
-def _words_of(line: "SessionLine") -> str:
+def _words_of(line: "SessionSummary") -> str:
     """A visit in a list: its day, and under which conditions the patient walked."""
     return ", ".join([day(line.started), *filter(None, dict.fromkeys(line.conditions))])
 

@@ -14,7 +14,7 @@ from PySide6.QtCore import QObject, Signal
 from app.acquisition.acquisition import Acquisition
 from app.foreign_files import read_foreign_session
 from app.storage.exchange import session_with_samples
-from app.storage.stored import LibraryError, SessionLine
+from app.storage.stored import LibraryError, SessionSummary
 from app.wizard.worn_sensors import SourceChoice
 from app.wording import tr
 from app.workers.background import Report
@@ -64,7 +64,7 @@ class Replays(QObject):
     Signals
     -------
     listed
-        The latest sessions of the library that hold recordings, latest first, as `SessionLine`s.
+        The latest sessions of the library that hold recordings, latest first, as `SessionSummary`s.
     read
         A `SourceChoice` that plays what was to be read.
     refused
@@ -84,7 +84,7 @@ class Replays(QObject):
     def list_sessions(self, without: UUID | None) -> None:
         """Ask which there are; a session is no replay of itself."""
 
-        def listing(opened: "OpenedLibrary") -> list[SessionLine]:
+        def listing(opened: "OpenedLibrary") -> list[SessionSummary]:
             every = opened.library.sessions.list()
             return [line for line in every if line.recordings and line.id != without][:MOST_LISTED]
 
@@ -118,7 +118,7 @@ class Replays(QObject):
         self.reading = name
         self._controller.run_long(reading, self._on_read, self._on_refused, None, self)
 
-    def _on_listed(self, lines: list[SessionLine]) -> None:
+    def _on_listed(self, lines: list[SessionSummary]) -> None:
         self.listed.emit(lines)
 
     def _on_read(self, choice: SourceChoice) -> None:

@@ -34,7 +34,7 @@ from core.samples import FloatArray, ImuBlock
 
 if TYPE_CHECKING:
     from app.acquisition.acquisition import SensorStatus
-    from app.storage.stored import SessionLine
+    from app.storage.stored import SessionSummary
     from app.wizard.visit import Visit
 
 REPLAY = "replay"
@@ -441,7 +441,7 @@ class SensorsStep(Step):
         self.page.focus()
         self.changed.emit()
 
-    def _on_listed(self, lines: "list[SessionLine]") -> None:
+    def _on_listed(self, lines: "list[SessionSummary]") -> None:
         now = datetime.datetime.now().astimezone()
         shown = [_stored_line(line, now) for line in lines]
         self._names = {line.id: tr("{code}, {when}").format(code=line.code, when=line.when) for line in shown}
@@ -500,7 +500,7 @@ class SensorsStep(Step):
         self._reconnect()
 
 
-def _stored_line(line: "SessionLine", now: datetime.datetime) -> PatientLine:
+def _stored_line(line: "SessionSummary", now: datetime.datetime) -> PatientLine:
     amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
     conditions = ", ".join(line.conditions)
     return PatientLine(line.id, line.patient_code, conditions, when(line.started, now), amount, searched="")
