@@ -113,10 +113,15 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(title="subcommands", metavar="", required=True)
     _add_analyse(commands.add_parser("analyse", help="compute the angles of a session"))
     _add_demo(commands.add_parser("demo", help="simulate a patient and analyse the session"))
-    _add_report(commands.add_parser("report", help="make the report of a session as a PDF"))
-    _add_compare(commands.add_parser("compare", help="tell what differs between conditions or sessions"))
-    _add_export(commands.add_parser("export", help="write results for other programs"))
-    _add_import(commands.add_parser("import", help="add recordings of another program to a session"))
+    for name, what, add_arguments, work in (
+        ("report", "make the report of a session as a PDF", add_report_arguments, make),
+        ("compare", "tell what differs between conditions or sessions", add_compare_arguments, compare),
+        ("export", "write results for other programs", add_export_arguments, export),
+        ("import", "add recordings of another program to a session", add_import_arguments, import_files),
+    ):
+        subcommand = commands.add_parser(name, help=what)
+        add_arguments(subcommand)
+        subcommand.set_defaults(run=_telling(work))
     _add_recover(commands.add_parser("recover", help="close recordings that were interrupted"))
     _add_audit(commands.add_parser("audit", help="see whether a library's audit was changed"))
     _add_devices(commands.add_parser("devices", help="list the sensors that are heard, and how drivers were proved"))
@@ -163,26 +168,6 @@ def _add_demo(parser: argparse.ArgumentParser) -> None:
         help="the folder to write: OUT/session and its results in OUT (./gaitwright-demo)",
     )
     parser.set_defaults(run=_demo)
-
-
-def _add_report(parser: argparse.ArgumentParser) -> None:
-    add_report_arguments(parser)
-    parser.set_defaults(run=_telling(make))
-
-
-def _add_compare(parser: argparse.ArgumentParser) -> None:
-    add_compare_arguments(parser)
-    parser.set_defaults(run=_telling(compare))
-
-
-def _add_export(parser: argparse.ArgumentParser) -> None:
-    add_export_arguments(parser)
-    parser.set_defaults(run=_telling(export))
-
-
-def _add_import(parser: argparse.ArgumentParser) -> None:
-    add_import_arguments(parser)
-    parser.set_defaults(run=_telling(import_files))
 
 
 def _add_recover(parser: argparse.ArgumentParser) -> None:

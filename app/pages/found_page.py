@@ -23,7 +23,7 @@ from app.plots.cost_map import CostMap
 from app.plots.cycle_chart import SIMULATED
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
-from app.reports.how_found import MARGIN_BEYOND, FoundFigure, figures_of
+from app.reports.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card

@@ -6,7 +6,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.reports.how_found import parts_deg_s
+from app.reports.diagnostics import parts_deg_s
 from app.theme import Look
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM

@@ -1,8 +1,6 @@
 """A piece of text in a painted widget: what is painted, and so what a test can measure against its box."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 from PySide6.QtCore import QRect, QRectF, Qt
 from PySide6.QtGui import QFont, QFontMetrics, QPainter
@@ -39,13 +37,6 @@ class PaintedText:
         painter.setPen(getattr(colours, self.tone))
         painter.setFont(self.font)
         painter.drawText(self.box, self.flags, self.text)
-
-
-class PaintsTexts(Protocol):
-    """A widget that paints its words itself."""
-
-    def painted_texts(self) -> Sequence[PaintedText]:
-        """Give what is painted now, each in its box."""
 
 
 def height_for(text: str, font: QFont, width: int) -> int:

@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QFileDialog
 
 from app.pages.found_page import FoundPage
-from app.reports.how_found import write_how_found
+from app.reports.diagnostics import write_diagnostics
 from app.storage.audit import about
 from app.storage.stored import Action, LibraryError
 from app.wording import tr
@@ -158,6 +158,6 @@ def _finding(session: "Session", calibration: JointCalibration, recording: str) 
 
 def _writing(found: JointDiagnostics, is_simulated: bool, folder: Path) -> Callable[[], None]:
     def write() -> None:
-        write_how_found(found, is_simulated, folder)
+        write_diagnostics(found, is_simulated, folder)
 
     return write

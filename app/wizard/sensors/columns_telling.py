@@ -34,7 +34,7 @@ class ColumnsTelling(QObject):
         self._form: ColumnsForm | None = None
         self._lines: Sequence[LinesAt] = ()
         self._preview: LinePreview | None = None
-        self._separator, self._is_shown, self._could_use = "comma", False, False
+        self._separator, self._is_shown = "comma", False
 
     @property
     def is_on(self) -> bool:

@@ -11,14 +11,14 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.pages.found_page import TEN_SECONDS, FoundPage
-from app.reports.how_found import (
+from app.reports.diagnostics import (
     AXIS_COST,
     FIGURES,
     PROJECTED_RATES,
     TWO_WAYS,
     figures_of,
     names_of_files,
-    write_how_found,
+    write_diagnostics,
 )
 from app.theme import Look, load_fonts
 from app.widgets.text import Text
@@ -94,7 +94,7 @@ def numbers(cells: list[str]) -> np.ndarray:
 
 def test_every_number_drawn_or_said_is_in_the_files(page: FoundPage, found: JointDiagnostics, tmp_path: Path) -> None:
     page.show_found(found, [], is_simulated=True)
-    write_how_found(found, True, tmp_path / "new")
+    write_diagnostics(found, True, tmp_path / "new")
     files = {what: columns_of(tmp_path / "new" / name) for what, name in names_of_files(KNEE, True).items()}
     # Figure 3
     for sensor, chart in zip(("proximal", "distal"), page.axis.maps, strict=True):
