@@ -1,7 +1,7 @@
 """What was measured: one visit's recordings as they came from the sensors, in SI units and sensor axes."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -85,6 +85,18 @@ class ImuBlock:
 
     def __len__(self) -> int:
         return len(self.time_s)
+
+    def select(self, rows: slice | BoolArray | NDArray[np.intp]) -> "ImuBlock":
+        """The samples of these rows, with all that is known of them."""
+        return replace(
+            self,
+            time_s=self.time_s[rows],
+            gyr_rad_s=self.gyr_rad_s[rows],
+            acc_m_s2=self.acc_m_s2[rows],
+            q_earth_from_sensor=None if self.q_earth_from_sensor is None else self.q_earth_from_sensor[rows],
+            mag=None if self.mag is None else self.mag[rows],
+            unknown={name: column[rows] for name, column in self.unknown.items()},
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -334,12 +334,5 @@ def _piece(clip: _Clip, name: str, from_s: float, to_s: float, lag_s: float) -> 
 
 
 def _rows(block: ImuBlock, rows: slice | BoolArray, name: str, moved_s: float) -> ImuBlock:
-    return ImuBlock(
-        sensor=name,
-        time_s=block.time_s[rows] + moved_s,
-        gyr_rad_s=block.gyr_rad_s[rows],
-        acc_m_s2=block.acc_m_s2[rows],
-        q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[rows],
-        mag=None if block.mag is None else block.mag[rows],
-        is_rate_derived=block.is_rate_derived,
-    )
+    part = block.select(rows)
+    return replace(part, sensor=name, time_s=part.time_s + moved_s, unknown={})

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from app.storage.journal.payloads import SampleLayout, layout_of
 from app.storage.journal.writer import JournalWriter
-from core.samples import BoolArray, ImuBlock
+from core.samples import ImuBlock
 from devices.live import LiveSource
 from devices.source import SourceInfo
 
@@ -65,17 +65,7 @@ class SourceTape:
 
 def _from(block: ImuBlock, begin_s: float) -> ImuBlock:
     """The samples that are not older than `begin_s`, stamped in seconds since then; those without a stamp, too."""
-    time_s = block.time_s - begin_s
-    rows: slice | BoolArray = slice(None)
-    if len(time_s) and not time_s.min() >= 0:  # the recording has just begun, or a stamp is missing
-        rows = ~(time_s < 0)
-    return ImuBlock(
-        sensor=block.sensor,
-        time_s=time_s[rows],
-        gyr_rad_s=block.gyr_rad_s[rows],
-        acc_m_s2=block.acc_m_s2[rows],
-        q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[rows],
-        mag=None if block.mag is None else block.mag[rows],
-        is_rate_derived=block.is_rate_derived,
-        unknown={name: column[rows] for name, column in block.unknown.items()},
-    )
+    moved = replace(block, time_s=block.time_s - begin_s)
+    if len(moved) and not moved.time_s.min() >= 0:  # the recording has just begun, or a stamp is missing
+        return moved.select(~(moved.time_s < 0))
+    return moved

@@ -274,19 +274,8 @@ def _import_recording(
 def _pieces(block: ImuBlock) -> Iterator[tuple[float, ImuBlock]]:
     """The block in parts, each with the share that is done with it; an empty block is one part."""
     for start in range(0, max(len(block), 1), PIECE_ROWS):
-        part = slice(start, start + PIECE_ROWS)
-        yield (
-            min((start + PIECE_ROWS) / max(len(block), 1), 1.0),
-            replace(
-                block,
-                time_s=block.time_s[part],
-                gyr_rad_s=block.gyr_rad_s[part],
-                acc_m_s2=block.acc_m_s2[part],
-                q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[part],
-                mag=None if block.mag is None else block.mag[part],
-                unknown={name: column[part] for name, column in block.unknown.items()},
-            ),
-        )
+        end = start + PIECE_ROWS
+        yield min(end / max(len(block), 1), 1.0), block.select(slice(start, end))
 
 
 def _refuse_incomplete(summary: JournalSummary) -> None:

@@ -30,14 +30,4 @@ def cut(session: Session, parts: int) -> Session:
 
 def between(block: ImuBlock, from_s: float, to_s: float) -> ImuBlock:
     """The samples stamped from..to."""
-    part = slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist())
-    orientation, field = block.q_earth_from_sensor, block.mag
-    return replace(
-        block,
-        time_s=block.time_s[part],
-        gyr_rad_s=block.gyr_rad_s[part],
-        acc_m_s2=block.acc_m_s2[part],
-        unknown={name: values[part] for name, values in block.unknown.items()},
-        q_earth_from_sensor=None if orientation is None else orientation[part],
-        mag=None if field is None else field[part],
-    )
+    return block.select(slice(*np.searchsorted(block.time_s, [from_s, to_s]).tolist()))

@@ -231,7 +231,7 @@ def _put_in_order(block: ImuBlock, rate_hz: float | None) -> DecodedSensor:
     kept = np.flatnonzero(is_timed)[order[is_new]]
     arrived_s = block.time_s[np.sort(kept)]
     late = int(np.count_nonzero(arrived_s[1:] < np.maximum.accumulate(arrived_s)[:-1])) if len(kept) else 0
-    in_order = block if _is_all(kept, len(block)) else _taken(block, kept)
+    in_order = block if _is_all(kept, len(block)) else block.select(kept)
     has_data = np.any(~np.isnan(np.hstack([in_order.gyr_rad_s, in_order.acc_m_s2])), axis=1)
     return DecodedSensor(
         in_order,
@@ -256,18 +256,6 @@ def _lost(time_s: FloatArray, has_data: BoolArray, rate_hz: float | None) -> int
 
 def _is_all(kept: NDArray[np.intp], count: int) -> bool:
     return len(kept) == count and bool(np.all(kept == np.arange(count)))
-
-
-def _taken(block: ImuBlock, rows: NDArray[np.intp]) -> ImuBlock:
-    return replace(
-        block,
-        time_s=block.time_s[rows],
-        gyr_rad_s=block.gyr_rad_s[rows],
-        acc_m_s2=block.acc_m_s2[rows],
-        q_earth_from_sensor=None if block.q_earth_from_sensor is None else block.q_earth_from_sensor[rows],
-        mag=None if block.mag is None else block.mag[rows],
-        unknown={name: column[rows] for name, column in block.unknown.items()},
-    )
 
 
 def _moved(piece: DecodedSensor, offset_s: float) -> DecodedSensor:

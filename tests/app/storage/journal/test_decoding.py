@@ -54,19 +54,7 @@ def decoded(folder: Path, key: bytes | None = KEY) -> DecodedJournal:
 
 
 def pieces(whole: ImuBlock, length: int) -> list[ImuBlock]:
-    def cut(k: int) -> ImuBlock:
-        rows = slice(k, k + length)
-        return replace(
-            whole,
-            time_s=whole.time_s[rows],
-            gyr_rad_s=whole.gyr_rad_s[rows],
-            acc_m_s2=whole.acc_m_s2[rows],
-            q_earth_from_sensor=None if whole.q_earth_from_sensor is None else whole.q_earth_from_sensor[rows],
-            mag=None if whole.mag is None else whole.mag[rows],
-            unknown={name: column[rows] for name, column in whole.unknown.items()},
-        )
-
-    return [cut(k) for k in range(0, len(whole), length)]
+    return [whole.select(slice(k, k + length)) for k in range(0, len(whole), length)]
 
 
 def assert_same_block(one: ImuBlock, other: ImuBlock) -> None:
