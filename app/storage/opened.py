@@ -98,7 +98,17 @@ def open_library(folder: Path, passphrase: str, code: str = "") -> OpenedLibrary
         if len(slots.codes) > 1:
             raise KeyRefusedError("Several operators work with this library", "Say who you are")
         (code,) = slots.codes
-    data_key = slots.open(code, passphrase)
+    return logged_in(folder, slots.open(code, passphrase), code)
+
+
+def logged_in(folder: Path, data_key: DataKey, code: str) -> OpenedLibrary:
+    """Open the library in `folder` with its key, for an operator.
+
+    Raises
+    ------
+    LibraryError
+        It does not open, or nobody with this code works there.
+    """
     library = Library.open(folder, data_key)
     try:
         library.log_in(code)

@@ -16,14 +16,14 @@ from app.storage.key_change import change_data_key, refuse_change
 from app.storage.keyring_slot import is_there_a_keyring, open_remembered
 from app.storage.keys import KeyRefusedError
 from app.storage.login_delay import LoginDelay
-from app.storage.opened import OpenedLibrary, create_library, held_alone, open_library, slots_of
+from app.storage.opened import OpenedLibrary, create_library, held_alone, logged_in, open_library, slots_of
 from app.storage.recovery import find_interrupted
 from app.storage.rollback import Rollback, SeenLibraries
 from app.storage.root import GONE
 from app.storage.stored import Operator, Role
 from app.wording import tr
 from app.workers.background import Report
-from app.workers.library_opening import demonstration, let_keyring_remember, logged_in, tidy
+from app.workers.library_opening import demonstration, let_keyring_remember, tidy
 from app.workers.library_state import Closed, KeyChanged, LibraryPlace, NotOpened, OpenedState, Unlocked
 from app.workers.refusals import NothingOpenError, Refusal, nothing_open, refusal_of
 

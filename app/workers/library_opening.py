@@ -4,7 +4,6 @@ import logging
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from app.storage.backup import remove_old_backups
 from app.storage.keyring_slot import remember
@@ -14,22 +13,10 @@ from app.storage.opened import OpenedLibrary, slots_of
 from app.storage.retention import destroy_overdue
 from app.storage.stored import Role
 
-if TYPE_CHECKING:
-    from app.storage.data_key import DataKey
 BACKUP_FOLDER = "backup_folder"  # the library's setting that names where its backups are
 DEMONSTRATION_CODE = "DEMO-1"
 
 _log = logging.getLogger(__name__)
-
-
-def logged_in(folder: Path, data_key: "DataKey", code: str) -> OpenedLibrary:
-    library = Library.open(folder, data_key)
-    try:
-        library.log_in(code)
-    except BaseException:
-        library.close()
-        raise
-    return OpenedLibrary(library, folder, data_key)
 
 
 def let_keyring_remember(library: OpenedLibrary) -> None:
