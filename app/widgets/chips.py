@@ -90,16 +90,8 @@ class Chips(Themed):
 
     def _flow(self, width: int) -> list[QRect]:
         """Where each chip lies in lines of `width`."""
-        gap, height = self._look.theme.px(GAP), self._look.theme.px(HEIGHT)
-        places: list[QRect] = []
-        x = y = 0
-        for chip in self._chips.values():
-            wanted = chip.sizeHint().width()
-            if x and x + wanted > width:
-                x, y = 0, y + height + gap
-            places.append(QRect(x, y, wanted, height))
-            x += wanted + gap
-        return places
+        px = self._look.theme.px
+        return flow([chip.sizeHint().width() for chip in self._chips.values()], width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:
         return self._flow(width)[-1].bottom() + 1
@@ -120,6 +112,18 @@ class Chips(Themed):
             self._chips[other].setChecked(False)
         self._arrange()
         self.turned.emit()
+
+
+def flow(wanted: Iterable[int], width: int, gap: int, height: int) -> list[QRect]:
+    """Where boxes as wide as `wanted` lie, in lines of `width`; all in pixels."""
+    places: list[QRect] = []
+    x = y = 0
+    for box in wanted:
+        if x and x + box > width:
+            x, y = 0, y + height + gap
+        places.append(QRect(x, y, box, height))
+        x += box + gap
+    return places
 
 
 class _Chip(Button):

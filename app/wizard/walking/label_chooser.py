@@ -6,6 +6,7 @@ from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import Look
 from app.tokens import CHIP_RADIUS
+from app.widgets.chips import flow
 from app.widgets.field import Field
 from app.widgets.painted_text import CENTRE, LEFT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -106,15 +107,8 @@ class LabelChooser(Themed):
     def _flow(self, width: int) -> list[QRect]:
         """Where each label lies, and the field last, in lines of `width`."""
         px = self._look.theme.px
-        gap, height = px(GAP), px(HEIGHT)
-        places: list[QRect] = []
-        x = y = 0
-        for wanted in [*(option.sizeHint().width() for option in self._options), px(FIELD_WIDTH)]:
-            if x and x + wanted > width:
-                x, y = 0, y + height + gap
-            places.append(QRect(x, y, wanted, height))
-            x += wanted + gap
-        return places
+        wanted = [*(option.sizeHint().width() for option in self._options), px(FIELD_WIDTH)]
+        return flow(wanted, width, px(GAP), px(HEIGHT))
 
     def _height_for(self, width: int) -> int:
         return self._flow(width)[-1].bottom() + 1
