@@ -3,34 +3,31 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from PySide6.QtCore import QMimeData, QPoint, QPointF, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QPoint, QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import (
     QColor,
-    QDrag,
     QDragEnterEvent,
     QDragLeaveEvent,
     QDragMoveEvent,
     QDropEvent,
     QFontMetrics,
-    QMouseEvent,
     QPainter,
     QPaintEvent,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QApplication, QSizePolicy, QWidget
+from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.theme import Look
 from app.tokens import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
-from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.widgets.themed import Themed
+from app.wizard.sensors.sensor_drag import DRAGGED, DraggedButton, sensor_in
 from app.wording import name_of, tr
 from core.body import Segment, Side, Site
 
-DRAGGED = "application/x-gaitwright-sensor"
 TILE = (112, 50)
 LINE = 17  # more, where name and note need a line each
 NARROW_TILE = 92
@@ -250,7 +247,7 @@ class _Lines(QWidget):
             painter.drawPolyline([start, elbow, end])
 
 
-class _Tile(PaintedButton):
+class _Tile(DraggedButton):
     """The place in two lines: which it is, and who is there. A sensor can be dragged away from it."""
 
     def __init__(self, look: Look, site: Site, places: SensorPlaces) -> None:
@@ -258,14 +255,13 @@ class _Tile(PaintedButton):
         self.site, self._places = site, places
         self._place = PlaceShown()
         self._is_welcome = False
-        self._pressed_at: QPoint | None = None
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.show_place(PlaceShown())
 
     def show_place(self, place: PlaceShown) -> None:
         if place == self._place and self.accessibleName():
             return
-        self._place = place
+        self._place, self.dragged = place, place.sensor
         words = [name_of(self.site), place.sensor or tr("no sensor"), place.note]
         name = ", ".join(filter(None, words))
         if name != self.accessibleName():
@@ -289,18 +285,6 @@ class _Tile(PaintedButton):
         theme = self._look.theme
         word = QFontMetrics(theme.font(14, SEMIBOLD)).horizontalAdvance(segment_name(self.site))
         return word + theme.px(CHIP + 6 + 18 + 2 * PADDING)  # chip before it, the key's figure behind it
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        self._pressed_at = event.position().toPoint()
-        super().mousePressEvent(event)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if self._place.sensor and is_dragged(self._pressed_at, event):
-            self._pressed_at = None
-            self.setDown(False)
-            drag_sensor(self, self._look, self._place.sensor)
-            return
-        super().mouseMoveEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme
@@ -371,45 +355,3 @@ def segment_name(site: Site) -> str:
 def number_of(site: Site) -> int:
     """The key that says this place: 1 to 6, left leg first."""
     return list(Site).index(site) + 1
-
-
-def sensor_in(data: QMimeData) -> str:
-    return bytes(data.data(DRAGGED).data()).decode()
-
-
-def is_dragged(pressed_at: QPoint | None, event: QMouseEvent) -> bool:
-    """Whether the mouse, with its button down, has moved so far that a drag is meant."""
-    if pressed_at is None or not event.buttons() & Qt.MouseButton.LeftButton:
-        return False
-    return (event.position().toPoint() - pressed_at).manhattanLength() >= QApplication.startDragDistance()
-
-
-def drag_sensor(source: QWidget, look: Look, sensor: str) -> None:
-    """Let the mouse carry `sensor` until it is let go; returns then."""
-    data = QMimeData()
-    data.setData(DRAGGED, sensor.encode())
-    drag = QDrag(source)
-    drag.setMimeData(data)
-    label = _Carried(look, sensor)
-    drag.setPixmap(label.grab())
-    drag.setHotSpot(QPoint(label.width() // 2, label.height() // 2))
-    label.deleteLater()
-    drag.exec(Qt.DropAction.MoveAction)
-
-
-class _Carried(QWidget):
-    """What hangs at the mouse while a sensor is dragged."""
-
-    def __init__(self, look: Look, sensor: str) -> None:
-        super().__init__()
-        self._look, self._sensor = look, sensor
-        width = QFontMetrics(look.theme.font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)
-        self.resize(width + look.theme.px(32), look.theme.px(40))
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.fillRect(self.rect(), QColor(theme.colours.inv))
-        painter.setPen(QColor(theme.colours.inv_ink))
-        painter.setFont(theme.font(16, SEMIBOLD, is_code=True))
-        painter.drawText(self.rect(), Qt.AlignmentFlag.AlignCenter, self._sensor)

@@ -10,12 +10,11 @@ from PySide6.QtGui import (
     QColor,
     QFocusEvent,
     QKeyEvent,
-    QMouseEvent,
     QPainter,
     QPaintEvent,
     QResizeEvent,
 )
-from PySide6.QtWidgets import QAbstractButton, QMenu, QSizePolicy, QWidget
+from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
 from app.theme import Look
@@ -27,7 +26,8 @@ from app.widgets.chip import paint_chip
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
-from app.wizard.sensors.sensor_places import drag_sensor, is_dragged, number_of, segment_name
+from app.wizard.sensors.sensor_drag import DraggedButton
+from app.wizard.sensors.sensor_places import number_of, segment_name
 from app.wizard.sensors.sensor_trace import Trace
 from app.wording import name_of, tr
 from core.body import Site
@@ -85,7 +85,7 @@ class SensorRow:
         return tr("{percent} %").format(percent=round(100 * self.battery))
 
 
-class SensorRowView(QAbstractButton):
+class SensorRowView(DraggedButton):
     """One sensor. It can be dragged onto the figure; Space asks where it is worn, Up and Down go on.
 
     Enter goes past it, to the primary button.
@@ -120,12 +120,11 @@ class SensorRowView(QAbstractButton):
         columns: Callable[[int], Mapping[str, QRect]],
         second_line: Callable[[SensorRow], str],
     ) -> None:
-        super().__init__()
-        self._look, self._columns, self._second_line = look, columns, second_line
+        super().__init__(look)
+        self._columns, self._second_line = columns, second_line
         self._is_selected = False
-        self.name = name
+        self.name = self.dragged = name
         self.sensor = SensorRow(name)
-        self._pressed_at: QPoint | None = None
         self.trace = Trace(look)
         self.trace.setParent(self)
         self.worn = _WornOn(look, self)
@@ -134,7 +133,6 @@ class SensorRowView(QAbstractButton):
         self.identify.clicked.connect(self._on_identify_clicked)
         self.clicked.connect(self._on_clicked)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
-        self.setAttribute(Qt.WidgetAttribute.WA_Hover)
         self.setAccessibleDescription(tr("1 to 6 say where it is worn, Space opens a list of the places"))
 
     def takes_other_room(self, sensor: SensorRow) -> bool:
@@ -229,18 +227,6 @@ class SensorRowView(QAbstractButton):
                 self.stepped.emit(self.name, 1)
             case _:
                 super().keyPressEvent(event)
-
-    def mousePressEvent(self, event: QMouseEvent) -> None:
-        self._pressed_at = event.position().toPoint()
-        super().mousePressEvent(event)
-
-    def mouseMoveEvent(self, event: QMouseEvent) -> None:
-        if is_dragged(self._pressed_at, event):
-            self._pressed_at = None
-            self.setDown(False)
-            drag_sensor(self, self._look, self.name)
-            return
-        super().mouseMoveEvent(event)
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         theme = self._look.theme

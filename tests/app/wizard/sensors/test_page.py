@@ -5,14 +5,14 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from PySide6.QtCore import QEvent, QMimeData, QPoint, QPointF, Qt
-from PySide6.QtGui import QDragMoveEvent, QDropEvent, QKeyEvent
+from PySide6.QtGui import QDragEnterEvent, QDragMoveEvent, QDropEvent, QKeyEvent
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look
 from app.wizard.sensors.page import SensorsPage, Way
-from app.wizard.sensors.sensor_places import DRAGGED
+from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
 from app.wizard.sensors.sensor_trace import _lines
 from app.wizard.sensors.source_pages import SourceOption
@@ -97,9 +97,22 @@ def test_a_worn_place_says_that_dropping_swaps(page: SensorsPage) -> None:
     assert page.notice.text == "L thigh is already worn by 0A09. Drop here to swap the two."
 
 
+@pytest.mark.parametrize("is_sensor", [True, False])
+def test_only_a_sensor_may_be_dropped_on_the_figure(page: SensorsPage, is_sensor: bool) -> None:
+    data = data_of("0A2C")
+    if not is_sensor:
+        data = QMimeData()
+        data.setText("0A2C")
+    buttons, keys = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    enter = QDragEnterEvent(QPoint(5, 5), Qt.DropAction.MoveAction, data, buttons, keys)
+    enter.ignore()
+    page.places.dragEnterEvent(enter)
+    assert enter.isAccepted() == is_sensor
+
+
 def test_the_mouse_carries_a_sensor_by_its_name(page: SensorsPage, monkeypatch: pytest.MonkeyPatch) -> None:
     carried: list[str] = []
-    drag = "app.wizard.sensors.sensor_row.drag_sensor"
+    drag = "app.wizard.sensors.sensor_drag.drag_sensor"
     monkeypatch.setattr(drag, lambda _source, _look, sensor: carried.append(sensor))
     row = page.list.rows["0A2C"]
     QTest.mousePress(row, Qt.MouseButton.LeftButton, pos=QPoint(60, 20))
