@@ -94,7 +94,7 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)`, bound methods of `owner`'s.
+        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)`, bound methods, as long as `owner` is there.
 
         Without `failed` a refusal is told by the signal `refused`.
         """
