@@ -94,9 +94,9 @@ class LibraryController(QObject):
         failed: Failed | None,
         owner: QObject,
     ) -> None:
-        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)`, bound methods, as long as `owner` is there.
+        """Let the thread make `call`, then call `done(result)` or `failed(what, remedy)` as long as `owner` is there.
 
-        Without `failed` a refusal is told by the signal `refused`.
+        Both are bound methods. Without `failed` a refusal is told by the signal `refused`.
         """
         self._ask(self._calls, Job(lambda: call(self._holder.library), weak(done), weak(failed), ref(owner)))
 

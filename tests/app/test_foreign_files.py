@@ -67,7 +67,7 @@ def test_a_session_is_read_by_another_process_and_is_the_same(folder: Path) -> N
     session = read_foreign_session(folder, nothing)
     assert isinstance(session, Session)
     assert repr(session) == repr(read_session(folder))
-    process = the_reader()._process
+    process = the_reader().process
     assert process is not None
     assert process.pid != os.getpid()
 
@@ -112,4 +112,4 @@ def test_a_reader_that_fails_for_no_foreseen_reason_is_a_refusal_too(folder: Pat
     with pytest.raises(ReadingEndedError, match="for a reason that the log names") as caught:
         reading.import_files("no-such-format", [folder / "session.toml"], {Site.LEFT_FOOT: "a"}, "walk 1", None)
     assert caught.value.cause == child.UNFORESEEN
-    assert foreign_files.the_reader()._process is None
+    assert foreign_files.the_reader().process is None
