@@ -18,7 +18,8 @@ class RecordPhase(Enum):
     """What is under way with the library, and whether what is held of the patient may be old."""
 
     SETTLED = auto()  # nothing is under way; what is held is as it was read or saved last
-    BUSY = auto()  # saves, or reads a patient in whose place another was chosen
+    BUSY = auto()  # saves
+    OVERTAKEN = auto()  # saves or reads a patient in whose place another was chosen: the answer is not this one's
     READING = auto()  # chosen from a list, and being read: what is held may be old
     UNREAD = auto()  # chosen from a list, and could not be read: what is held may be old
 
@@ -61,8 +62,8 @@ class PatientRecord(QObject):
         return self._phase in (RecordPhase.READING, RecordPhase.UNREAD)
 
     def choose(self, stored: StoredPatient) -> None:
-        if self._may_be_old:
-            self._phase = RecordPhase.BUSY if self._phase is RecordPhase.READING else RecordPhase.SETTLED
+        is_under_way = self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
+        self._phase = RecordPhase.OVERTAKEN if is_under_way else RecordPhase.SETTLED
         self._choose(stored)
 
     def choose_from_list(self, listed: StoredPatient) -> None:
@@ -80,7 +81,8 @@ class PatientRecord(QObject):
     def commit(self) -> None:
         """Save what is on the screen now, and make the patient if there is none yet."""
         self._pause.stop()
-        if self._phase in (RecordPhase.BUSY, RecordPhase.READING) or self.is_saved or not self.told.code:
+        is_under_way = self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
+        if is_under_way or self.is_saved or not self.told.code:
             return
         if self._may_be_old and self.stored is not None:
             self._read(self.stored)
@@ -133,7 +135,10 @@ class PatientRecord(QObject):
             self._pause.start()  # typed meanwhile
 
     def _on_saved(self, stored: StoredPatient | None) -> None:
+        is_overtaken = self._phase is not RecordPhase.BUSY
         self._end_work()
+        if is_overtaken:  # it is saved, and another stands here now
+            stored = self.stored
         if stored is None:
             self.code_taken.emit(self.told.code)
             return

@@ -254,3 +254,34 @@ def test_another_code_typed_over_a_patient_with_sessions_is_somebody_else(qtbot:
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     assert visit.patient.stored.id != first.id
+
+
+def test_a_patient_chosen_while_another_is_saved_stays_the_one_of_the_visit(qtbot: QtBot, visit: Visit) -> None:
+    """The answer to the save comes after the choice; the session would else be begun for who stands there no more."""
+    visit.patient.edit(Patient(code="DEMO-8"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    chosen = visit.patient.stored
+    assert chosen is not None
+    visit.patient.choose(replace(chosen, sessions=1))
+    visit.patient.edit(Patient(code="DEMO-9"))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    assert visit.patient.stored is not None
+    visit.patient.edit(replace(visit.patient.told, birth_year=1950))
+    visit.patient.commit()  # on its way to the library
+    visit.patient.choose(chosen)
+    with qtbot.waitSignal(visit.patient.changed):  # the answer to the save
+        pass
+    assert visit.patient.stored is not None
+    assert (visit.patient.stored.id, visit.patient.told.code) == (chosen.id, "DEMO-8")
+    assert visit.patient.is_saved
+    state = visit.controller.state
+    assert state is not None
+    saved = state.library.library.patients.find("DEMO-9")
+    assert saved is not None
+    assert saved.told.birth_year == 1950  # what was typed of the other is kept as theirs
+    visit.patient.edit(replace(visit.patient.told, birth_year=1961))
+    with qtbot.waitSignal(visit.patient.changed):
+        visit.patient.commit()
+    assert visit.patient.is_saved
