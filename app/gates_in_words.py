@@ -1,4 +1,6 @@
-"""Why is a figure read with care, or withheld? A sentence for each gate of `core.verdicts.gates`, with what to do."""
+"""Why is a figure read with care, or withheld, and what is to be done? For each gate of `core.verdicts.gates`."""
+
+from typing import NamedTuple
 
 from app.wording import later, tr
 from core.verdicts.model import GateReason, Verdict
@@ -11,80 +13,106 @@ VERDICTS = {
 }
 DECIMALS = {"deg": 1, "ms": 1, "m/s": 2, "%": 1, "s": 1}
 
+
+class GateWords(NamedTuple):
+    """What was found, and what to do about it; `to_do` is empty where nothing can be done."""
+
+    why: str
+    to_do: str = ""
+
+
+_ONE_RECEIVER = later("Use one receiver for all sensors.")
+_LOOK_AT_SIGN = later("Look at the curve, then confirm or turn the sign.")
+_FREE_MOTION = later("Tighten it and record free motion again.")
+
 # {value} and {limit} carry their units; where a gate has no figure the first sentence is without one
-SENTENCES = {
-    "pairing": later(
-        "The two sensors do not move as neighbours (margin {value}, {limit} wanted). Check which sensor is where, or "
-        "record free motion."
+WORDS = {
+    "pairing": GateWords(
+        later("The two sensors do not move as neighbours (margin {value}, {limit} wanted)."),
+        later("Check which sensor is where, or record free motion."),
     ),
-    "sign": later(
-        "The motion does not tell flexion from extension (margin {value}, {limit} wanted), so only the range holds. "
-        "Look at the curve, then confirm or turn the sign."
+    "sign": GateWords(
+        later(
+            "The motion does not tell flexion from extension (margin {value}, {limit} wanted), so only the range holds."
+        ),
+        _LOOK_AT_SIGN,
     ),
-    "axis": later(
-        "The joint's axis is known to {value} only ({limit} wanted). Record free motion, or move longer and in more "
-        "directions."
+    "axis": GateWords(
+        later("The joint's axis is known to {value} only ({limit} wanted)."),
+        later("Record free motion, or move longer and in more directions."),
     ),
-    "lag": later(
-        "How far the two sensors' clocks are apart is known to {value} only ({limit} wanted). Use one receiver for all "
-        "sensors."
+    "lag": GateWords(
+        later("How far the two sensors' clocks are apart is known to {value} only ({limit} wanted)."), _ONE_RECEIVER
     ),
-    "plausible": later("The range over the stride is {value} (limit {limit}). Look at the curve and at the sensors."),
-    "plausible_height": later("The curve reaches {value} (limit {limit}). Set the zero again."),
-    "zero": later("No zero was set, so heights say nothing. Let the patient stand still for three seconds."),
-    "clock_drift": later(
-        "One sensor's clock runs {value} faster or slower than the others'. Use one receiver for all sensors, then "
-        "record again."
+    "plausible": GateWords(
+        later("The range over the stride is {value} (limit {limit})."), later("Look at the curve and at the sensors.")
     ),
-    "strap": later(
-        "A strap slipped from {value} on; later strides are left out. Tighten it and record free motion again."
+    "plausible_height": GateWords(later("The curve reaches {value} (limit {limit})."), later("Set the zero again.")),
+    "zero": GateWords(
+        later("No zero was set, so heights say nothing."), later("Let the patient stand still for three seconds.")
     ),
-    "strides": later("{value} strides were used ({limit} wanted). Let the patient walk longer."),
-    "halves": later("The second half of the walk differs from the first by {value} ({limit} at most)."),
-    "halves_time": later("The stride time of the second half differs from the first by {value} ({limit} at most)."),
-    "drift": later("The last third of the walk differs from the first by {value} ({limit} at most)."),
-    "odd_even": later("Every second stride differs from the others by {value} standard errors ({limit} at most)."),
-    "loss": later("{value} of a sensor's samples are missing ({limit} at most). Move the receiver nearer."),
-    "events": later("Stance takes {value} of the stride (limit {limit}): the events may be wrong."),
-    "distance": later("The stride lengths of both feet differ by {value} ({limit} at most)."),
-    "speed": later("The walking speed found is {value} (limit {limit}): the distance may be wrong."),
-    "toe_off": later("A prosthetic foot rolls on, so toe-off is found late: stance is not compared or judged."),
-    "step_share": later(
-        "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' clocks "
-        "differ. Use one receiver for all sensors."
+    "clock_drift": GateWords(
+        later("One sensor's clock runs {value} faster or slower than the others'."),
+        later("Use one receiver for all sensors, then record again."),
     ),
-    "clocks": later(
-        "The clocks of both legs may be {value} apart ({limit} at most). Use one receiver for all sensors."
+    "strap": GateWords(later("A strap slipped from {value} on; later strides are left out."), _FREE_MOTION),
+    "strides": GateWords(later("{value} strides were used ({limit} wanted)."), later("Let the patient walk longer.")),
+    "halves": GateWords(later("The second half of the walk differs from the first by {value} ({limit} at most).")),
+    "halves_time": GateWords(
+        later("The stride time of the second half differs from the first by {value} ({limit} at most).")
     ),
+    "drift": GateWords(later("The last third of the walk differs from the first by {value} ({limit} at most).")),
+    "odd_even": GateWords(
+        later("Every second stride differs from the others by {value} standard errors ({limit} at most).")
+    ),
+    "loss": GateWords(
+        later("{value} of a sensor's samples are missing ({limit} at most)."), later("Move the receiver nearer.")
+    ),
+    "events": GateWords(later("Stance takes {value} of the stride (limit {limit}): the events may be wrong.")),
+    "distance": GateWords(later("The stride lengths of both feet differ by {value} ({limit} at most).")),
+    "speed": GateWords(later("The walking speed found is {value} (limit {limit}): the distance may be wrong.")),
+    "toe_off": GateWords(
+        later("A prosthetic foot rolls on, so toe-off is found late: stance is not compared or judged.")
+    ),
+    "step_share": GateWords(
+        later(
+            "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' "
+            "clocks differ."
+        ),
+        _ONE_RECEIVER,
+    ),
+    "clocks": GateWords(later("The clocks of both legs may be {value} apart ({limit} at most)."), _ONE_RECEIVER),
 }
 WITHOUT_FIGURES = {
-    "pairing": later("The two sensors do not move as neighbours. Check which sensor is where, or record free motion."),
-    "sign": later(
-        "The motion does not tell flexion from extension, so only the range holds. Look at the curve, then confirm or "
-        "turn the sign."
+    "pairing": GateWords(
+        later("The two sensors do not move as neighbours."),
+        later("Check which sensor is where, or record free motion."),
     ),
-    "axis": later("How sure the joint's axis is, is not known. Record free motion."),
-    "lag": later(
-        "The motion does not show how far the two sensors' clocks are apart. Use one receiver for all sensors."
+    "sign": GateWords(
+        later("The motion does not tell flexion from extension, so only the range holds."), _LOOK_AT_SIGN
     ),
-    "strap": later("A strap slipped before this walk. Tighten it and record free motion again."),
-    "step_share": later(
-        "The left step takes {value} of both (limit {limit}), though both feet stand equally long: the legs' clocks "
-        "differ. Use one receiver for all sensors."
-    ),
-    "clocks": later(
-        "Nothing ties the clocks of both legs together, so nothing that compares instants of both is given. Use one "
-        "receiver for all sensors."
+    "axis": GateWords(later("How sure the joint's axis is, is not known."), later("Record free motion.")),
+    "lag": GateWords(later("The motion does not show how far the two sensors' clocks are apart."), _ONE_RECEIVER),
+    "strap": GateWords(later("A strap slipped before this walk."), _FREE_MOTION),
+    "step_share": WORDS["step_share"],
+    "clocks": GateWords(
+        later("Nothing ties the clocks of both legs together, so nothing that compares instants of both is given."),
+        _ONE_RECEIVER,
     ),
 }
+
+
+def gate_words(reason: GateReason) -> GateWords:
+    """Why this gate is not passed, and what to do, in the language of the application."""
+    words = WITHOUT_FIGURES[reason.gate] if reason.value is None and reason.gate in WITHOUT_FIGURES else None
+    words = words or WORDS[reason.gate]
+    value, limit = (_figure(figure, reason.unit) for figure in (reason.value, reason.limit))
+    return GateWords(tr(words.why).format(value=value, limit=limit), tr(words.to_do) if words.to_do else "")
 
 
 def gate_sentence(reason: GateReason) -> str:
-    """Why this gate is not passed, and what to do."""
-    if reason.value is None and reason.gate in WITHOUT_FIGURES:
-        return tr(WITHOUT_FIGURES[reason.gate])
-    value, limit = (_figure(figure, reason.unit) for figure in (reason.value, reason.limit))
-    return tr(SENTENCES[reason.gate]).format(value=value, limit=limit)
+    """The same in one piece."""
+    return " ".join(filter(None, gate_words(reason)))
 
 
 def verdict_word(verdict: Verdict) -> str:

@@ -9,6 +9,7 @@ from PySide6.QtGui import QColor, QPainter
 from PySide6.QtSvg import QSvgRenderer
 
 from core.findings import Severity
+from core.verdicts.model import Verdict
 
 
 class Icon(StrEnum):
@@ -47,8 +48,18 @@ class Icon(StrEnum):
     PRINT = "print"
     LIGHT = "light"
     GRIP = "grip"
+    READ = "read"
+    CARE = "care"
+    WITHHELD = "withheld"
+    LEGS = "legs"
 
 
+VERDICT_ICONS = {  # circles speak of the measurement, triangles of the patient
+    Verdict.READ: Icon.READ,
+    Verdict.CARE: Icon.CARE,
+    Verdict.WITHHELD: Icon.WITHHELD,
+    Verdict.NOT_MEASURED: Icon.UNCHECKED,
+}
 SEVERITY_ICONS = {Severity.INFO: Icon.INFO, Severity.WARNING: Icon.WARNING, Severity.GRAVE: Icon.GRAVE}
 
 

@@ -2,7 +2,6 @@
 
 import logging
 from collections.abc import Callable
-from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -47,6 +46,7 @@ _log = logging.getLogger(__name__)
 NARROW_BELOW = 800
 HEADER, BAR = 56, 72
 PURPOSE = 120  # what it was made for, in two lines
+PURPOSE_WORDS = later("Research use. Not a medical device.")
 
 STOPPED = (
     later("The analysis was stopped."),
@@ -115,6 +115,8 @@ class SessionScreen(Themed):
         if self._found is not None and self.pages.currentWidget() is self._found:
             self._looking.stop()
             self._show_page(self._results or self.empty)
+        elif self._results is not None and self._results.isVisible() and self._results.leave_behind():
+            return
         elif self._has_way_back:
             self.stop()
             self.left.emit()
@@ -218,33 +220,28 @@ class SessionScreen(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_done(self, opened: "Opened") -> None:
-        from app.reports.patient_report.answer import answer_of
         from app.reports.patient_report.request import Visit
-        from app.reports.reference_bands import age_and_height
 
         if self._results is None:
             from app.pages.result_page import ResultPage
 
             self._results = ResultPage(self._look)
             self.pages.addWidget(self._results)
+            self._results.quality.how_found.clicked.connect(self._on_how_found)
+            self._results.told.connect(self._tell_band)
             verbs = (self.bar.back, self.bar.open_folder, self.bar.open_demonstration, self.bar.how_found)
             order = [*self._results.tab_order, *verbs]
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
         self._opened, session = opened, opened.session
-        is_prosthetic = session.patient.prosthetic_side in set(Side)
-        who = age_and_height(session)
-        self._results.show_analysis(
-            opened.analysis,
-            session.recordings,
-            is_prosthetic=is_prosthetic,
-            who=who,
-            answer=partial(answer_of, Visit(session, opened.analysis)),
-        )
+        self._results.show_visit(Visit(session, opened.analysis))
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
         self._show_page(self._results)
+
+    def _tell_band(self) -> None:
+        self.bar.tell(self._results.band_words if self._results is not None else "")
 
     def _on_how_found(self) -> None:
         """Look behind the recording that is shown; the page is made at the first time."""
@@ -307,7 +304,7 @@ class _ActionBar(Themed):
         self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
         self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
         self.how_found = Button(look, tr("How was this found?"), Kind.QUIET, Icon.SEARCH)
-        self._purpose = Text(look, tr("Research use. Not a medical device."), size=12, tone="ink2", wraps=True)
+        self._purpose = Text(look, tr(PURPOSE_WORDS), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.back)
@@ -316,6 +313,10 @@ class _ActionBar(Themed):
         self._row.addWidget(self.how_found)
         self._row.addWidget(self._purpose, 1)
         self._on_look_changed()
+
+    def tell(self, note: str) -> None:
+        """Say what must be known of the curves, before what the program is for."""
+        self._purpose.setText(" ".join(filter(None, [note, tr(PURPOSE_WORDS)])))
 
     def set_narrow(self, is_narrow: bool) -> None:
         self._is_narrow = is_narrow

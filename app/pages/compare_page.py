@@ -141,6 +141,16 @@ class ComparePage(Themed):
             self._affected_words = said
         self._offer_kinds()
 
+    @property
+    def has_visits(self) -> bool:
+        """Whether earlier visits are offered."""
+        return self._has_visits
+
+    def choose_kind(self, kind: Kind) -> None:
+        """Compare this with that; nothing where it is not offered."""
+        if (found := self.kinds.findData(kind)) >= 0:
+            self.kinds.setCurrentIndex(found)
+
     def set_has_visits(self, has_visits: bool) -> None:
         """Offer earlier visits, which `visits_wished` asks for."""
         self._has_visits = has_visits

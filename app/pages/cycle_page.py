@@ -42,23 +42,19 @@ CARE = later("{mark} read with care.")
 
 
 class CyclePage(QWidget):
-    """Charts with the note on the band under them; `peaks` and `time_distance` are cards that the page places."""
+    """The charts, and whose band it is; `peaks` and `time_distance` are cards that the page places."""
 
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self._is_tight = False
+        self.band_words = ""
         self.charts = CycleCharts(look, reference_curves())
-        self.note = BandNote(look)
         self.by_hand = Text(look, size=12, weight=MEDIUM, wraps=True)
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         column.addWidget(self.charts, 1)
-        column.addWidget(self.note)
         column.addWidget(self.by_hand)
         self.peaks = FiguresCard(look, tr("Peaks and ranges"), tr("mean ± SD (°)"))
-        self.peaks_note = BandNote(look)
-        self.peaks.column.addWidget(self.peaks_note)
         self.time_distance = FiguresCard(look, tr("Time and distance"), tr("mean ± SD"))
         for card in (self.peaks, self.time_distance):
             card.column.addStretch(1)
@@ -67,15 +63,12 @@ class CyclePage(QWidget):
     def tables(self) -> list[QWidget]:
         return [self.peaks.table, self.time_distance.table]
 
-    def set_room(self, is_tight: bool, has_two_charts: bool) -> None:
-        """Put the charts side by side where that is the better use of the page, and the note on the band under them."""
+    def set_room(self, has_two_charts: bool) -> None:
+        """Put the charts side by side where that is the better use of the page."""
         self.charts.set_side_by_side(has_two_charts)
-        self._is_tight = is_tight
-        self.peaks_note.setVisible(not is_tight)
 
     def set_notes_shown(self, is_shown: bool) -> None:
-        """Say under the charts whose band it is, where no table beside them does, and what was left out by hand."""
-        self.note.setVisible(is_shown and self._is_tight)
+        """Say under the charts what was left out by hand, where nothing beside them does."""
         self.by_hand.setVisible(is_shown and bool(self.by_hand.text()))
 
     def show_walk(
@@ -110,8 +103,7 @@ class CyclePage(QWidget):
         group = _group_in_words(values, bands.why_no_values if sides_with_band else None)
         said = [by_hand, group, only, *_care_in_words(figures)]
         self.time_distance.show_figures(figures, strides, " ".join(filter(None, said)))
-        for note in (self.note, self.peaks_note):
-            note.show_band(bands, both_sides(recording).speed_m_s, sides_with_band, only)
+        self.band_words = band_in_words(bands, both_sides(recording).speed_m_s, sides_with_band, only)
 
 
 def _why_withheld(recording: RecordingAnalysis, joints: Sequence[Joint]) -> list[str]:
@@ -159,39 +151,23 @@ class FiguresCard(Card):
         self.note.setText(note)
 
 
-class BandNote(QWidget):
+def band_in_words(bands: Bands, speed_m_s: float, sides_with_band: frozenset[Side], only: str) -> str:
     """Whose band it is and how fast they walked, or why there is none; how fast this walk was."""
+    whose = _whose(bands, only) if sides_with_band else tr(NO_SIDE)
+    is_known = bool(np.isfinite(speed_m_s))
+    speed = tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)
+    return f"{whose} {speed}"
 
-    def __init__(self, look: Look) -> None:
-        super().__init__()
-        self._source = Text(look, size=12, tone="ink2", wraps=True)
-        self._speed = Text(look, size=12, weight=MEDIUM, wraps=True)
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-        column.setSpacing(2)
-        column.addWidget(self._source)
-        column.addWidget(self._speed)
 
-    @property
-    def text(self) -> str:
-        return f"{self._source.text()} {self._speed.text()}"
-
-    def show_band(self, bands: Bands, speed_m_s: float, sides_with_band: frozenset[Side], only: str) -> None:
-        self._source.setText(self._whose(bands, only) if sides_with_band else tr(NO_SIDE))
-        is_known = bool(np.isfinite(speed_m_s))
-        self._speed.setText(
-            tr("This walk: {speed_m_s:.2f} m/s.").format(speed_m_s=speed_m_s) if is_known else tr(NO_SPEED)
-        )
-
-    def _whose(self, bands: Bands, only: str) -> str:
-        band = bands.curves
-        if band is None:
-            return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
-        sds = tr("inner 1 SD, outer 2 SD").replace(" SD", "\N{NO-BREAK SPACE}SD")
-        whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s; {sds}.")
-        said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, sds=sds)
-        others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
-        return " ".join(filter(None, [f"{said} {_authors(band.source)}.", others, only]))
+def _whose(bands: Bands, only: str) -> str:
+    band = bands.curves
+    if band is None:
+        return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
+    sds = tr("inner 1 SD, outer 2 SD").replace(" SD", "\N{NO-BREAK SPACE}SD")
+    whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s; {sds}.")
+    said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, sds=sds)
+    others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
+    return " ".join(filter(None, [f"{said} {_authors(band.source)}.", others, only]))
 
 
 def _group_in_words(group: ReferenceValues | None, why_none: NoBand | None) -> str:

@@ -1,57 +1,63 @@
-"""What came of one session: a walk as its mean cycle or as a whole, figures and findings beside it."""
+"""What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
+from enum import Enum, auto
 from functools import cached_property
 
 import numpy as np
-from PySide6.QtCore import Qt
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
+from app.pages.answer_words import door_words, figures_in_short, key_figures, strides_in_short
 from app.pages.compare_page import ComparePage
 from app.pages.cycle_page import CyclePage
+from app.pages.differs_card import DiffersCard
+from app.pages.quality_page import QualityPage
 from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
+from app.reports.comparison import Kind as ComparedKind
 from app.reports.comparison import conditions_of
-from app.reports.patient_report.answer import Answer, Outcome
-from app.reports.reference_bands import NOBODY, sides_with_band
+from app.reports.patient_report.answer import Outcome, answer_of
+from app.reports.patient_report.data_quality import data_quality, quality_without_walk
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.request import Visit
+from app.reports.reference_bands import age_and_height, sides_with_band
 from app.theme import Look
 from app.widgets.button import Button, Kind
-from app.widgets.card import Card
 from app.widgets.choice import Choice
-from app.widgets.facts_table import FactsTable
-from app.widgets.findings_list import FindingsList
+from app.widgets.door import Door
+from app.widgets.fact_strip import FactStrip
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
-from app.widgets.text import SEMIBOLD, Text
+from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
 from app.wording import later, tr
-from core.body import Joint
-from core.norms import AgeAndHeight
-from core.results import Analysis, JointAngle, RecordingAnalysis
-from core.samples import FloatArray, Recording, RecordingKind
+from core.body import Joint, Side, Site
+from core.results import JointAngle, RecordingAnalysis
+from core.samples import FloatArray, RecordingKind
 
 RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "both"
 
-# the views; the last two only where room is short
-MEAN, WHOLE, STRIDES, COMPARE, FIGURES, FACTS = "mean", "whole", "strides", "compare", "figures", "facts"
+# the views
+ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
-COMPACT_BELOW = (940, 656)  # what the charts of a mean cycle need with one table beside them
-NARROW_BELOW = 940  # what both tables need without the charts
-THREE_COLUMNS_FROM = 1264  # what the charts and both tables need side by side
-LEAST_FINDINGS = 48  # under the peaks; what does not fit scrolls
+COMPACT_BELOW = (940, 608)  # the charts and the rows beneath them need so much
+NARROW_BELOW = 860  # what the tools need in one row
 SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
 TWO_CHARTS_FROM = 680
 ANSWER_PX = 22
+BOTTOM = 44  # px high: the row that closes the answer
+BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
 ANSWER_ICONS = {
     Outcome.DIFFERS: Icon.WARNING,
-    Outcome.NOTHING: Icon.CHECK,
+    Outcome.NOTHING: Icon.READ,
     Outcome.OPEN: Icon.INFO,
-    Outcome.UNREADABLE: Icon.GRAVE,
+    Outcome.UNREADABLE: Icon.WITHHELD,
 }
 
 HINTS = {
@@ -62,6 +68,23 @@ HINTS = {
 }
 KEYS = later("Wheel or + \N{MINUS SIGN} zooms, drag or Page Up, Page Down moves, mouse or arrows read.")
 EVENT_KEYS = later("[ ] step through contacts and toe-offs. Pre-swing is heel rise to toe-off.")
+
+
+class Beside(Enum):
+    """What the legs' curves stand beside."""
+
+    BAND = auto()
+    LEGS = auto()  # each other alone
+    CONDITIONS = auto()  # leads to Compare
+    VISITS = auto()  # leads to Compare
+
+
+class Behind(Enum):
+    """What somebody looks at behind the answer, in place of its curves."""
+
+    NOTHING = auto()
+    FIGURES = auto()
+    QUALITY = auto()
 
 
 class ResultParts:
@@ -86,45 +109,47 @@ class ResultParts:
     def charts(self) -> JointCharts:
         return JointCharts(self._look)
 
+    @cached_property
+    def quality(self) -> QualityPage:
+        return QualityPage(self._look)
+
     def make_next(self) -> bool:
         """Make one part; whether there was one left to be made."""
-        left = [name for name in ("cycles", "strides", "compare", "charts") if name not in vars(self)]
+        left = [name for name in ("cycles", "strides", "compare", "charts", "quality") if name not in vars(self)]
         if left:
             getattr(self, left[0])
         return bool(left)
 
 
 class ResultPage(Themed):
-    """`parts`: those that were made before."""
+    """`parts`: those that were made before. `told`: what is said in the bar beneath the page has changed."""
+
+    told = Signal()
 
     def __init__(self, look: Look, parts: ResultParts | None = None) -> None:
         super().__init__()
         parts = parts or ResultParts(look)
         self._look = look
-        self._analysis: Analysis | None = None
-        self._can_choose = False
-        self._answer: Callable[[RecordingAnalysis], Answer] | None = None
-        self._who = NOBODY
+        self._visit: Visit | None = None
+        self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
-        self._is_compact = False
-        self._is_narrow = False
-        self._has_two_charts = False
-        self._columns_wanted = 3
-        self._is_spacious = False
-        self._wanted = MEAN  # of a walk; kept while recordings without it are looked at
+        self._is_compact = self._is_narrow = self._has_two_charts = self._is_spacious = False
+        self._height = 0.0
+        self._behind = Behind.NOTHING
+        self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
         self.view = Segmented(
             look,
             tr("View"),
             [
-                (MEAN, tr("Mean cycle"), ""),
+                (ANSWER, tr("Answer"), ""),
+                (COMPARE, tr("Compare"), ""),
                 (WHOLE, tr(WALK), ""),
                 (STRIDES, tr("Strides"), ""),
-                (COMPARE, tr("Compare"), ""),
-                (FIGURES, tr("Figures"), ""),
-                (FACTS, tr("Findings"), ""),
             ],
         )
+        self.to_answer = Button(look, tr("Answer"), Kind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
+        self.beside = Choice(look, tr("Beside"))
         self.methods = Segmented(
             look,
             tr("Method"),
@@ -136,50 +161,37 @@ class ResultPage(Themed):
             ],
         )
         self.answer = Notice(look, ANSWER_PX, padding=4)
-        self.single_strides = Toggle(look, tr("Single strides"), "S", is_on=False)
-        self.band = Toggle(look, tr("Band"), "B", is_on=True)
+        self.key_figures = FactStrip(look)
+        self.differs = DiffersCard(look)
+        self.door = Door(look, tr("Q"))
+        self.all_figures = Toggle(look, tr("All figures"), tr("F"), is_on=False)
         self.cycles = parts.cycles
         self.strides = parts.strides
         self.compare = parts.compare
         self.charts = parts.charts
+        self.quality = parts.quality
         self.shown = Text(look, size=14, tone="ink2")
         self.whole = Button(look, tr("Whole recording"), Kind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(look, size=12, tone="ink2", wraps=True)
-        self.facts = FactsTable(look)
-        self.findings = FindingsList(look)
         self._build()
         self._connect()
-        self._on_look_changed()
 
-    def show_analysis(
-        self,
-        analysis: Analysis,
-        session: Sequence[Recording] = (),
-        *,
-        is_prosthetic: bool = False,
-        can_choose: bool = False,
-        who: AgeAndHeight = NOBODY,
-        answer: Callable[[RecordingAnalysis], Answer] | None = None,
-    ) -> None:
-        """Show the recording that was on the screen, if `analysis` has it, else its first walk or first recording.
+    def show_visit(self, visit: Visit, *, can_choose: bool = False, is_live: bool = False) -> None:
+        """Show the recording that was on the screen, if `visit` has it, else its first walk or first recording.
 
         Parameters
         ----------
-        session
-            The session's recordings in order, whose conditions are compared; without them every walk is one of its own.
-        is_prosthetic
-            Whether the affected side of `analysis` wears a prosthesis.
         can_choose
             Whether somebody keeps which strides are left out: see `strides`.
-        who
-            Whose walks they are, as far as that chooses a band.
-        answer
-            Gives the sentences that stand over a walk's curves.
+        is_live
+            Whether the sensors are still worn, so that a free motion can be repeated.
         """
-        self._analysis, self._can_choose, self._who, self._answer = analysis, can_choose, who, answer
+        self._visit, self._can_choose, self._is_live = visit, can_choose, is_live
+        session, analysis = visit.session, visit.analysis
         shown = self.recordings.currentText()
-        parts = conditions_of(analysis, session)
-        self.compare.show_conditions(analysis, parts, is_prosthetic, who)
+        is_prosthetic = session.patient.prosthetic_side in set(Side)
+        parts = conditions_of(analysis, session.recordings)
+        self.compare.show_conditions(analysis, parts, is_prosthetic, age_and_height(session))
         names = [recording.name for recording in analysis.recordings]
         walks = [i for i, recording in enumerate(analysis.recordings) if recording.kind is RecordingKind.WALKING]
         self.recordings.blockSignals(True)
@@ -190,47 +202,77 @@ class ResultPage(Themed):
         self.recordings.blockSignals(False)
         self.recordings.updateGeometry()
         self.recordings.setVisible(bool(names))
-        self.findings.show_findings(analysis.findings)
+        self._offer_beside(has_conditions=len(parts) > 1)
         self._on_recording_changed()
+
+    def set_has_visits(self, has_visits: bool) -> None:
+        """Offer earlier visits to compare with."""
+        self.compare.set_has_visits(has_visits)
 
     def set_room(self, width: float, height: float) -> None:
         """Fold the page as far as its room, in px of the design, asks for it.
 
-        Where there is little room curves, figures and findings are tabs, and the controls take two rows.
+        Where there is little room the key figures join the sentence, and the controls take two rows.
         """
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
-        has_two_charts = is_compact and width >= TWO_CHARTS_FROM
-        columns = 1 if is_compact else 2 if width < THREE_COLUMNS_FROM else 3
-        room = is_compact, width < NARROW_BELOW, has_two_charts, columns, columns > 1 and width >= SPACIOUS_FROM
-        if room != (self._is_compact, self._is_narrow, self._has_two_charts, self._columns_wanted, self._is_spacious):
-            self._is_compact, self._is_narrow, self._has_two_charts, self._columns_wanted, self._is_spacious = room
+        room = is_compact, width < NARROW_BELOW, width >= TWO_CHARTS_FROM, not is_compact and width >= SPACIOUS_FROM
+        if room != (self._is_compact, self._is_narrow, self._has_two_charts, self._is_spacious):
+            self._is_compact, self._is_narrow, self._has_two_charts, self._is_spacious = room
             self._place()
+        self._height = height
+        self._fit_table()
+
+    def _fit_table(self) -> None:
+        """Show as many rows of what differs as leave the charts their room."""
+        frames = (self.cycles.charts.knee, self.cycles.charts.ankle)
+        is_withheld = any(panel.text for frame in frames for panel in frame.withheld.values())
+        taken = BESIDE_TABLE + (WITHHELD if is_withheld else 0) + (NOTE if self.cycles.by_hand.text() else 0)
+        self.differs.set_room(self._height - taken)
 
     def focus(self) -> None:
         """Give the focus to the first choice of the page."""
-        (self.methods if self.view.isHidden() else self.view).focus()
+        if self._behind is Behind.QUALITY:
+            self.quality.focus()
+        else:
+            (self.methods if self.view.isHidden() else self.view).focus()
+
+    def leave_behind(self) -> bool:
+        """Go back to the answer from what stands behind it; whether there was anything to leave."""
+        if self._behind is Behind.NOTHING:
+            return False
+        self._show_behind(Behind.NOTHING)
+        self.door.setFocus()
+        return True
 
     @property
     def recording(self) -> RecordingAnalysis | None:
         """The recording on the screen; None in a session without any that moves."""
-        if self._analysis is None or not self._analysis.recordings:
+        if self._visit is None or not self._visit.analysis.recordings:
             return None
-        return self._analysis.recordings[self.recordings.currentIndex()]
+        return self._visit.analysis.recordings[self.recordings.currentIndex()]
+
+    @property
+    def band_words(self) -> str:
+        """Whose band stands behind the curves and how fast this walk was; empty where no curve stands on one."""
+        is_shown = self.view.choice == ANSWER and self._behind is not Behind.QUALITY
+        return self.cycles.band_words if is_shown else ""
 
     @property
     def tab_order(self) -> list[QWidget]:
         """What takes the focus, in the order of reading."""
-        choices = [*self.view.segments, self.recordings, self.single_strides, self.band, *self.methods.segments]
-        shown = [self.charts, self.whole, *self.strides.tab_order, *self.cycles.tables, *self.compare.tab_order]
-        return [*choices, *shown, self.facts, self.findings]
+        choices = [self.to_answer, *self.view.segments, self.recordings, self.beside, *self.methods.segments]
+        shown = [
+            self.charts,
+            self.whole,
+            *self.strides.tab_order,
+            self.differs.table,
+            *self.cycles.tables,
+            *self.compare.tab_order,
+        ]
+        return [*choices, *shown, *self.quality.tab_order, self.door, self.all_figures]
 
     def _build(self) -> None:
         self._controls = QGridLayout()
-        self._toggles = QWidget()
-        toggles = QHBoxLayout(self._toggles)
-        toggles.setContentsMargins(0, 0, 0, 0)
-        toggles.addWidget(self.single_strides)
-        toggles.addWidget(self.band)
         self._against = QWidget()
         self._against_row = QHBoxLayout(self._against)
         self._against_row.setContentsMargins(0, 0, 0, 0)
@@ -239,7 +281,7 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.recordings, self._toggles, self._against):
+        for widget in (self.recordings, self.beside, self._against):
             choices.addWidget(widget)
         self._curves = QWidget()
         left = QVBoxLayout(self._curves)
@@ -254,33 +296,34 @@ class ResultPage(Themed):
         self._foot = QGridLayout()
         self._foot.setColumnStretch(0, 1)
         left.addLayout(self._foot)
-        self._beside = QWidget()
-        self._right = QVBoxLayout(self._beside)
-        self._right.setContentsMargins(0, 0, 0, 0)
-        self._joints = Card(self._look)
-        self._joints.column.addWidget(Text(self._look, tr("Joints"), size=16, weight=SEMIBOLD))
-        self._joints.column.addWidget(self.facts)
-        self._joints.column.addStretch(1)
-        self._noticed = Card(self._look)
-        self._noticed.column.addWidget(Text(self._look, tr("Findings"), size=16, weight=SEMIBOLD))
-        self._noticed.column.addWidget(self.findings, 1)
-        self._right.addWidget(self.cycles.time_distance)
-        self._right.addWidget(self._joints)
-        self._right.addWidget(self._noticed, 1)
+        self._head = QHBoxLayout()
+        self._head.addWidget(self.answer, 1)
+        self._head.addWidget(self.key_figures, 0, Qt.AlignmentFlag.AlignTop)
+        self._figures = QWidget()
+        self._tables = QBoxLayout(QBoxLayout.Direction.LeftToRight, self._figures)
+        self._tables.setContentsMargins(0, 0, 0, 0)
+        self._tables.addWidget(self.cycles.peaks, 1)
+        self._tables.addWidget(self.cycles.time_distance, 1)
         self._columns = QHBoxLayout()
         for widget, share in (
             (self._curves, 1),
-            (self.cycles, 2),
+            (self.cycles, 1),
             (self.strides, 0),
             (self.compare, 1),
-            (self.cycles.peaks, 0),
-            (self._beside, 0),
+            (self._figures, 1),
+            (self.quality, 1),
         ):
             self._columns.addWidget(widget, share)
+        self._bottom = QHBoxLayout()
+        self._bottom.addWidget(self.door, 1)
+        self._bottom.addWidget(self.all_figures)
+        self.all_figures.set_face(height=BOTTOM)
         self._page = QVBoxLayout(self)
         self._page.addLayout(self._controls)
-        self._page.addWidget(self.answer)
+        self._page.addLayout(self._head)
         self._page.addLayout(self._columns, 1)
+        self._page.addWidget(self.differs)
+        self._page.addLayout(self._bottom)
         policy = self.whole.sizePolicy()
         policy.setRetainSizeWhenHidden(True)  # what comes and goes must not move what stays
         self.whole.setSizePolicy(policy)
@@ -290,145 +333,192 @@ class ResultPage(Themed):
         self.view.chosen.connect(self._on_view_chosen)
         self.methods.chosen.connect(self._on_method_chosen)
         self.recordings.currentIndexChanged.connect(self._on_recording_changed)
+        self.beside.currentIndexChanged.connect(self._on_beside_changed)
         self.charts.view_changed.connect(self._on_view_changed)
         self.whole.clicked.connect(self.charts.show_whole)
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
-        for toggle, slot in (
-            (self.single_strides, self._show_strides),
-            (self.band, self._on_band_toggled),
+        self.door.clicked.connect(self._on_door)
+        self.to_answer.clicked.connect(self.leave_behind)
+        self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
+        for key, button in (
+            (tr("Q"), self.door),
+            (tr("F"), self.all_figures),
+            (tr("Esc"), self.to_answer),
+            (tr("E"), self.quality.engineering),
         ):
-            toggle.toggled.connect(slot)
-            shortcut = QShortcut(QKeySequence(toggle.key), toggle)  # asleep while its toggle is hidden
-            shortcut.activated.connect(toggle.toggle)
+            shortcut = QShortcut(QKeySequence(key), button)  # asleep while its button is hidden
+            shortcut.activated.connect(button.click)
 
     def _place(self) -> None:
         """Put the controls into one row, where they fit; the methods go under the curves where they do not."""
-        for widget in (self.view, self.methods, self._choices):
+        for widget in (self.view, self.to_answer, self.methods, self._choices):
             self._controls.removeWidget(widget)
         for widget in (self._notes, self.methods, self.whole):
             self._foot.removeWidget(widget)
         left = Qt.AlignmentFlag.AlignLeft
         self._controls.addWidget(self.view, 0, 0, left)
-        self._controls.setColumnStretch(3, 1)
-        if self._is_compact:
+        self._controls.addWidget(self.to_answer, 0, 1, left)
+        self._controls.setColumnStretch(4, 1)
+        if self._is_narrow:
             self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
             self._against_row.insertWidget(2, self.compare.view)
         else:
-            self._controls.addWidget(self._choices, 0, 1)
+            self._controls.addWidget(self._choices, 0, 2)
         if self._is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
             self._foot.addWidget(self._notes, 2, 0)
-        elif self._columns_wanted < 3:
+        elif not self._is_spacious:
             self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
             self._foot.addWidget(self._notes, 1, 0)
             self._foot.addWidget(self.whole, 1, 1)
         else:
-            self._controls.addWidget(self.methods, 0, 2)
+            self._controls.addWidget(self.methods, 0, 3)
             self._foot.addWidget(self._notes, 0, 0)
             self._foot.addWidget(self.whole, 0, 1)
         self.compare.set_room(self._is_compact, self._is_spacious)
-        self.strides.set_charts_beside(not self._is_narrow)
-        self.findings.setMinimumHeight(self._look.theme.px(LEAST_FINDINGS) if self._columns_wanted == 2 else 0)
+        self.strides.set_charts_beside(not self._is_compact)
+        self.quality.set_room(self._is_compact)
         for frame in (self.charts.knee, self.charts.ankle):
             frame.set_narrow(self._is_narrow)
-        self.charts.phases.set_narrow(self._is_narrow or not self._is_compact)  # facts beside it leave it less room
-        self.cycles.set_room(self._columns_wanted < 3, self._has_two_charts)
-        self._place_peaks()
+        self.charts.phases.set_narrow(self._is_narrow)
+        self.cycles.set_room(self._has_two_charts)
+        self.cycles.charts.set_brief(self._is_compact)
+        stacked = QBoxLayout.Direction.TopToBottom if self._is_narrow else QBoxLayout.Direction.LeftToRight
+        self._tables.setDirection(stacked)
+        self._on_look_changed()
+        self._tell_answer()
         self._offer()
 
+    def _offer_beside(self, *, has_conditions: bool) -> None:
+        before = self.beside.currentData()
+        self.beside.blockSignals(True)
+        self.beside.clear()
+        self.beside.addItem(tr("Beside the band"), Beside.BAND)
+        self.beside.addItem(tr("The legs alone"), Beside.LEGS)
+        if has_conditions:
+            self.beside.addItem(tr("Another walk \u2026"), Beside.CONDITIONS)
+        if self.compare.has_visits:
+            self.beside.addItem(tr("An earlier visit \u2026"), Beside.VISITS)
+        self.beside.setCurrentIndex(max(self.beside.findData(before), 0))
+        self.beside.blockSignals(False)
+        self.beside.updateGeometry()
+
     def _offer(self) -> None:
-        """Offer the views that this recording and this room have."""
+        """Offer the views that this recording has."""
         recording = self.recording
         is_walk = recording is not None and recording.kind is RecordingKind.WALKING
         has_strides = recording is not None and any(len(gait.strides) for gait in recording.gait.values())
         self.view.blockSignals(True)
         self.view.set_word(WHOLE, tr(WALK if is_walk else RECORDING))
-        self.view.set_offered(MEAN, is_walk)
-        self.view.set_offered(COMPARE, is_walk)
-        self.view.set_offered(STRIDES, is_walk)
-        for view in (MEAN, STRIDES, COMPARE):
+        for view in (ANSWER, COMPARE, STRIDES):
+            self.view.set_offered(view, is_walk)
             self.view.set_reason(view, "" if has_strides else tr("no strides"))
-        self.view.set_offered(FIGURES, self._columns_wanted < 3 and has_strides)
-        self.view.set_offered(FACTS, self._is_compact)
-        if self.view.choice in (MEAN, WHOLE):
+        if self.view.choice in (ANSWER, WHOLE):
             self.view.choose(self._wanted if is_walk and has_strides else WHOLE)
         self.view.blockSignals(False)
-        self.view.setVisible(is_walk or self._is_compact)
+        self._show_parts()
+
+    def _show_behind(self, behind: Behind) -> None:
+        self._behind = behind
+        self.all_figures.show_on(behind is Behind.FIGURES)
         self._show_parts()
 
     def _show_parts(self) -> None:
-        """Show what belongs to the view; beside the curves only where there is room."""
-        view, is_wide = self.view.choice, not self._is_compact
-        has_figures = view == FIGURES or (view == MEAN and is_wide)
-        self.methods.setVisible(view == WHOLE)
+        """Show what belongs to the view, or what stands behind the answer."""
+        recording, view = self.recording, self.view.choice
+        is_walk = recording is not None and recording.kind is RecordingKind.WALKING
+        has_answer = is_walk and view == (ANSWER if self.view.segments[0].isEnabled() else WHOLE)
+        has_door = self._visit is not None and view in (ANSWER, WHOLE)
+        behind = self._behind if has_answer or (has_door and self._behind is Behind.QUALITY) else Behind.NOTHING
+        is_answer = view == ANSWER and behind is Behind.NOTHING
+        is_quality = behind is Behind.QUALITY
+        self.view.setVisible(is_walk and not is_quality)
+        self.to_answer.setVisible(is_quality)
+        self.methods.setVisible(view == WHOLE and not is_quality)
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
+        self.beside.setVisible(view == ANSWER and not is_quality)
         self._against.setVisible(view == COMPARE)
         self.compare.setVisible(view == COMPARE)
-        has_answer = view == (MEAN if self.view.segments[0].isEnabled() else WHOLE)
-        self.answer.setVisible(has_answer and bool(self.answer.text))
-        self._toggles.setVisible(view == MEAN or (view == STRIDES and not self._is_narrow))
-        self.single_strides.setVisible(view == MEAN)
-        self._curves.setVisible(view == WHOLE)
-        self.cycles.setVisible(view == MEAN or (view == STRIDES and not self._is_narrow))
-        self.cycles.charts.set_side_by_side(self._has_two_charts and view == MEAN)
-        self.cycles.set_notes_shown(view == MEAN)
+        self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
+        self.key_figures.setVisible(is_answer and not self._is_compact)
+        self._curves.setVisible(view == WHOLE and not is_quality)
+        self.cycles.setVisible(is_answer or (view == STRIDES and not self._is_compact))
+        self.cycles.charts.set_side_by_side(self._has_two_charts and view == ANSWER)
+        self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
-        self.cycles.peaks.setVisible(has_figures)
-        self.cycles.time_distance.setVisible(has_figures and (self._columns_wanted != 2 or view == FIGURES))
-        self._joints.setVisible(view == FACTS or (view == WHOLE and is_wide))
-        is_answered = not self.answer.isHidden() and self._columns_wanted == 2  # which takes the findings' room
-        has_findings = view == FACTS or (is_wide and view not in (COMPARE, STRIDES, FIGURES) and not is_answered)
-        self._noticed.setVisible(has_findings)
-        self._beside.setVisible((is_wide and view not in (COMPARE, STRIDES)) or view in (FIGURES, FACTS))
-        is_row = (view == FACTS and not self._is_narrow) or (view == FIGURES and self._columns_wanted == 2)
-        self._right.setDirection(QBoxLayout.Direction.LeftToRight if is_row else QBoxLayout.Direction.TopToBottom)
-        is_stack = view == FIGURES and self._is_narrow
-        self._columns.setDirection(QBoxLayout.Direction.TopToBottom if is_stack else QBoxLayout.Direction.LeftToRight)
-        self._right.activate()
+        self._figures.setVisible(behind is Behind.FIGURES)
+        self.quality.setVisible(is_quality)
+        self.differs.setVisible(is_answer and not self._is_compact and self.differs.has_rows)
+        self.door.setVisible(has_door and not is_quality)
+        self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
-
-    def _place_peaks(self) -> None:
-        """Put the peaks over the findings where there is room for one column of tables only."""
-        for layout in (self._right, self._columns):
-            layout.removeWidget(self.cycles.peaks)  # else PySide goes on holding its old item, which Qt deletes
-        if self._columns_wanted == 2:
-            self._right.insertWidget(0, self.cycles.peaks)
-        else:
-            self._columns.insertWidget(self._columns.indexOf(self._beside), self.cycles.peaks)
+        self.told.emit()
 
     def _on_view_chosen(self) -> None:
-        if self.view.choice in (MEAN, WHOLE) and self.view.segments[0].isEnabled():
+        if self.view.choice in (ANSWER, WHOLE) and self.view.segments[0].isEnabled():
             self._wanted = self.view.choice
         self._show_parts()
 
+    def _on_door(self) -> None:
+        self._show_behind(Behind.QUALITY)
+        self.quality.focus()
+
     def _on_recording_changed(self) -> None:
-        recording = self.recording
+        recording, visit = self.recording, self._visit
         self.charts.setEnabled(recording is not None)
-        if recording is None or self._analysis is None:
+        self._show_quality()
+        if recording is None or visit is None:
             self.charts.show_recording(tr("no recording"), np.zeros(0), is_simulated=False)
-            self.facts.show_joints({})
             self._offer()
             return
+        analysis = visit.analysis
         has_orientation = any(angle.orientation_rad is not None for angle in recording.joints.values())
         self.methods.set_reason(ORIENTATION, "" if has_orientation else tr("no magnetometer"))
-        calibrated, is_simulated = self._analysis.calibrated_for(recording), self._analysis.is_simulated
-        self.charts.show_recording(recording.name, recording.time_s, is_simulated, recording.gait)
-        self.cycles.show_walk(recording, is_simulated, self._who, sides_with_band(recording))
-        self._tell_answer(recording)
+        self.charts.show_recording(recording.name, recording.time_s, analysis.is_simulated, recording.gait)
+        who = age_and_height(visit.session)
+        self.cycles.show_walk(recording, analysis.is_simulated, who, sides_with_band(recording))
         self.strides.show_walk(recording, self._can_choose)
-        self.facts.show_joints(calibrated)
+        if recording.kind is RecordingKind.WALKING:
+            self._show_facts(Facts(visit, recording))
+        self._tell_answer()
         self._on_method_chosen()
         self._offer()
 
-    def _tell_answer(self, recording: RecordingAnalysis) -> None:
-        if self._answer is None or recording.kind is not RecordingKind.WALKING:
+    def _show_facts(self, facts: Facts) -> None:
+        self.key_figures.show_figures(key_figures(facts))
+        self.differs.show_facts(facts)
+        self._fit_table()
+
+    def _show_quality(self) -> None:
+        """Say what can be read of a walk, and of anything else what was noticed."""
+        recording, visit = self.recording, self._visit
+        if visit is None:
+            return
+        if recording is not None and recording.kind is RecordingKind.WALKING:
+            facts = Facts(visit, recording)
+            found, strides, calibrated = data_quality(facts), strides_in_short(facts), facts.calibrated
+            joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
+        else:
+            found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
+            calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
+        sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
+        self.door.tell(*door_words(found))
+        self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
+        self.quality.show_engineering(calibrated, visit.analysis.findings)
+
+    def _tell_answer(self) -> None:
+        """Say what came of the walk; the key figures follow where there is no room for them beside it."""
+        recording, visit = self.recording, self._visit
+        if recording is None or visit is None or recording.kind is not RecordingKind.WALKING:
             self.answer.tell(None, "")
             return
-        answer = self._answer(recording)
-        self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, answer.then)
+        facts = Facts(visit, recording)
+        answer = answer_of(facts)
+        then = [answer.then, figures_in_short(facts) if self._is_compact else ""]
+        self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 
     def _on_method_chosen(self) -> None:
         recording = self.recording
@@ -442,9 +532,9 @@ class ResultPage(Themed):
         )
 
     def _show_strides(self) -> None:
-        """Draw single strides where they are wished, or chosen from; the one in force only there."""
+        """Draw single strides where they are chosen from; the one in force only there."""
         is_choosing = self.view.choice == STRIDES
-        self.cycles.charts.set_strides_shown(is_choosing or self.single_strides.isChecked())
+        self.cycles.charts.set_strides_shown(is_choosing)
         self.cycles.charts.show_stride(self._stride if is_choosing else {})
 
     def _on_stride_chosen(self, curves_deg: Mapping[Joint, FloatArray]) -> None:
@@ -455,9 +545,17 @@ class ResultPage(Themed):
         if self.view.choice == STRIDES:
             self.strides.choose_nearest(is_knee, percent, angle_deg, self.cycles.charts.heights_deg)
 
-    def _on_band_toggled(self, is_shown: bool) -> None:
-        self.cycles.charts.set_band_shown(is_shown)
-        self.compare.set_band_shown(is_shown)
+    def _on_beside_changed(self) -> None:
+        beside = self.beside.currentData()
+        if beside in (Beside.CONDITIONS, Beside.VISITS):
+            self.beside.blockSignals(True)
+            self.beside.setCurrentIndex(0)
+            self.beside.blockSignals(False)
+            self.compare.choose_kind(ComparedKind.CONDITIONS if beside is Beside.CONDITIONS else ComparedKind.VISITS)
+            self.view.choose(COMPARE)
+        is_band = self.beside.currentData() is Beside.BAND
+        self.cycles.charts.set_band_shown(is_band)
+        self.told.emit()
 
     def _on_view_changed(self, is_whole: bool, words: str) -> None:
         self.shown.setText(words)
@@ -467,12 +565,16 @@ class ResultPage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        margin = px(16)
-        self._page.setContentsMargins(margin, px(16), margin, px(12))
+        self._page.setContentsMargins(
+            px(16), px(12 if self._is_compact else 16), px(16), px(8 if self._is_compact else 12)
+        )
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(12))
         self._columns.setSpacing(px(12))
-        for side in (self._curves, self._beside, self._toggles, self._against, self._choices):
+        self._head.setSpacing(px(24))
+        self._bottom.setSpacing(px(12))
+        self._tables.setSpacing(px(12))
+        for side in (self._curves, self._against, self._choices):
             layout = side.layout()
             assert layout is not None
             layout.setSpacing(px(12))

@@ -36,21 +36,23 @@ from app.reports.walk_figures import (
     doubt_in,
     is_mean_enough,
     is_spread_enough,
-    reason_in_words,
+    verdict_of,
+    why_in_words,
 )
 from app.theme import Look
 from app.widgets.card import Card
-from app.widgets.chip import LETTERS, SideKey
+from app.widgets.chip import LETTERS
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.widgets.verdict_chip import VerdictChip
 from app.widgets.withheld_panel import WithheldPanel
-from app.wording import joined, later, tr
+from app.wording import capitalised, joined, later, tr
 from core.body import Joint, Side
 from core.gait.cycles import POINTS
 from core.norms import ReferenceCurves
 from core.samples import FloatArray
-from core.verdicts.model import JointVerdicts
+from core.verdicts.model import JointVerdicts, Verdict
 
 LEAST_SIZE = (284, 160)
 LABEL_HEIGHT = 24  # toe-off stands above the plot
@@ -142,6 +144,11 @@ class CycleCharts(Themed):
             frame.chart.has_band = is_shown
             frame.chart.redraw()
 
+    def set_brief(self, is_brief: bool) -> None:
+        """Leave out what the axis and the icons say as well, where there is little room."""
+        for frame in self.frames:
+            frame.set_brief(is_brief)
+
     def set_side_by_side(self, is_side_by_side: bool) -> None:
         way = QBoxLayout.Direction.LeftToRight if is_side_by_side else QBoxLayout.Direction.TopToBottom
         self._box.setDirection(way)
@@ -159,7 +166,7 @@ class CycleFrame(Card):
     def __init__(self, look: Look, chart: "CycleChart", is_knee: bool) -> None:
         self._is_knee = is_knee
         self.chart = chart
-        self._keys = {side: SideKey(look, side) for side in Side}
+        self.chips = {side: VerdictChip(look, side) for side in Side}
         self._mark = IconMark(look, Icon.WARNING, size=18)
         self._note = Text(look, size=12, weight=MEDIUM, wraps=True)
         self.withheld = {side: WithheldPanel(look, side) for side in Side}
@@ -169,10 +176,11 @@ class CycleFrame(Card):
         head = QHBoxLayout()
         head.setSpacing(8)
         head.addWidget(Text(look, title_in_words(is_knee), size=16, weight=SEMIBOLD))
-        head.addWidget(Text(look, sign_in_words(is_knee), size=12, tone="ink2"))
+        self._sign = Text(look, sign_in_words(is_knee), size=12, tone="ink2")
+        head.addWidget(self._sign)
         head.addStretch(1)
         for side in Side:
-            head.addWidget(self._keys[side])
+            head.addWidget(self.chips[side])
         notes = QHBoxLayout()
         notes.setSpacing(8)
         notes.addWidget(self._mark, 0, Qt.AlignmentFlag.AlignTop)
@@ -192,16 +200,17 @@ class CycleFrame(Card):
     ) -> None:
         """Draw what may be seen; without a height of every leg that is drawn, all are drawn about their own mean."""
         doubts = {side: why for side, found in verdicts.items() if side in cycles and (why := doubt_in(found))}
-        reasons = {side: reason_in_words(found) for side, found in verdicts.items() if side in cycles}
+        reasons = {side: why_in_words(found) for side, found in verdicts.items() if side in cycles}
         is_about_mean = any(why != WITHHELD for why in doubts.values())
         self.heights_deg = {side: cycle.height_deg for side, cycle in cycles.items()} if is_about_mean else {}
         drawn = {side: cycle.about_mean() for side, cycle in cycles.items()} if is_about_mean else cycles
         withheld = frozenset(side for side, why in doubts.items() if why == WITHHELD)
         self.chart.show_cycles(drawn, is_simulated, withheld, is_about_mean)
-        for side, key in self._keys.items():
-            key.setVisible(side in cycles and side not in withheld)
+        for side, chip in self.chips.items():
+            chip.setVisible(side in cycles)
+            chip.tell(verdict_of(verdicts[side]) if side in verdicts else Verdict.READ, has_line=side not in withheld)
             self.withheld[side].tell(reasons[side] if side in withheld else "")
-        self._note.setText(" ".join(self._notes(cycles, doubts, reasons)))
+        self._note.setText(" ".join(self._notes(cycles, doubts)))
         for widget in (self._mark, self._note):
             widget.setVisible(bool(self._note.text()))
         self._show_chart()
@@ -212,6 +221,11 @@ class CycleFrame(Card):
         """Draw one stride (101,) over all others, bold."""
         self.chart.stride = (stride[0], stride[1] - self.heights_deg.get(stride[0], 0.0)) if stride else None
         self.chart.redraw()
+
+    def set_brief(self, is_brief: bool) -> None:
+        self._sign.setVisible(not is_brief)
+        for chip in self.chips.values():
+            chip.set_brief(is_brief)
 
     def set_strides_shown(self, is_shown: bool) -> None:
         self.chart.has_strides = is_shown
@@ -251,24 +265,19 @@ class CycleFrame(Card):
                     toe_off_percent=cycle.toe_off_percent,
                 )
             )
+        for side, chip in self.chips.items():
+            if side in self.chart.cycles and chip.verdict is Verdict.CARE:
+                said.append(f"{capitalised(chip.accessibleName())}.")
         said += [self.note] if self.note else []
         return " ".join(said) or nothing_in_words(self._is_knee)
 
-    def _notes(
-        self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str], reasons: Mapping[Side, str]
-    ) -> list[str]:
+    def _notes(self, cycles: Mapping[Side, SideCycle], doubts: Mapping[Side, str]) -> list[str]:
         notes = []
         for why, what in DOUBTS.items():
             sides = [LETTERS[side] for side in doubts if doubts[side] == why]
             notes += [tr(what).format(sides=joined(sides))] if sides else []
         if self.chart.is_about_mean:
             notes.append(tr("0° is the mean of the stride."))
-        with_care: dict[str, list[str]] = {}
-        for side, reason in reasons.items():
-            if reason and side not in doubts:
-                with_care.setdefault(reason, []).append(LETTERS[side])
-        for reason, sides in with_care.items():
-            notes.append(tr("{sides}: read with care. {reason}").format(sides=joined(sides), reason=reason))
         if not cycles:
             notes.append(nothing_in_words(self._is_knee))
         empty = [LETTERS[s] for s, cycle in cycles.items() if not cycle.mean.n and s not in self.chart.withheld]

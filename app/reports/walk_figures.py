@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from app.gates_in_words import gate_sentence
+from app.gates_in_words import GateWords, gate_words
 from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.chosen_strides import left_out_by_hand
@@ -19,7 +19,7 @@ from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
 from core.results import RecordingAnalysis, SideGait
 from core.samples import FloatArray
-from core.verdicts.model import JointVerdicts, Verdict
+from core.verdicts.model import JointVerdicts, Verdict, worst
 from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, used_cycles
 
 
@@ -225,14 +225,30 @@ def doubt_in(found: JointVerdicts) -> str | None:
     return NO_ZERO if any(reason.gate == "zero" for reason in found.height.reasons) else NO_HEIGHT
 
 
+def verdict_of(found: JointVerdicts) -> Verdict:
+    """What may be read of a joint's curve as it is drawn; a height that is withheld is said beside it."""
+    parts = (part.verdict for part in (found.shape, found.sign, found.height))
+    gravest = worst(part for part in parts if part is not Verdict.NOT_MEASURED)
+    return Verdict.CARE if gravest is Verdict.WITHHELD and doubt_in(found) != WITHHELD else gravest
+
+
 def reason_in_words(found: JointVerdicts) -> str:
     """The gravest reason against a joint's curve and what to do: of a withheld shape, else of a height, else care."""
+    return " ".join(filter(None, _words_of(found)))
+
+
+def why_in_words(found: JointVerdicts) -> str:
+    """The same without what to do."""
+    return _words_of(found).why
+
+
+def _words_of(found: JointVerdicts) -> GateWords:
     for wanted in (Verdict.WITHHELD, Verdict.CARE):
         for part in (found.shape, found.height):
             for reason in part.reasons:
                 if reason.verdict is wanted:
-                    return gate_sentence(reason)
-    return ""
+                    return gate_words(reason)
+    return GateWords("")
 
 
 def band_of_peak(

@@ -47,7 +47,7 @@ class Chip(QWidget):
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(_leg_name(side))
+        self.setAccessibleName(leg_name(side))
 
     def sizeHint(self) -> QSize:
         chip = self._look.theme.px(CHIP)
@@ -64,7 +64,7 @@ class SideKey(QWidget):
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
-        self.setAccessibleName(_leg_name(side))
+        self.setAccessibleName(leg_name(side))
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -81,5 +81,5 @@ class SideKey(QWidget):
         painter.drawLine(chip + theme.px(8), middle, self.width(), middle)
 
 
-def _leg_name(side: Side) -> str:
+def leg_name(side: Side) -> str:
     return tr("left leg") if side is Side.LEFT else tr("right leg")

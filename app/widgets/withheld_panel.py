@@ -2,7 +2,7 @@
 
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
-from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.gates_in_words import verdict_word
 from app.theme import Look
@@ -25,15 +25,12 @@ class WithheldPanel(Themed):
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self._word = Text(look, capitalised(verdict_word(Verdict.WITHHELD)), size=14, weight=SEMIBOLD)
+        self._word = Text(look, capitalised(verdict_word(Verdict.WITHHELD)), size=12, weight=SEMIBOLD)
         self._why = Text(look, size=12, wraps=True)
-        self._words = QVBoxLayout()
-        self._words.addWidget(self._word)
-        self._words.addWidget(self._why)
-        self._words.addStretch(1)
         self._row = QHBoxLayout(self)
-        self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignTop)
-        self._row.addLayout(self._words, 1)
+        self._row.addWidget(Chip(look, side), 0, Qt.AlignmentFlag.AlignVCenter)
+        self._row.addWidget(self._word, 0, Qt.AlignmentFlag.AlignVCenter)
+        self._row.addWidget(self._why, 1, Qt.AlignmentFlag.AlignVCenter)
         self._on_look_changed()
         self.tell("")
 
@@ -63,7 +60,6 @@ class WithheldPanel(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._row.setContentsMargins(px(PADDING), px(PADDING), px(PADDING), px(PADDING))
+        self._row.setContentsMargins(px(PADDING), px(PADDING / 2), px(PADDING), px(PADDING / 2))
         self._row.setSpacing(px(8))
-        self._words.setSpacing(px(2))
         self.setMinimumWidth(px(LEAST_WIDTH))

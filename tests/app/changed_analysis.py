@@ -4,10 +4,13 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
+from app.reports.patient_report.request import Visit
+from app.reports.reference_bands import NOBODY
 from core.body import Joint, Side
 from core.gait.strides import Reason
+from core.norms import AgeAndHeight
 from core.results import Analysis, RecordingAnalysis
-from core.samples import RecordingKind
+from core.samples import RecordingKind, Session
 from core.verdicts.gates import judged
 
 
@@ -46,6 +49,13 @@ def with_few_strides(analysis: Analysis, **counts: int) -> Analysis:
             if Side(side) in one.gait:
                 recordings[k] = with_used(recordings[k], Side(side), count)
     return judged(replace(analysis, recordings=tuple(recordings)))
+
+
+def visit_of(analysis: Analysis, session: Session, who: AgeAndHeight = NOBODY) -> Visit:
+    """The analysis with the session it came of, walked by a patient of this age and height."""
+    born = 2026 - who.age_years if who.age_years is not None else None
+    patient = replace(session.patient, birth_year=born, height_m=who.height_m)
+    return Visit(replace(session, patient=patient, started="2026-11-23T10:00:00+00:00"), analysis)
 
 
 def walk_of(analysis: Analysis) -> RecordingAnalysis:

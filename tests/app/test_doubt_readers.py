@@ -8,7 +8,6 @@ import pytest
 from app.pages.result_page import ResultPage
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.request import ReportRequest, Visit
-from app.reports.reference_bands import age_and_height
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -33,7 +32,7 @@ def read(session: Session, analysis: Analysis, result_page: ResultPage) -> tuple
     """What the report says, and what the screen says."""
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
     report = make_report(ReportRequest(Visit(session, analysis), ("walk 1",), made_at, "1.2.3"))
-    result_page.show_analysis(analysis, session.recordings, who=age_and_height(session))
+    result_page.show_visit(Visit(session, analysis))
     return said_in_report(report), said_on_screen(result_page)
 
 

@@ -6,13 +6,13 @@ They are the sentences of the report's first page, so that nobody reads on paper
 from dataclasses import dataclass
 from enum import StrEnum
 
+from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import Visit
-from app.reports.patient_report.what_stands_out import caveat, judged_differences, nothing_found, ranked_findings
+from app.reports.patient_report.what_stands_out import judged_differences, nothing_found, ranked_findings
 from app.reports.walk_figures import is_mean_enough
 from app.wording import joined, later, tr
 from core.body import Side
-from core.results import RecordingAnalysis
+from core.verdicts.model import Verdict
 
 BANDS_ON_SCREEN = later("the band"), later("the band")
 
@@ -40,9 +40,8 @@ class Answer:
     then: str = ""
 
 
-def answer_of(visit: Visit, walk: RecordingAnalysis) -> Answer:
+def answer_of(facts: Facts) -> Answer:
     """The weightiest finding of a walk and the one after it, or the caveat where there is no other."""
-    facts = Facts(visit, walk)
     strides = {side: facts.strides(side) for side in facts.gait}
     if not strides:
         first = tr("Nothing can be read of this walk: no foot or shank sensor told a stride.")
@@ -51,7 +50,7 @@ def answer_of(visit: Visit, walk: RecordingAnalysis) -> Answer:
         counted = joined([f"{side[0].upper()}\u00a0{strides[side]}" for side in Side if side in strides])
         first = tr("Too few strides for a mean: {counted}.").format(counted=counted)
         return Answer(Outcome.UNREADABLE, first, tr("Walk once more, further or longer."))
-    last = caveat(facts, None)
+    last = _brief_caveat(facts)
     if found := ranked_findings(facts, None, BANDS_ON_SCREEN):
         beside = [found[1].said] if len(found) > 1 else last
         return Answer(Outcome.DIFFERS, found[0].said, " ".join(filter(None, [found[0].evidence, *beside])))
@@ -59,3 +58,9 @@ def answer_of(visit: Visit, walk: RecordingAnalysis) -> Answer:
     judged = judged_differences(facts, None)
     is_none = bool(judged) and not any(one.exceeds for one in judged)
     return Answer(Outcome.NOTHING if is_none else Outcome.OPEN, first, " ".join([*others, *last]))
+
+
+def _brief_caveat(facts: Facts) -> list[str]:
+    """What cannot be read; why, and what to do, stands one step behind the answer."""
+    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,))]
+    return [tr("Withheld: {where}.").format(where=withheld[0][:1].lower() + withheld[0][1:])] if withheld else []

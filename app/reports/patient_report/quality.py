@@ -3,8 +3,9 @@
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 
-from app.gates_in_words import gate_sentence, verdict_word
+from app.gates_in_words import GateWords, gate_words, verdict_word
 from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import CARE, NOTHING, fixed
 from app.wording import NAMES, capitalised, joined, name_of, side_name, tr, tr_n
@@ -56,17 +57,47 @@ def caveats(
     """
     if not facts.gait:
         return [tr("No foot or shank sensor told a stride of this walk.")]
-    places: dict[str, dict[Place, Verdict]] = {}
+    return [f"{one.where}: {one.said}" for one in causes(facts, of, is_of_joints=is_of_joints)]
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """Why something is withheld or read with care, said once for every place of which it holds alike.
+
+    `where` names the places, `gate` is that of `core.verdicts.gates`.
+    """
+
+    gate: str
+    verdict: Verdict
+    places: tuple[Place, ...]
+    where: str
+    words: GateWords
+
+    @property
+    def said(self) -> str:
+        return " ".join(filter(None, self.words))
+
+
+def causes(
+    facts: Facts, of: Iterable[Verdict] = (Verdict.WITHHELD, Verdict.CARE), *, is_of_joints: bool = False
+) -> list[Cause]:
+    """Every reason of a walk with one of these verdicts, in their order.
+
+    `is_of_joints`: of the joints alone, not of the legs' timing and distance.
+    """
+    places: dict[tuple[str, GateWords], dict[Place, Verdict]] = {}
     for place, reason in _reasons(facts.verdicts):
         if isinstance(place, Joint) or not is_of_joints:
-            known = places.setdefault(gate_sentence(reason), {})
+            known = places.setdefault((reason.gate, gate_words(reason)), {})
             known[place] = worst((reason.verdict, known.get(place, Verdict.READ)))
-    gravest = {said: worst(known.values()) for said, known in places.items()}
-    wanted = list(of)
-    told = sorted((said for said in places if gravest[said] in wanted), key=lambda said: wanted.index(gravest[said]))
-    # what one reason withholds names it; what it leaves to be read with care beside that is in the table
-    where = {said: [place for place, verdict in places[said].items() if verdict is gravest[said]] for said in told}
-    return [f"{_where(facts, where[said])}: {said}" for said in told]
+    wanted, found = list(of), []
+    for (gate, words), known in places.items():
+        gravest = worst(known.values())
+        # what one reason withholds names it; what it leaves to be read with care beside that is in the table
+        where = tuple(place for place, verdict in known.items() if verdict is gravest)
+        if gravest in wanted:
+            found.append(Cause(gate, gravest, where, _where(facts, where), words))
+    return sorted(found, key=lambda one: wanted.index(one.verdict))
 
 
 def _reasons(verdicts: Verdicts) -> Iterator[tuple[Place, GateReason]]:
@@ -200,7 +231,12 @@ def _zero(facts: Facts) -> str:
     return tr("standing; goniometer for the {joints}").format(joints=joined(joints))
 
 
-def _straps(facts: Facts) -> str:
+def slipped_straps(facts: Facts) -> list[Site]:
+    """Sensors whose strap slipped in this walk."""
     sites = [_site_of(finding) for finding in _about_walk(facts) if finding.key == "strap_slipped"]
-    names = [name_of(site) for site in sites if site is not None]
+    return [site for site in sites if site is not None]
+
+
+def _straps(facts: Facts) -> str:
+    names = [name_of(site) for site in slipped_straps(facts)]
     return tr("slipped: {sites}").format(sites=joined(names)) if names else tr("no slip found")

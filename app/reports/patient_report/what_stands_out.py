@@ -156,7 +156,7 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
             continue
         is_more = found.difference > 0
         topics = (_topic(first, column, is_more), _topic(second, column, not is_more))
-        unit, decimals = _unit(column)
+        unit, decimals = unit_and_decimals(column)
         evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
         said = _leg_beside_leg(facts, column, found)
         yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence)
@@ -165,7 +165,7 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
 def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
     """How one leg's figure differs from the other's, in the words of who would say it."""
     first, second = facts.first_and_second
-    unit, decimals = _unit(column)
+    unit, decimals = unit_and_decimals(column)
     is_less = found.difference < 0
     match column:
         case "knee_range_deg" | "ankle_range_deg":
@@ -228,14 +228,14 @@ def _beyond_band(facts: Facts, bands: tuple[str, str]) -> Iterator[Candidate]:
             low, high = figure.band
             away = (value.mean - (low + high) / 2) / ((high - low) / 2)
             if abs(away) > MAX_AWAY_SD:
-                unit, decimals = _unit(column)
+                unit, decimals = unit_and_decimals(column)
                 pattern = (
                     tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD below.")
                     if away < 0
                     else tr("{measure}, {side}: {value}; {group} {band}: more than 2\u00a0SD above.")
                 )
                 said = pattern.format(
-                    measure=capitalised(_measure(column)),
+                    measure=capitalised(measure_in_words(column)),
                     side=role(facts, side),
                     group=tr(bands[1]),
                     value=fixed(value.mean, decimals) + unit,
@@ -294,7 +294,7 @@ def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
 
 def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     """One figure of one part beside that of the first."""
-    unit, decimals = _unit(row.measure.column)
+    unit, decimals = unit_and_decimals(row.measure.column)
     is_visits = comparison is not None and comparison.kind is Kind.VISITS
     pattern = (
         tr("{side}, {measure}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
@@ -303,7 +303,7 @@ def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     )
     return pattern.format(
         side=capitalised(role(facts, row.side)),
-        measure=_measure(row.measure.column),
+        measure=measure_in_words(row.measure.column),
         value=fixed(row.value.mean, decimals) + unit,
         other=fixed(row.other.mean, decimals) + unit,
         this=typed(row.part.name, CONDITION_LENGTH),
@@ -328,14 +328,14 @@ def _topic(side: Side, column: str, is_more: bool) -> Topic:
     return (joint, None, is_more) if joint is not None else (side, _RANKS[QUANTITIES[column]], is_more)
 
 
-def _unit(column: str) -> tuple[str, int]:
+def unit_and_decimals(column: str) -> tuple[str, int]:
     """A column's unit as it follows a number, and its decimals."""
     if column.endswith("_deg"):
         return "°", 1
     return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
 
 
-def _measure(column: str) -> str:
+def measure_in_words(column: str) -> str:
     """A column's name inside a sentence."""
     names = {
         "stance_percent": tr("stance, share of the stride"),

@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import replace
 from enum import Enum, auto
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,7 +12,6 @@ from PySide6.QtWidgets import QWidget
 from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
-from app.reports.reference_bands import NOBODY, age_and_height
 from app.reports.visits import conditions_in_words, visits_by_condition
 from app.theme import Look
 from app.widgets.action_bar import BarAction, BarState
@@ -38,6 +36,9 @@ if TYPE_CHECKING:
     from app.workers.diagnostics_controller import DiagnosticsController
     from core.results import Analysis
     from core.samples import Recording, Session
+
+
+FREE_MOTION = 3  # the step in which a joint is found anew
 
 
 class Shown(Enum):
@@ -109,12 +110,9 @@ class ResultsStep(Step):
             return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), has_back=False)
         quiet: tuple[BarAction, ...] = ()
         if self._part is not Shown.CORRECTIONS:
-            quiet = (
-                BarAction(tr("Correct"), icon=Icon.REPEAT),
-                BarAction(tr("Review in Rerun"), icon=Icon.PLAY),
-                BarAction(tr("How was this found?"), icon=Icon.SEARCH),
-            )
-        return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet)
+            quiet = (BarAction(tr("Correct"), icon=Icon.REPEAT), BarAction(tr("Review in Rerun"), icon=Icon.PLAY))
+        note = self.page.results().band_words if self._part is Shown.RESULTS else ""
+        return BarState(primary=BarAction(tr("Go to the report"), tr("Enter"), Icon.CHEVRON), quiet=quiet, note=note)
 
     def on_primary(self) -> None:
         if self.bar().primary is not None:
@@ -130,14 +128,13 @@ class ResultsStep(Step):
             if evaluation.session is not None and evaluation.analysis is not None:
                 self._visit.reviewing.show(evaluation.session, evaluation.analysis)
 
-        elif number == 2 and self.bar().quiet:
-            self._ask()
-
     def on_intent(self, intent: Intent) -> bool:
-        if self._part is Shown.DIAGNOSTICS and intent.action in (KeyAction.BACK, KeyAction.UNFILL):
+        if intent.action not in (KeyAction.BACK, KeyAction.UNFILL):
+            return False
+        if self._part is Shown.DIAGNOSTICS:
             self._on_answered()
             return True
-        return False
+        return self._part is Shown.RESULTS and self.page.has_results and self.page.results().leave_behind()
 
     def undo(self) -> None:
         """Take back what was put right last; again, what was before that."""
@@ -176,7 +173,10 @@ class ResultsStep(Step):
             is_new = self._shown is None
             results = page.results()
             if is_new:
-                results.compare.set_has_visits(True)
+                results.set_has_visits(True)
+                results.told.connect(self.changed)
+                results.quality.how_found.clicked.connect(self._ask)
+                results.quality.repeat_wished.connect(lambda _side: self.jumped.emit(FREE_MOTION))
                 results.compare.visits_wished.connect(self._visit.read_earlier)
                 results.strides.turned.connect(self._strides.turn)
                 results.strides.all_wanted.connect(self._strides.take_all_in)
@@ -188,21 +188,14 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        from app.reports.patient_report.answer import answer_of  # as the results' page, which has imported it
-        from app.reports.patient_report.request import Visit
+        from app.reports.patient_report.request import Visit as VisitToRead  # as the results' page, which imported it
 
         session = self._visit.evaluation.session
-        if self._held is not None and self._held[0] is session and self._held[1] is analysis:
+        if session is None or (self._held is not None and self._held[0] is session and self._held[1] is analysis):
             return
         self._held = session, analysis  # of other words for a walk the same analysis may come
-        results.show_analysis(
-            analysis,
-            session.recordings if session is not None else (),
-            is_prosthetic=bool(self._visit.prosthetic_sides),
-            can_choose=True,
-            who=age_and_height(session) if session is not None else NOBODY,
-            answer=partial(answer_of, Visit(session, analysis)) if session is not None else None,
-        )
+        is_live = self._visit.sensors.acquisition is not None
+        results.show_visit(VisitToRead(session, analysis), can_choose=True, is_live=is_live)
 
     # how a joint was found
 

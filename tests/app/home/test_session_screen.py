@@ -18,13 +18,13 @@ from app.home import session_screen
 from app.home.session_screen import ENDED_EARLY, STOPPED, SessionScreen
 from app.pages.found_page import FoundPage
 from app.pages.result_page import (
+    ANSWER,
     BOTH,
-    FACTS,
-    FIGURES,
-    MEAN,
+    COMPARE,
     ORIENTATION,
     PUBLISHED,
     RESULT,
+    STRIDES,
     WHOLE,
     ResultPage,
 )
@@ -358,7 +358,7 @@ def test_simulated_is_said_in_header_and_charts_and_only_then(
 
 
 def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
-    rows = [line.split("\t") for line in results.facts.as_text().split("\n")]
+    rows = [line.split("\t") for line in results.quality.facts.as_text().split("\n")]
     assert rows == [
         ["", "left knee", "right knee", "left ankle", "right ankle"],
         ["Axis from", "free motion", "free motion", "free motion, walking", "free motion, walking"],
@@ -368,13 +368,13 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
         ["Zero", "standing", "none", "standing", "none"],
     ]
-    model = results.facts.facts
+    model = results.quality.facts.facts
     marked = {(r, c) for r in range(6) for c in range(4) if model.cell(model.index(r, c)).needs_look}
     assert marked == {(2, 2), (3, 3), (5, 1), (5, 3)}
 
 
 def test_findings_are_told_the_gravest_first(results: ResultPage) -> None:
-    told = [row.accessibleName() for row in results.findings.findChildren(FindingRow)]
+    told = [row.accessibleName() for row in results.quality.findings.findChildren(FindingRow)]
     assert [text.split(":")[0] for text in told] == ["grave", "warning", "info"]
     assert "0.42 s" in told[1]
 
@@ -385,7 +385,7 @@ def test_a_session_without_joints_is_no_trouble(qtbot: QtBot, window: SessionScr
     qtbot.waitUntil(lambda: window.results is not None)
     assert window.results is not None
     assert window.results.recording is None
-    assert window.results.findings.accessibleDescription() == "Nothing stands out."
+    assert window.results.door.words == "Nothing stands out."
 
 
 @pytest.mark.endurance
@@ -492,11 +492,13 @@ def test_every_word_fits(
     window.banner.tell("left_thigh.csv, line 4: the clock steps back.", "Export the recording again.")
     results.charts.zoom(0.5)
     results.charts._read_at(4.0)
-    pages: list[tuple[QWidget, str]] = [(results, view) for view in (MEAN, WHOLE, FIGURES, FACTS)]
-    for page, view in (*pages, (window.empty, MEAN), (window.working, MEAN)):
-        if results.view._segments[view].isHidden():
-            continue
+    pages: list[tuple[QWidget, str]] = [(results, view) for view in (ANSWER, WHOLE, COMPARE, STRIDES)]
+    behind = [(results, ANSWER, button) for button in (results.all_figures, results.door, results.quality.engineering)]
+    others = [(page, view, None) for page, view in (*pages, (window.empty, ANSWER), (window.working, ANSWER))]
+    for page, view, button in (*others, *behind):
         results.view.choose(view)
+        if button is not None:
+            button.click()
         window._show_page(page)
         for _ in range(3):  # what wraps settles its height in a second round
             qapp.processEvents()
@@ -528,10 +530,10 @@ def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, r
         "Recording",
         "Result",
         "Knee and ankle angles of walk 1",
-        "How each joint was found",
-        "Findings",
+        "R foot",
         "Open a session folder",
         "Open the demonstration",
+        "How was this found?",
     ]
 
 

@@ -22,6 +22,7 @@ from app.reports.differences import (
     write_differences,
     write_sides,
 )
+from app.reports.patient_report.request import Visit
 from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme import Look, load_fonts
 from core.analysis import analyse
@@ -69,7 +70,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.set_room(1064, 672)
-    page.show_analysis(analysis, session.recordings)
+    page.show_visit(Visit(session, analysis))
     page.show()
     page.view.choose(COMPARE)
     return page
@@ -309,7 +310,7 @@ def test_no_word_is_cut(page: ResultPage, room: tuple[int, int]) -> None:
 
 def shown(page: ResultPage, analysis: Analysis, session: Session, kind: Kind) -> str:
     """Show an analysis compared in a way, and give what is concluded."""
-    page.show_analysis(analysis, session.recordings)
+    page.show_visit(Visit(session, analysis))
     page.compare.kinds.setCurrentIndex(page.compare.kinds.findData(kind))
     return page.compare.conclusion.text()
 
@@ -344,7 +345,7 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
 def test_between_walks_only_what_is_worth_a_sentence_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    page.show_analysis(analysis, session.recordings)
+    page.show_visit(Visit(session, analysis))
     found = page.compare.comparison
     assert found is not None
     said = [row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence]

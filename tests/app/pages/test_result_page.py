@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -11,27 +12,37 @@ from PySide6.QtWidgets import QApplication, QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.pages.cycle_page import NO_SIDE, NO_SPEED
-from app.pages.result_page import FACTS, FIGURES, MEAN, WHOLE, ResultPage
-from app.reports.patient_report.answer import Answer, Outcome
-from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
+from app.pages.result_page import ANSWER, STRIDES, WHOLE, Beside, ResultPage
+from app.reports.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.theme import Look, load_fonts
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.norms import AgeAndHeight, NoBand
 from core.results import Analysis, SideGait
+from core.samples import Session
+from core.verdicts.model import Verdict
 from core.verdicts.quantities import raw_values
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
-from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
-from tests.app.layout_items import item_of, items_held
+from tests.app.changed_analysis import recalibrated, rewalked, visit_of, walk_of, with_few_strides
+from tests.app.reports.patient_report.test_what_stands_out import with_more
 
 GROWN = AgeAndHeight(30, 1.70)
 WIDE, COMPACT = (1280.0, 672.0), (960.0, 472.0)  # of a window of 1280 x 800 and of 960 x 600 without a rail
 
 
+@cache
+def session() -> Session:
+    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
+    return simulate(replace(DEMONSTRATION, recordings=recordings)).session
+
+
 @pytest.fixture(scope="module")
 def analysis() -> Analysis:
-    recordings = (Standing(), FreeMotion(), Walk(strides=13, speed_m_s=0.95))
-    return analyse(simulate(replace(DEMONSTRATION, recordings=recordings)).session)
+    return analyse(session())
+
+
+def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> None:
+    page.show_visit(visit_of(analysis, session(), who))
 
 
 @pytest.fixture
@@ -43,7 +54,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(*WIDE)
-    page.show_analysis(analysis)
+    show(page, analysis)
     with qtbot.waitActive(page):
         page.show()
         page.activateWindow()
@@ -76,12 +87,12 @@ def rows_of(page: ResultPage) -> dict[str, list[str]]:
     return {row[0]: row[1:] for row in rows}
 
 
-def test_a_walk_opens_as_its_mean_cycle(page: ResultPage) -> None:
-    assert page.view.choice == MEAN
-    assert page.cycles.isVisible()
-    assert page.cycles.peaks.isVisible()
-    assert page.cycles.time_distance.isVisible()
-    assert page.findings.isVisible()
+def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: ResultPage) -> None:
+    assert page.view.choice == ANSWER
+    for part in (page.answer, page.cycles, page.differs, page.key_figures, page.door):
+        assert part.isVisible()
+    assert page.differs.table.cells.rowCount() > 2
+    assert not page.cycles.peaks.isVisible()
     assert not page.charts.isVisible()
     assert set(page.cycles.charts.knee.chart.cycles) == set(Side)
 
@@ -90,9 +101,8 @@ def test_the_whole_walk_has_its_lanes_and_its_methods(page: ResultPage) -> None:
     page.view.choose(WHOLE)
     assert page.charts.phases.isVisible()
     assert page.methods.isVisible()
-    assert page.facts.isVisible()
-    assert not page.single_strides.isVisible()
-    assert not page.cycles.peaks.isVisible()
+    for part in (page.answer, page.cycles, page.differs):
+        assert not part.isVisible()
 
 
 def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page: ResultPage) -> None:
@@ -101,54 +111,77 @@ def test_free_motion_is_shown_whole_and_the_walk_comes_back_as_it_was_left(page:
     assert not page.view.isVisible()
     assert not page.charts.phases.isVisible()
     page.recordings.setCurrentIndex(page.recordings.findText("walk 1"))
-    assert page.view.choice == MEAN
+    assert page.view.choice == ANSWER
     assert page.view.isVisible()
 
 
 def test_a_walk_without_strides_says_so_and_shows_the_whole(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(changed(analysis, gait={}))
+    show(page, changed(analysis, gait={}))
     assert page.view.choice == WHOLE
-    assert page.view._segments[MEAN].accessibleName() == "Mean cycle, no strides"
-    page.show_analysis(analysis)
-    assert page.view.choice == MEAN
+    assert page.view._segments[ANSWER].accessibleName() == "Answer, no strides"
+    show(page, analysis)
+    assert page.view.choice == ANSWER
 
 
-def test_where_room_is_short_figures_and_findings_are_views(page: ResultPage) -> None:
+def test_where_room_is_short_the_key_figures_join_the_sentence(page: ResultPage) -> None:
     page.set_room(*COMPACT)
-    assert not page.cycles.peaks.isVisible()
-    assert not page.findings.isVisible()
-    assert page.cycles.note.isVisible()
-    page.view.choose(FIGURES)
+    assert not page.key_figures.isVisible()
+    assert not page.differs.isVisible()
+    assert "Walking speed" in page.answer.text
+    assert page.cycles.isVisible()
+    assert page.door.isVisible()
+    page.set_room(*WIDE)
+    assert "Walking speed" not in page.answer.text
+    assert page.key_figures.isVisible()
+
+
+def test_all_figures_take_the_curves_place_and_give_it_back(page: ResultPage) -> None:
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_F)
+    assert page.all_figures.isChecked()
     assert page.cycles.peaks.isVisible()
     assert page.cycles.time_distance.isVisible()
     assert not page.cycles.isVisible()
-    page.view.choose(FACTS)
-    assert page.facts.isVisible()
-    assert page.findings.isVisible()
-    page.set_room(*WIDE)
-    assert page.view.choice == MEAN
-    assert page.view._segments[FACTS].isHidden()
-
-
-def test_keys_switch_single_strides_and_band_while_they_are_in_sight(qtbot: QtBot, page: ResultPage) -> None:
-    page.focus()
-    QTest.keyClick(page, Qt.Key.Key_S)
-    assert page.single_strides.isChecked()
-    assert page.cycles.charts.knee.chart.has_strides
-    QTest.keyClick(page, Qt.Key.Key_B)
-    assert not page.cycles.charts.ankle.chart.has_band
     page.view.choose(WHOLE)
-    QTest.keyClick(page, Qt.Key.Key_S)
-    assert page.single_strides.isChecked()
+    assert not page.cycles.peaks.isVisible()
+    page.view.choose(ANSWER)
+    QTest.keyClick(page, Qt.Key.Key_F)
+    assert page.cycles.isVisible()
+    assert not page.cycles.peaks.isVisible()
+
+
+def test_the_door_leads_to_what_can_be_read_and_back(page: ResultPage, analysis: Analysis) -> None:
+    assert page.door.words.startswith("Everything that was measured can be read.")
+    page.focus()
+    QTest.keyClick(page, Qt.Key.Key_Q)
+    assert page.quality.isVisible()
+    assert not page.cycles.isVisible()
+    assert page.quality.first.text() == "All four joints can be read."
+    assert page.leave_behind()
+    assert page.cycles.isVisible()
+    assert not page.leave_behind()
+    show(page, recalibrated(analysis, [Joint.LEFT_ANKLE], axis_sd_rad=np.deg2rad(11.0)))
+    assert page.door.words == "Left ankle: withheld. Record free motion, or move longer and in more directions."
+    page.door.click()
+    assert page.quality.first.text() == "3 of 4 joints can be read. Withheld: left ankle."
+
+
+def test_beside_leads_to_another_comparison_only_where_there_is_one(page: ResultPage) -> None:
+    offered = [page.beside.itemData(row) for row in range(page.beside.count())]
+    assert offered == [Beside.BAND, Beside.LEGS]  # one walk, and nobody reads earlier visits
+    page.beside.setCurrentIndex(1)
+    assert not page.cycles.charts.knee.chart.has_band
+    page.beside.setCurrentIndex(0)
+    assert page.cycles.charts.knee.chart.has_band
 
 
 def test_a_letter_typed_into_a_field_stays_there(qtbot: QtBot, page: ResultPage) -> None:
     field = QLineEdit(page)
     field.show()
     field.setFocus()
-    QTest.keyClick(field, Qt.Key.Key_S)
-    assert field.text() == "s"
-    assert not page.single_strides.isChecked()
+    QTest.keyClick(field, Qt.Key.Key_F)
+    assert field.text() == "f"
+    assert not page.all_figures.isChecked()
 
 
 def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analysis: Analysis) -> None:
@@ -166,7 +199,7 @@ def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analy
 def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: ResultPage, analysis: Analysis) -> None:
     model = page.cycles.peaks.table.figures
     for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
-        page.show_analysis(with_few_strides(analysis, left=count, right=count))
+        show(page, with_few_strides(analysis, left=count, right=count))
         swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
         value, addition = model.cell(model.index(swing, 1))
         assert ("±" in addition) is has_spread, count
@@ -191,7 +224,7 @@ def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
 
 
 def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
+    show(page, recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
     model = page.cycles.peaks.table.figures
     swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
     heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
@@ -199,14 +232,16 @@ def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, a
     assert heard[1].endswith("°")
     assert rows_of(page)["Swing peak"][0].endswith(" *")
     assert "* read with care." in page.cycles.peaks.note.text()
-    assert "L: read with care. The joint's axis is known to 8.0°" in page.cycles.charts.knee.note
-    page.show_analysis(analysis)
-    assert "care" not in page.cycles.peaks.note.text() + page.cycles.charts.knee.note
+    chips = page.cycles.charts.knee.chips
+    assert {side: chip.verdict for side, chip in chips.items()} == {Side.LEFT: Verdict.CARE, Side.RIGHT: Verdict.READ}
+    assert page.door.words.startswith("Left knee: read with care. The joint's axis is known to 8.0° only")
+    show(page, analysis)
+    assert "care" not in page.cycles.peaks.note.text() + page.door.words
 
 
 def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(at_speed(analysis, 1.2), who=GROWN)
-    told = page.cycles.peaks_note.text
+    show(page, at_speed(analysis, 1.2), who=GROWN)
+    told = page.cycles.band_words
     for part in ("24 young adults", "treadmill", "1.25 m/s", "Fukuchi", "2018", "This walk: 1.20"):
         assert part in told
     assert "32 of 42 adults, 24 young and 18 older" in page.cycles.time_distance.note.text()
@@ -228,8 +263,8 @@ def test_the_source_of_the_band_and_both_speeds_are_printed(page: ResultPage, an
 def test_a_band_is_drawn_only_where_it_may_stand_and_else_said_why_not(
     page: ResultPage, analysis: Analysis, speed_m_s: float, who: AgeAndHeight, why: NoBand | None
 ) -> None:
-    page.show_analysis(at_speed(analysis, speed_m_s), who=who)
-    told = page.cycles.peaks_note.text
+    show(page, at_speed(analysis, speed_m_s), who=who)
+    told = page.cycles.band_words
     assert (page.cycles.charts.knee.chart.band is not None) is (why is None)
     assert [one for one, words in WHY_NO_BAND.items() if words in told] == ([] if why is None else [why])
     assert (NO_SPEED in told) is bool(np.isnan(speed_m_s))
@@ -237,30 +272,30 @@ def test_a_band_is_drawn_only_where_it_may_stand_and_else_said_why_not(
 
 def test_a_band_of_other_ages_says_so(page: ResultPage, analysis: Analysis) -> None:
     for age, is_other in ((30, False), (62, True)):
-        page.show_analysis(at_speed(analysis, 1.2), who=AgeAndHeight(age, 1.7))
-        assert (OTHER_AGES in page.cycles.peaks_note.text) is is_other
+        show(page, at_speed(analysis, 1.2), who=AgeAndHeight(age, 1.7))
+        assert (OTHER_AGES in page.cycles.band_words) is is_other
 
 
 def test_a_prosthetic_leg_has_no_band(page: ResultPage, analysis: Analysis) -> None:
     walk = at_speed(analysis, 1.2)
-    page.show_analysis(with_prostheses(walk, Side.RIGHT), who=GROWN)
-    assert "The band is for the left leg alone." in page.cycles.peaks_note.text
-    page.show_analysis(with_prostheses(walk, *Side), who=GROWN)
-    assert NO_SIDE in page.cycles.peaks_note.text
+    show(page, with_prostheses(walk, Side.RIGHT), who=GROWN)
+    assert "The band is for the left leg alone." in page.cycles.band_words
+    show(page, with_prostheses(walk, *Side), who=GROWN)
+    assert NO_SIDE in page.cycles.band_words
     assert page.cycles.charts.knee.chart.band is None
-    page.show_analysis(walk, who=GROWN)
-    assert "alone" not in page.cycles.peaks_note.text
+    show(page, walk, who=GROWN)
+    assert "alone" not in page.cycles.band_words
 
 
 def test_the_same_doubt_stands_in_chart_and_table(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
+    show(page, recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False))
     assert page.cycles.charts.knee.note.startswith("L: sign unsure.")
     assert rows_of(page)["Swing peak"][0] == "sign unsure"
     assert "sign unsure" not in rows_of(page)["Swing peak"][1]
 
 
 def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
+    show(page, recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05))
     rows = rows_of(page)
     for name in ("Stance dorsiflexion", "Push-off plantarflexion", "Swing dorsiflexion"):
         assert rows[name][1] == "withheld"
@@ -268,15 +303,16 @@ def test_a_withheld_ankle_has_no_number_and_no_curve_and_says_what_to_do(page: R
     assert rows["Double support %"][0] == "withheld"
     panel = page.cycles.charts.ankle.withheld
     assert (panel[Side.RIGHT].isVisible(), panel[Side.LEFT].isVisible()) == (True, False)
-    assert "record free motion" in panel[Side.RIGHT].text
+    assert panel[Side.RIGHT].text.startswith("Withheld. The two sensors do not move as neighbours")
+    assert "record free motion" in page.door.words
     assert "Right ankle: The two sensors do not move as neighbours" in page.cycles.peaks.note.text()
-    page.show_analysis(analysis)
+    show(page, analysis)
     assert not panel[Side.RIGHT].isVisible()
     assert "neighbours" not in page.cycles.peaks.note.text()
 
 
 def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysis) -> None:
-    page.show_analysis(changed(analysis, gait={Side.RIGHT: walk_of(analysis).gait[Side.RIGHT]}))
+    show(page, changed(analysis, gait={Side.RIGHT: walk_of(analysis).gait[Side.RIGHT]}))
     table = page.cycles.peaks.table
     assert table.isColumnHidden(1)
     assert not table.isColumnHidden(2)
@@ -284,36 +320,25 @@ def test_one_side_alone_has_its_column_alone(page: ResultPage, analysis: Analysi
     assert page.charts.phases.lanes.lanes.keys() == {Side.RIGHT}
 
 
-def test_peaks_that_change_place_leave_no_layout_item_behind(page: ResultPage) -> None:
-    page.set_room(*COMPACT)
-    page.set_room(*WIDE)
-    held = items_held()
-    assert item_of(page.cycles.peaks, page._columns if page._columns_wanted != 2 else page._right) not in held
-
-
 def test_the_answer_stands_over_the_mean_cycle_and_nothing_scrolls_for_it(page: ResultPage, analysis: Analysis) -> None:
     in_wizard = (1064.0, 672.0)  # of a window of 1280 x 800 with its rail
     page.set_room(*in_wizard)
-    assert not page.answer.isVisible()
-    told = Answer(Outcome.DIFFERS, "The left knee moves 21.3° less than the right: 41.7° against 63.0°.", "Error 9.5°.")
-    page.show_analysis(analysis, answer=lambda walk: told if walk is walk_of(analysis) else Answer(Outcome.OPEN, ""))
-    assert page.answer.isVisible()
-    assert page.answer.text == f"{told.first} {told.then}"
+    show(page, analysis)
+    assert page.answer.text.startswith("No difference is larger than its error.")
+    show(page, with_more(analysis, Side.LEFT, "knee_range_rad", -20.0))
+    assert page.answer.text.startswith("The left knee moves ")
     assert page.minimumSizeHint().height() <= in_wizard[1]
-    for view in (WHOLE, "strides"):
+    for view in (WHOLE, STRIDES):
         page.view.choose(view)
         assert not page.answer.isVisible(), view
-    page.show_analysis(analysis)
-    page.view.choose(MEAN)
-    assert not page.answer.isVisible()
-    nothing = Answer(Outcome.UNREADABLE, "Nothing can be read of this walk.")
-    page.show_analysis(changed(analysis, gait={}), answer=lambda _walk: nothing)
-    assert page.view.choice == WHOLE
+    show(page, changed(analysis, gait={}))
+    page.view.choose(WHOLE)
     assert page.answer.isVisible()
+    assert page.answer.text.startswith("Nothing can be read of this walk")
 
 
 def test_that_a_living_joint_is_no_hinge_is_no_finding(page: ResultPage, analysis: Analysis) -> None:
     assert "not_a_hinge" in {finding.key for finding in analysis.findings}
-    said = page.findings.accessibleDescription()
+    said = page.quality.findings.accessibleDescription()
     assert "simulated" in said
     assert "more than one axis" not in said

@@ -10,7 +10,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.result_page import MEAN, STRIDES, ResultPage
+from app.pages.result_page import ANSWER, STRIDES, ResultPage
+from app.reports.patient_report.request import Visit
 from app.theme import Look, load_fonts
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.analysis import analyse
@@ -35,7 +36,7 @@ def analysis(session: Session) -> Analysis:
 
 
 @pytest.fixture
-def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
+def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
     load_fonts()
     look = Look()
     look.set_dark(False)
@@ -43,7 +44,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(1280.0, 672.0)
-    page.show_analysis(analysis, can_choose=True)
+    page.show_visit(Visit(session, analysis), can_choose=True)
     page.view.choose(STRIDES)
     with qtbot.waitActive(page):
         page.show()
@@ -86,7 +87,7 @@ def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
         QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=at)
         assert len(turned) == count
     assert turned == [("walk 1", line, True)] * 4
-    page.show_analysis(without(session, analysis, line), can_choose=True)
+    page.show_visit(Visit(session, without(session, analysis, line)), can_choose=True)
     assert page.view.choice == STRIDES
     assert strides.hasFocus()
     assert strides.currentIndex().row() == row
@@ -108,10 +109,12 @@ def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned:
     assert not page.strides.turn.isEnabled()
 
 
-def test_where_nothing_is_kept_nothing_can_be_left_out(page: ResultPage, turned: Turned, analysis: Analysis) -> None:
+def test_where_nothing_is_kept_nothing_can_be_left_out(
+    page: ResultPage, turned: Turned, session: Session, analysis: Analysis
+) -> None:
     """A session folder is looked at: nothing looks as if it could be pressed, and it is said why."""
     strides = page.strides.list
-    page.show_analysis(analysis)
+    page.show_visit(Visit(session, analysis))
     row = first_used(page)
     strides.choose(row)
     mark = strides.strides.index(row, STRIDE)
@@ -123,7 +126,7 @@ def test_where_nothing_is_kept_nothing_can_be_left_out(page: ResultPage, turned:
     assert strides.accessibleDescription() == ""
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is None
     assert "import this session first" in page.strides.note.text()
-    page.show_analysis(analysis, can_choose=True)
+    page.show_visit(Visit(session, analysis), can_choose=True)
     assert not page.strides.turn.isHidden()
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is not None
     assert strides.grab().toImage() != without_boxes
@@ -147,7 +150,7 @@ def test_the_stride_in_force_is_drawn_and_found_by_a_click_into_the_chart(page: 
     assert found is not None
     nearest = np.rad2deg(walk.gait[found.side].cycles[Joint(f"{found.side}_knee")][found.number - 1])
     assert abs(nearest[70] - curve[70]) < 1.0
-    page.view.choose(MEAN)
+    page.view.choose(ANSWER)
     assert knee.stride is None
 
 
@@ -161,16 +164,16 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     found = without(session, analysis, line)
     (walk,) = (recording for recording in found.recordings if recording.gait)
     said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides left out by hand."
-    page.show_analysis(found, session.recordings, can_choose=True)
+    page.show_visit(Visit(session, found), can_choose=True)
     assert page.strides.note.text() == said
     assert not page.cycles.by_hand.isVisible()
-    page.view.choose(MEAN)
+    page.view.choose(ANSWER)
     assert page.cycles.by_hand.isVisible()
     assert page.cycles.by_hand.text() == said
     assert said in page.cycles.time_distance.note.text()
     assert "left out by hand" in page.cycles.peaks.note.text()
     assert said in page.compare.conclusion.text()
-    page.show_analysis(analysis, session.recordings, can_choose=True)
+    page.show_visit(Visit(session, analysis), can_choose=True)
     assert page.cycles.by_hand.text() == ""
     assert not page.cycles.by_hand.isVisible()
 

@@ -3,6 +3,7 @@
 import pytest
 
 from app.reports.patient_report.answer import Answer, Outcome, answer_of
+from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.request import ReportRequest, Visit
 from core.body import Joint, Side
 from core.results import Analysis
@@ -16,7 +17,7 @@ def analysis(request_of_demonstration: ReportRequest) -> Analysis:
 
 
 def answer(request: ReportRequest, analysis: Analysis) -> Answer:
-    return answer_of(Visit(request.visit.session, analysis), walk_of(analysis))
+    return answer_of(Facts(Visit(request.visit.session, analysis), walk_of(analysis)))
 
 
 def test_what_differs_most_is_the_answer_and_its_error_stands_beside_it(
@@ -68,7 +69,7 @@ def test_what_is_withheld_is_no_answer_but_the_caveat_beside_it(
         request_of_demonstration, recalibrated(shortened, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
     )
     assert "knee moves" not in found.first
-    assert "Left knee: The two sensors do not move as neighbours" in found.then
+    assert found.then.endswith("Withheld: left knee.")
 
 
 def test_the_screen_and_the_report_say_the_same(request_of_demonstration: ReportRequest, analysis: Analysis) -> None:

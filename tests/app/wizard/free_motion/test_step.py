@@ -275,7 +275,7 @@ def test_sensors_that_nobody_placed_are_placed_once_the_motion_tells(
 ) -> None:
     visit.sensors.leave_to_motion(True)
     step.enter()
-    ticks(qtbot, step, lambda: step._unplaced is not None)  # before it, the disk has not said that it records
+    ticks(qtbot, step, lambda: visit.recordings.has_begun)  # from then on the motion is looked at
     ticks(qtbot, step, lambda: step.page.band.hint.sentence == "Move the left leg first")
     assert states(step.page) == {GaugeState.OPEN}
     estimator = Told(worn)

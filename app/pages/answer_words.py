@@ -1,0 +1,76 @@
+"""What stands round a walk's curves: its key figures, and in one line how far all of it can be trusted."""
+
+import math
+from collections import Counter
+from statistics import fmean
+
+from app.gates_in_words import verdict_word
+from app.reports.patient_report.data_quality import DataQuality
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.numbers_in_words import NOTHING, fixed
+from app.reports.walk_figures import Figure, is_mean_enough
+from app.widgets.fact_strip import KeyFigure
+from app.wording import tr, tr_n
+from core.body import Side
+from core.gait.strides import Reason
+from core.verdicts.model import Verdict
+
+
+def door_words(found: DataQuality) -> tuple[Verdict, str, str, str]:
+    """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
+    if not found.lines:
+        is_judged = bool(found.in_order)
+        first = tr("Everything that was measured can be read.") if is_judged else found.first
+        return Verdict.READ, first, found.in_order, ""
+    line = found.lines[0]
+    pattern = tr("{where}: {verdict}.") if line.where else tr("Data: {verdict}.")
+    first = pattern.format(where=line.where, verdict=verdict_word(line.verdict))
+    is_grave = line.verdict is Verdict.WITHHELD
+    then = line.to_do or line.why if is_grave else line.why
+    count = len(found.lines)
+    return line.verdict, first, then, tr_n("{count} remark", "{count} remarks", count).format(count=count)
+
+
+def key_figures(facts: Facts) -> list[KeyFigure]:
+    """Speed, cadence and stride length of a walk whose legs were measured."""
+    rows = facts.time_distance
+    return [_of_row(rows[name]) for name in (tr("Walking speed"), tr("Cadence"), tr("Stride length")) if name in rows]
+
+
+def _of_row(row: Figure) -> KeyFigure:
+    told = {side: value.mean for side, value in row.sides.items() if is_mean_enough(value.n)}
+    value = row.both if row.both is not None else fmean(told.values()) if told else math.nan
+    is_known = math.isfinite(value)
+    withheld = row.unknown_both or next(iter(row.unknown.values()), "")
+    note = ""
+    if not is_known:
+        note = tr(withheld) if withheld else tr("not measured")
+    elif row.with_care:
+        note = verdict_word(Verdict.CARE)
+    elif told:
+        note = ", ".join(f"{side[0].upper()} {fixed(mean, row.decimals)}" for side, mean in told.items())
+    elif row.band is not None:
+        low, high = (fixed(edge, row.decimals) for edge in row.band)
+        note = tr("band {low} to {high}").format(low=low, high=high)
+    shown = fixed(value, row.decimals) if is_known else NOTHING
+    unit = row.unit if is_known else ""
+    words = tr("{name}: {value}.").format(name=row.name, value=" ".join(filter(None, [shown, unit, note])))
+    return KeyFigure(row.name, shown, unit, note, words)
+
+
+def figures_in_short(facts: Facts) -> str:
+    """The same in one line, of those that are known."""
+    told = [f"{one.name} {one.value} {one.unit}".strip() for one in key_figures(facts) if one.value != NOTHING]
+    return ", ".join(told) + "." if told else ""
+
+
+def strides_in_short(facts: Facts) -> str:
+    """How many strides of each leg were used and left out, and for which reasons."""
+    used = ", ".join(f"{side[0].upper()} {facts.strides(side)}" for side in Side if side in facts.gait)
+    if not used:
+        return tr("No stride was found.")
+    out = {side: Counter(gait.strides.reason) for side, gait in facts.gait.items()}
+    left_out = ", ".join(
+        f"{side[0].upper()} {out[side].total() - out[side][Reason.USED]}" for side in Side if side in facts.gait
+    )
+    return tr("Strides used: {used}. Left out: {left_out}.").format(used=used, left_out=left_out)

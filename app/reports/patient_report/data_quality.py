@@ -1,0 +1,154 @@
+"""Which parts of a walk can be read, what stands against the others, and what to do: as the screen tells it."""
+
+from dataclasses import dataclass
+
+from app.reports.patient_report import quality
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.quality import Cause
+from app.reports.patient_report.request import Visit
+from app.wording import capitalised, joined, later, name_of, place, sentence, tr
+from core.body import Joint, Side
+from core.findings import Finding, Severity
+from core.quality import MIN_LOSS_PERCENT
+from core.verdicts.model import Verdict, worst
+
+# findings that a gate of the verdicts says with its own figure
+GATES_OF_FINDINGS = {
+    "axis_uncertain": ("axis",),
+    "axis_from_walking": ("axis",),
+    "too_little_motion": ("axis",),
+    "sign_in_doubt": ("pairing", "sign"),
+    "not_the_same_joint": ("pairing",),
+    "clinical_sign_uncertain": ("sign",),
+    "clock_moved": ("lag", "clocks"),
+    "clock_drifts": ("clock_drift",),
+    "zero_unknown": ("zero",),
+    "no_standing": ("zero",),
+    "strap_slipped": ("strap",),
+    "no_mean": ("strides",),
+    "no_spread": ("strides",),
+    "no_spread_of_side": ("strides",),
+}
+FREE_MOTION_MENDS = frozenset({"axis", "pairing", "strap"})  # gates that a new free motion may open
+ALL_READ = {
+    1: later("The {joint} can be read."),
+    2: later("Both joints can be read."),
+    3: later("All three joints can be read."),
+    4: later("All four joints can be read."),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class QualityLine:
+    """One thing that stands against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
+
+    `side` is the leg whose free motion mends it, None where that does not.
+    """
+
+    verdict: Verdict
+    where: str
+    why: str
+    to_do: str
+    side: Side | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class DataQuality:
+    """What may be read of a walk.
+
+    Attributes
+    ----------
+    first, then
+        The sentence that says it, and one beside it.
+    verdict
+        The gravest of all.
+    lines
+        What stands against it, the gravest first.
+    in_order
+        What was looked at and found in order; empty where nothing was.
+    """
+
+    verdict: Verdict
+    first: str
+    then: str
+    lines: tuple[QualityLine, ...]
+    in_order: str
+
+
+def data_quality(facts: Facts) -> DataQuality:
+    """Look at the verdicts of a walk and at what was noticed about it."""
+    found = quality.causes(facts)
+    findings = _noticed(facts.visit, facts.walk.name, {cause.gate for cause in found})
+    first, then = _in_words(facts)
+    return _quality(first, then, [*map(_of_cause, found), *map(_of_finding, findings)], _in_order(facts))
+
+
+def quality_without_walk(visit: Visit, recording: str) -> DataQuality:
+    """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
+    lines = [_of_finding(finding) for finding in _noticed(visit, recording, set())]
+    first = tr("Nothing stands out.") if not lines else tr("This was noticed.")
+    return _quality(first, "", lines, "")
+
+
+def _quality(first: str, then: str, lines: list[QualityLine], in_order: str) -> DataQuality:
+    ordered = sorted(lines, key=lambda line: line.verdict is not Verdict.WITHHELD)
+    return DataQuality(worst(line.verdict for line in ordered), first, then, tuple(ordered), in_order)
+
+
+def _of_cause(cause: Cause) -> QualityLine:
+    sides = {place.side for place in cause.places if isinstance(place, Joint)}
+    side = sides.pop() if cause.gate in FREE_MOTION_MENDS and len(sides) == 1 else None
+    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side)
+
+
+def _of_finding(finding: Finding) -> QualityLine:
+    """A finding withholds nothing by itself: what it withholds is said by a verdict."""
+    said = sentence(finding)
+    where = capitalised(place(finding.where))
+    where, rest = (where, said.removeprefix(f"{where}: ")) if said.startswith(f"{where}: ") else ("", said)
+    why, stop, to_do = rest.partition(". ")
+    return QualityLine(Verdict.CARE, where, capitalised(why + "." if stop else why), to_do)
+
+
+def _noticed(visit: Visit, recording: str, gates: set[str]) -> list[Finding]:
+    """What was noticed of this recording or of the session that no verdict says already, the gravest first."""
+    others = {one.name for one in visit.session.recordings} - {recording} if recording else set()
+    found = [
+        finding
+        for finding in visit.analysis.findings
+        if finding.severity is not Severity.INFO
+        and gates.isdisjoint(GATES_OF_FINDINGS.get(finding.key, ()))
+        and others.isdisjoint(finding.where.split(", "))
+    ]
+    return sorted(found, key=lambda finding: finding.severity is not Severity.GRAVE)
+
+
+def _in_words(facts: Facts) -> tuple[str, str]:
+    joints = {joint: facts.verdicts.joint(joint).shape.verdict for joint in Joint if facts.is_measured(joint)}
+    if not joints:
+        return tr("No joint was measured in this walk."), ""
+    out = [name_of(joint) for joint, verdict in joints.items() if verdict is Verdict.WITHHELD]
+    if len(out) == len(joints):
+        return tr("No joint can be read in this walk."), ""
+    if out:
+        first = tr("{count} of {all} joints can be read. Withheld: {joints}.")
+        return first.format(count=len(joints) - len(out), all=len(joints), joints=joined(out)), ""
+    first = tr(ALL_READ[len(joints)]).format(joint=name_of(next(iter(joints))))
+    heights = [name_of(joint) for joint in joints if facts.verdicts.joint(joint).height.verdict is Verdict.WITHHELD]
+    if not heights:
+        return first, ""
+    if len(heights) == len(joints):
+        return first, tr("Range and shape hold; heights are withheld.")
+    return first, tr("Of these joints the height is withheld: {joints}.").format(joints=joined(heights))
+
+
+def _in_order(facts: Facts) -> str:
+    """What was looked at without finding anything."""
+    said = []
+    if not quality.slipped_straps(facts):
+        said.append(tr("no strap slipped"))
+    if max(facts.walk.lost_percent.values(), default=0.0) < MIN_LOSS_PERCENT:
+        said.append(tr("no samples lost"))
+    if facts.verdicts.between.verdict is Verdict.READ:
+        said.append(tr("one time for both legs"))
+    return tr("In order: {what}.").format(what=joined(said)) if said else ""

@@ -1,0 +1,99 @@
+"""How far what is shown can be trusted, in one line, and the way to the whole of it."""
+
+from PySide6.QtCore import QRectF, QSize, Qt
+from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
+from PySide6.QtWidgets import QSizePolicy
+
+from app.icons import VERDICT_ICONS, Icon, paint_icon
+from app.theme import Look
+from app.widgets.painted_button import PaintedButton
+from app.widgets.painted_text import LEFT, RIGHT, PaintedText
+from app.widgets.text import SEMIBOLD
+from app.wording import tr
+from core.verdicts.model import Verdict
+
+HEIGHT = 44
+PADDING = 16
+ICON = 20
+CAP = 22
+LEAST_WIDTH = 320
+
+
+class Door(PaintedButton):
+    """What does not fit is cut short on the screen, and heard whole."""
+
+    def __init__(self, look: Look, key: str) -> None:
+        super().__init__(look)
+        self._key, self._verdict = key, Verdict.READ
+        self._first = self._then = ""
+        self._details = tr("Details")
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self.setAccessibleDescription(tr("Key {key}").format(key=key))
+
+    @property
+    def words(self) -> str:
+        return " ".join(filter(None, [self._first, self._then]))
+
+    def tell(self, verdict: Verdict, first: str, then: str = "", details: str = "") -> None:
+        """`details`: how much stands behind it."""
+        self._verdict, self._first, self._then = verdict, first, then
+        self._details = details or tr("Details")
+        self.setAccessibleName(f"{self.words} {self._details}")
+        self.setToolTip(self.words)
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_WIDTH), px(HEIGHT))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def texts(self) -> list[PaintedText]:
+        """What is painted, and where."""
+        theme, height = self._look.theme, self.height()
+        px, tone = theme.px, self._tone
+        bold, plain = theme.font(14, SEMIBOLD), theme.font(14)
+        right = self._cap().left() - px(10)
+        width = QFontMetrics(bold).horizontalAdvance(self._details) + 1
+        found = [PaintedText(self._details, QRectF(right - width, 0, width, height), bold, tone, RIGHT)]
+        left, room = px(PADDING + ICON + 8), right - width - px(16)
+        first = QFontMetrics(bold).elidedText(self._first, Qt.TextElideMode.ElideRight, int(room - left))
+        taken = QFontMetrics(bold).horizontalAdvance(first) + 1
+        found.append(PaintedText(first, QRectF(left, 0, taken, height), bold, tone, LEFT))
+        left += taken + px(8)
+        if first == self._first and self._then and room - left > px(40):
+            then = QFontMetrics(plain).elidedText(self._then, Qt.TextElideMode.ElideRight, int(room - left))
+            grey = "ink2" if self._verdict is not Verdict.WITHHELD else tone
+            found.append(PaintedText(then, QRectF(left, 0, room - left, height), plain, grey, LEFT))
+        return found
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        theme = self._look.theme
+        c, px = theme.colours, theme.px
+        painter = QPainter(self)
+        box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+        is_grave = self._verdict is Verdict.WITHHELD
+        theme.paint_box(
+            painter, box, c.caution if is_grave else c.surface, c.caution_edge if is_grave else c.control, 1
+        )
+        self.paint_veil(painter, box)
+        ink, middle, icon = getattr(c, self._tone), self.height() / 2, px(ICON)
+        paint_icon(painter, VERDICT_ICONS[self._verdict], QRectF(px(PADDING), middle - icon / 2, icon, icon), ink)
+        for text in self.texts():
+            text.paint(painter, c)
+        theme.paint_cap(painter, self._cap(), self._key, ink, c.caution_edge if is_grave else c.control)
+        paint_icon(painter, Icon.NEXT, self._chevron(), ink)
+
+    @property
+    def _tone(self) -> str:
+        return "caution_ink" if self._verdict is Verdict.WITHHELD else "ink"
+
+    def _chevron(self) -> QRectF:
+        icon = self._look.theme.px(ICON)
+        return QRectF(self.width() - self._look.theme.px(PADDING) - icon, self.height() / 2 - icon / 2, icon, icon)
+
+    def _cap(self) -> QRectF:
+        cap, right = self._look.theme.px(CAP), self._chevron().left() - self._look.theme.px(8)
+        return QRectF(right - cap, self.height() / 2 - cap / 2, cap, cap)
