@@ -167,12 +167,13 @@ class ComparePage(Themed):
             frame.chart.redraw()
         self.side_charts.set_band_shown(is_shown)
 
-    def set_room(self, is_compact: bool, is_spacious: bool) -> None:
+    def set_room(self, is_compact: bool, is_spacious: bool, has_two_charts: bool) -> None:
         """Make curves and differences views of their own where room is short; where there is plenty all stand there."""
         was_compact, was_spacious = self._is_compact, self._is_spacious
         self._is_compact, self._is_spacious = is_compact, is_spacious
         self.view.set_offered(CURVES, is_compact)
-        self.side_charts.set_side_by_side(is_compact)
+        self.side_charts.set_side_by_side(is_compact and has_two_charts)
+        self.side_charts.set_brief(is_compact)
         if is_compact != was_compact:
             self.view.choose(CURVES if is_compact else PLOT)
         if is_spacious != was_spacious:

@@ -1,6 +1,7 @@
 """What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum, auto
 from functools import cached_property
 
@@ -79,6 +80,17 @@ class Beside(Enum):
     VISITS = auto()  # leads to Compare
 
 
+@dataclass(frozen=True, slots=True)
+class Room:
+    """What a page of its size has room for."""
+
+    is_compact: bool = False
+    is_narrow: bool = False
+    has_two_charts: bool = False
+    has_strides_beside: bool = False
+    is_spacious: bool = False
+
+
 class Behind(Enum):
     """What somebody looks at behind the answer, in place of its curves."""
 
@@ -133,7 +145,7 @@ class ResultPage(Themed):
         self._visit: Visit | None = None
         self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
-        self._is_compact = self._is_narrow = self._has_two_charts = self._is_spacious = False
+        self._room = Room()
         self._height = 0.0
         self._behind = Behind.NOTHING
         self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
@@ -215,9 +227,15 @@ class ResultPage(Themed):
         Where there is little room the key figures join the sentence, and the controls take two rows.
         """
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
-        room = is_compact, width < NARROW_BELOW, width >= TWO_CHARTS_FROM, not is_compact and width >= SPACIOUS_FROM
-        if room != (self._is_compact, self._is_narrow, self._has_two_charts, self._is_spacious):
-            self._is_compact, self._is_narrow, self._has_two_charts, self._is_spacious = room
+        room = Room(
+            is_compact=is_compact,
+            is_narrow=width < NARROW_BELOW,
+            has_two_charts=width >= TWO_CHARTS_FROM,
+            has_strides_beside=width >= COMPACT_BELOW[0],
+            is_spacious=not is_compact and width >= SPACIOUS_FROM,
+        )
+        if room != self._room:
+            self._room = room
             self._place()
         self._height = height
         self._fit_table()
@@ -360,16 +378,16 @@ class ResultPage(Themed):
         self._controls.addWidget(self.view, 0, 0, left)
         self._controls.addWidget(self.to_answer, 0, 1, left)
         self._controls.setColumnStretch(4, 1)
-        if self._is_narrow:
+        if self._room.is_narrow:
             self._controls.addWidget(self._choices, 1, 0, 1, 4, left)
             self._against_row.insertWidget(2, self.compare.view)
         else:
             self._controls.addWidget(self._choices, 0, 2)
-        if self._is_narrow:
+        if self._room.is_narrow:
             self._foot.addWidget(self.methods, 0, 0, left)
             self._foot.addWidget(self.whole, 1, 0, left)
             self._foot.addWidget(self._notes, 2, 0)
-        elif not self._is_spacious:
+        elif not self._room.is_spacious:
             self._foot.addWidget(self.methods, 0, 0, 1, 2, left)
             self._foot.addWidget(self._notes, 1, 0)
             self._foot.addWidget(self.whole, 1, 1)
@@ -377,15 +395,15 @@ class ResultPage(Themed):
             self._controls.addWidget(self.methods, 0, 3)
             self._foot.addWidget(self._notes, 0, 0)
             self._foot.addWidget(self.whole, 0, 1)
-        self.compare.set_room(self._is_compact, self._is_spacious)
-        self.strides.set_charts_beside(not self._is_compact)
-        self.quality.set_room(self._is_compact)
+        self.compare.set_room(self._room.is_compact, self._room.is_spacious, self._room.has_two_charts)
+        self.strides.set_charts_beside(self._room.has_strides_beside)
+        self.quality.set_room(self._room.is_compact)
         for frame in (self.charts.knee, self.charts.ankle):
-            frame.set_narrow(self._is_narrow)
-        self.charts.phases.set_narrow(self._is_narrow)
-        self.cycles.set_room(self._has_two_charts)
-        self.cycles.charts.set_brief(self._is_compact)
-        stacked = QBoxLayout.Direction.TopToBottom if self._is_narrow else QBoxLayout.Direction.LeftToRight
+            frame.set_narrow(self._room.is_narrow)
+        self.charts.phases.set_narrow(self._room.is_narrow)
+        self.cycles.set_room(self._room.has_two_charts)
+        self.cycles.charts.set_brief(self._room.is_compact)
+        stacked = QBoxLayout.Direction.TopToBottom if self._room.is_narrow else QBoxLayout.Direction.LeftToRight
         self._tables.setDirection(stacked)
         self._on_look_changed()
         self._tell_answer()
@@ -442,16 +460,16 @@ class ResultPage(Themed):
         self._against.setVisible(view == COMPARE)
         self.compare.setVisible(view == COMPARE)
         self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
-        self.key_figures.setVisible(is_answer and not self._is_compact)
+        self.key_figures.setVisible(is_answer and not self._room.is_compact)
         self._curves.setVisible(view == WHOLE and not is_quality)
-        self.cycles.setVisible(is_answer or (view == STRIDES and not self._is_compact))
-        self.cycles.charts.set_side_by_side(self._has_two_charts and view == ANSWER)
+        self.cycles.setVisible(is_answer or (view == STRIDES and self._room.has_strides_beside))
+        self.cycles.charts.set_side_by_side(self._room.has_two_charts and view == ANSWER)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
         self._figures.setVisible(behind is Behind.FIGURES)
         self.quality.setVisible(is_quality)
-        self.differs.setVisible(is_answer and not self._is_compact and self.differs.has_rows)
+        self.differs.setVisible(is_answer and not self._room.is_compact and self.differs.has_rows)
         self.door.setVisible(has_door and not is_quality)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
@@ -517,7 +535,7 @@ class ResultPage(Themed):
             return
         facts = Facts(visit, recording)
         answer = answer_of(facts)
-        then = [answer.then, figures_in_short(facts) if self._is_compact else ""]
+        then = [answer.then, figures_in_short(facts) if self._room.is_compact else ""]
         self.answer.tell(ANSWER_ICONS[answer.outcome], answer.first, " ".join(filter(None, then)))
 
     def _on_method_chosen(self) -> None:
@@ -566,7 +584,7 @@ class ResultPage(Themed):
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
         self._page.setContentsMargins(
-            px(16), px(12 if self._is_compact else 16), px(16), px(8 if self._is_compact else 12)
+            px(16), px(12 if self._room.is_compact else 16), px(16), px(8 if self._room.is_compact else 12)
         )
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(12))

@@ -197,7 +197,7 @@ def test_rerun_that_is_missing_is_told(
 def test_how_a_joint_was_found_is_shown_saved_audited_and_left_again(
     qtbot: QtBot, visit: Visit, step: ResultsStep, controller: LibraryController, tmp_path: Path
 ) -> None:
-    step.on_quiet(2)
+    step.page.results().quality.how_found.click()
     page = step.page.found()
     assert step.page.currentWidget() is page
     assert not step.bar().has_back
