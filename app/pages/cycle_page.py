@@ -20,7 +20,8 @@ from app.reports.walk_figures import (
 )
 from app.theme import Look
 from app.widgets.card import Card
-from app.widgets.figures_table import CARE_MARK, FiguresTable
+from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
+from app.widgets.table import CellTable
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import capitalised, joined, later, name_of, side_name, tr
 from core.body import Joint, Side
@@ -139,14 +140,14 @@ class FiguresCard(Card):
         head.addWidget(Text(look, title, size=16, weight=SEMIBOLD))
         head.addWidget(Text(look, what, size=12, tone="ink2"))
         head.addStretch(1)
-        self.table = FiguresTable(look, title)
+        self.table = CellTable(look, title)
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self.column.addLayout(head)
         self.column.addWidget(self.table)
         self.column.addWidget(self.note)
 
     def show_figures(self, rows: Sequence[str | Figure], strides: Mapping[Side, int], note: str) -> None:
-        self.table.show_figures(rows, strides)
+        self.table.show_rows(figure_columns(strides), figure_rows(rows))
         self.table.setAccessibleDescription(note)
         self.note.setText(note)
 

@@ -14,9 +14,10 @@ from app.theme import Look
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, Kind
 from app.widgets.card import Card
-from app.widgets.facts_table import FactsTable
+from app.widgets.facts_table import fact_columns, fact_rows
 from app.widgets.findings_list import FindingsList
 from app.widgets.icons import IconMark
+from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.widgets.toggle import Toggle
@@ -48,7 +49,7 @@ class QualityPage(Themed):
         self.in_order = Text(look, wraps=True)
         self.engineering = Toggle(look, tr("Engineering figures"), tr("E"), is_on=False)
         self.how_found = Button(look, tr("How was this found?"), Kind.SECONDARY, Icon.SEARCH, height=52)
-        self.facts = FactsTable(look)
+        self.facts = CellTable(look, tr("How each joint was found"), head=36)
         self.findings = FindingsList(look)
         self.figure = JointsFigure(look)
         self.strides = Text(look, size=12, tone="ink2", wraps=True)
@@ -96,7 +97,7 @@ class QualityPage(Themed):
             self._fill()
 
     def show_engineering(self, calibrated: Mapping[Joint, JointCalibration], findings: Sequence[Finding]) -> None:
-        self.facts.show_joints(calibrated)
+        self.facts.show_rows(fact_columns(calibrated), fact_rows(calibrated))
         self.findings.show_findings(findings)
 
     def set_room(self, is_compact: bool) -> None:

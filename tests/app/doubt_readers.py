@@ -13,7 +13,9 @@ import pypdf
 
 from app.pages.result_page import ResultPage
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD
-from app.widgets.figures_table import CARE_MARK, SIDE_OF, FiguresModel
+from app.widgets.figures_table import CARE_MARK
+from app.widgets.table import CellTable
+from app.widgets.table_cells import EMPTY, TextCell
 from core.body import Side
 
 
@@ -120,21 +122,24 @@ UNKNOWN: Mapping[str, Said] = {
 def said_on_screen(page: ResultPage) -> Doubts:
     """Of the figures in the tables of the walk that is shown; those of both legs stand at each."""
     tables = (page.cycles.peaks.table, page.cycles.time_distance.table)
-    return {key: said for table in tables for key, said in _of_table(table.figures)}
+    return {key: said for table in tables for key, said in _of_table(table)}
 
 
-def _of_table(model: FiguresModel) -> Iterator[tuple[tuple[Side, str], Said]]:
+def _of_table(table: CellTable) -> Iterator[tuple[tuple[Side, str], Said]]:
     heading = ""
-    for number, row in enumerate(model.rows):
-        if isinstance(row, str):
-            heading = f"{row}, "
+    for row in table.cells.rows:
+        name, *sides, _band = row.cells
+        assert isinstance(name, TextCell)
+        if row.is_heading:
+            heading = f"{name.text}, "
             continue
-        column = ON_SCREEN.get(heading + row.name)
+        column = ON_SCREEN.get(heading + name.text)
         if column is None:
             continue
-        for at, side in SIDE_OF.items():
-            cell = next(iter(SIDE_OF)) if row.both is not None else at
-            yield (side, column), _on_screen(*model.cell(model.index(number, cell)))
+        for side, of_side in zip(Side, sides, strict=True):
+            cell = sides[0] if of_side is EMPTY else of_side
+            assert isinstance(cell, TextCell)
+            yield (side, column), _on_screen(cell.text, cell.small)
 
 
 def _on_screen(value: str, addition: str) -> Said:

@@ -10,7 +10,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QFontInfo, QPalette
 from PySide6.QtTest import QTest
-from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QStyleOptionViewItem, QWidget
+from PySide6.QtWidgets import QAbstractButton, QApplication, QComboBox, QLabel, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.colours import DARK, LIGHT
@@ -30,9 +30,9 @@ from app.pages.result_page import (
 )
 from app.plots.angle_chart import AngleChart
 from app.theme import Look, load_fonts
-from app.widgets.facts_table import FactsTable
-from app.widgets.figures_table import FiguresTable
 from app.widgets.findings_list import FindingRow
+from app.widgets.table import CellTable
+from app.widgets.table_cells import TextCell
 from app.workers.background import Report, Stopped, Work
 from app.workers.opening import Opened
 from core.analysis import analyse
@@ -368,9 +368,15 @@ def test_the_table_says_how_each_joint_was_found(results: ResultPage) -> None:
         ["Clock lag", "\N{MINUS SIGN}12 ms", "\N{MINUS SIGN}12 ms", "none", "none"],
         ["Zero", "standing", "none", "standing", "none"],
     ]
-    model = results.quality.facts.facts
-    marked = {(r, c) for r in range(6) for c in range(4) if model.cell(model.index(r, c)).needs_look}
-    assert marked == {(2, 2), (3, 3), (5, 1), (5, 3)}
+    model = results.quality.facts.cells
+    every = [(r, c) for r in range(6) for c in range(5)]
+    heard = {at: str(model.index(*at).data(Qt.ItemDataRole.AccessibleTextRole)) for at in every}
+    marked = {(2, 3), (3, 4), (5, 2), (5, 4)}
+    assert {cell for cell, said in heard.items() if said.endswith(", look at it")} == marked
+    cells = [(at, model.cell(model.index(*at))) for at in heard]
+    assert {at for at, cell in cells if isinstance(cell, TextCell) and cell.mark is not None} == marked
+    assert heard[3, 4] == "right ankle, Direction: uncertain, look at it"
+    assert "1.3" in model.index(2, 1).data(Qt.ItemDataRole.ToolTipRole)
 
 
 def test_findings_are_told_the_gravest_first(results: ResultPage) -> None:
@@ -429,16 +435,9 @@ def is_cut(widget: QWidget) -> bool:
         flags = Qt.TextFlag.TextWordWrap if widget.wordWrap() else 0
         needed = widget.fontMetrics().boundingRect(0, 0, room.width(), 10_000, int(flags), widget.text())
         return needed.width() > room.width() or needed.height() > room.height()
-    if isinstance(widget, FactsTable):
-        option, model = QStyleOptionViewItem(), widget.facts
-        cells = [model.index(r, c) for r in range(model.rowCount()) for c in range(model.columnCount())]
-        needs = [(cell, widget.itemDelegate().sizeHint(option, cell)) for cell in cells]
-        return any(
-            need.width() > widget.columnWidth(cell.column()) or need.height() > widget.rowHeight(cell.row())
-            for cell, need in needs
-        )
-    if isinstance(widget, FiguresTable):
-        return widget.width() < sum(widget.needed_widths) or widget.height() < widget.minimumSizeHint().height()
+    if isinstance(widget, CellTable):
+        is_narrow = any(widget.columnWidth(k) < need for k, need in enumerate(widget.needed_widths))
+        return is_narrow or widget.height() < widget.minimumSizeHint().height()
     if isinstance(widget, QAbstractButton | QComboBox) and widget.accessibleName():
         need = widget.minimumSizeHint()
         return need.width() > widget.width() or need.height() > widget.height()

@@ -15,6 +15,8 @@ from app.pages.cycle_page import NO_SIDE, NO_SPEED
 from app.pages.result_page import ANSWER, STRIDES, WHOLE, Beside, ResultPage
 from app.reports.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
 from app.theme import Look, load_fonts
+from app.widgets.table import CellTable
+from app.widgets.table_cells import TextCell
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.norms import AgeAndHeight, NoBand
@@ -85,6 +87,10 @@ def rows_of(page: ResultPage) -> dict[str, list[str]]:
     rows = [line.split("\t") for line in page.cycles.peaks.table.as_text().split("\n")]
     rows += [line.split("\t") for line in page.cycles.time_distance.table.as_text().split("\n")]
     return {row[0]: row[1:] for row in rows}
+
+
+def row_named(table: CellTable, name: str) -> int:
+    return next(k for k, row in enumerate(table.cells.rows) if row.cells[0].words == name)
 
 
 def test_a_walk_opens_with_its_answer_its_mean_cycle_and_what_differs(page: ResultPage) -> None:
@@ -197,19 +203,19 @@ def test_the_tables_hold_the_figures_of_the_strides_used(page: ResultPage, analy
 
 
 def test_under_ten_strides_no_spread_is_shown_and_under_three_no_mean(page: ResultPage, analysis: Analysis) -> None:
-    model = page.cycles.peaks.table.figures
+    table = page.cycles.peaks.table
     for count, has_spread, words in ((10, True, ""), (9, False, "*"), (2, False, "withheld")):
         show(page, with_few_strides(analysis, left=count, right=count))
-        swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
-        value, addition = model.cell(model.index(swing, 1))
-        assert ("±" in addition) is has_spread, count
-        assert addition.endswith(words), count
-        assert bool(value) is (count > 2), count
+        cell = table.cells.rows[row_named(table, "Swing peak")].cells[1]
+        assert isinstance(cell, TextCell)
+        assert ("±" in cell.small) is has_spread, count
+        assert cell.small.endswith(words), count
+        assert bool(cell.text) is (count > 2), count
     assert "L and R: under 3 strides, so without a mean." in page.cycles.peaks.note.text()
 
 
 def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
-    model = page.cycles.peaks.table.figures
+    model = page.cycles.peaks.table.cells
     said = [
         str(model.data(model.index(row, column), Qt.ItemDataRole.AccessibleTextRole))
         for row in range(model.rowCount())
@@ -217,7 +223,7 @@ def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
     ]
     assert any(text.startswith("Knee swing peak, left: ") and text.endswith("°") for text in said)
     assert "Knee swing peak, reference band: no value" in said
-    times = page.cycles.time_distance.table.figures
+    times = page.cycles.time_distance.table.cells
     cadence = str(times.data(times.index(1, 1), Qt.ItemDataRole.AccessibleTextRole))
     assert cadence.startswith("Cadence, both sides: ")
     assert cadence.endswith(" steps/min")
@@ -225,8 +231,8 @@ def test_a_cell_is_heard_with_its_joint_side_and_unit(page: ResultPage) -> None:
 
 def test_a_cell_to_be_read_with_care_says_so_to_who_hears_it(page: ResultPage, analysis: Analysis) -> None:
     show(page, recalibrated(analysis, [Joint.LEFT_KNEE], axis_sd_rad=np.deg2rad(8.0)))
-    model = page.cycles.peaks.table.figures
-    swing = next(k for k, row in enumerate(model.rows) if not isinstance(row, str) and row.name == "Swing peak")
+    model = page.cycles.peaks.table.cells
+    swing = row_named(page.cycles.peaks.table, "Swing peak")
     heard = [str(model.data(model.index(swing, k), Qt.ItemDataRole.AccessibleTextRole)) for k in (1, 2)]
     assert heard[0].endswith("°, read with care")
     assert heard[1].endswith("°")
