@@ -17,6 +17,7 @@ from app.pages.compared_words import (
     side_sentence,
     side_table_row,
     side_weight,
+    table_columns,
     table_rows,
     weight,
     why_not_told,
@@ -45,9 +46,9 @@ from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
-from app.widgets.difference_table import DifferenceTable
 from app.widgets.icons import IconMark
 from app.widgets.segmented import Segmented
+from app.widgets.table import CellTable
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, tr
@@ -118,7 +119,7 @@ class ComparePage(Themed):
         self.title = Text(look, size=16, weight=SEMIBOLD)
         self.error = Text(look, size=12, tone="ink2", wraps=True)
         self.plot = DifferencePlot(look)
-        self.table = DifferenceTable(look, tr("Differences"))
+        self.table = CellTable(look, tr("Differences"))
         self._mark = IconMark(look, Icon.WARNING, size=20)
         self.conclusion = Text(look, size=14, wraps=True)
         self._build()
@@ -393,8 +394,8 @@ class ComparePage(Themed):
         worth = sorted((row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence), key=weight)
         self._say([sentence(row) for row in worth], told, chosen)
         self.plot.show_groups(self._groups(found), self.title.text(), self.conclusion.text())
-        heads = ["", *(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
-        self.table.show_rows(heads, table_rows(found))
+        heads = [*(part.letter for part in chosen), *(f"{part.letter} {MINUS} {letter}" for part in found.others)]
+        self.table.show_rows(table_columns(heads, has_sides=True), table_rows(found, heads))
         self.table.setAccessibleDescription(self.conclusion.text())
 
     def _show_sides(self) -> None:
@@ -432,8 +433,9 @@ class ComparePage(Themed):
             if self._is_spacious or row.measure.column in BRIEF
         ]
         self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
-        heads = ["", one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
-        self.table.show_rows(heads, [side_table_row(row) for row in self.side_rows])
+        heads = [one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
+        rows = [side_table_row(row, heads) for row in self.side_rows]
+        self.table.show_rows(table_columns(heads, has_sides=False), rows)
         self.table.setAccessibleDescription(self.conclusion.text())
 
     def _groups(self, found: Comparison) -> list[DifferenceGroup]:

@@ -7,13 +7,16 @@ from dataclasses import replace
 import numpy as np
 
 from app.gates_in_words import verdict_word
+from app.icons import Icon
 from app.plots.compared_chart import Line
 from app.plots.difference_plot import DifferenceRow, Dot
 from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
 from app.reports.walk_figures import is_mean_enough, is_spread_enough, reason_in_words
 from app.widgets.chip import LETTERS
-from app.widgets.difference_table import Cell, DifferenceTableRow
-from app.widgets.figures_table import CARE_MARK
+from app.widgets.figures_table import CARE_MARK, FIGURE
+from app.widgets.table import TableColumn, TableRow
+from app.widgets.table_cells import EMPTY, RIGHT, TextCell
+from app.widgets.text import REGULAR, SEMIBOLD
 from app.wording import capitalised, side_name, tr
 from core.body import Joint, Side
 from core.gait.spatiotemporal import MeanAndSd
@@ -49,7 +52,13 @@ def plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
     return DifferenceRow(side, words, dots, last.difference.error)
 
 
-def table_rows(found: Comparison) -> list[DifferenceTableRow]:
+def table_columns(heads: Sequence[str], *, has_sides: bool) -> list[TableColumn]:
+    """The legs where rows are of one of them, the names, and `heads` over values and differences."""
+    columns = [TableColumn(TextCell(head, align=RIGHT, size=12, tone="ink2")) for head in heads]
+    return [TableColumn(is_hidden=not has_sides), TableColumn(share=1), *columns]
+
+
+def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
     """Every measure of each leg: the values of all parts, then their differences."""
     rows: dict[tuple[str, Side], list[Compared]] = {}
     for row in found.rows:
@@ -59,7 +68,7 @@ def table_rows(found: Comparison) -> list[DifferenceTableRow]:
         measure = compared[0].measure
         values = [_value(part.value(side, measure.column), _verdict(part, side, measure)) for part in found.parts]
         changes = [_changed(row) for row in compared]
-        lines.append(DifferenceTableRow(tr(measure.name), side, (*values, *changes)))
+        lines.append(_table_row(tr(measure.name), side, heads, (*values, *changes)))
     return lines
 
 
@@ -85,13 +94,31 @@ def withheld_in_words(part: Part, joint: Joint) -> str:
     return pattern.format(letter=part.letter, reason=reason_in_words(part.verdicts.joint(joint)))
 
 
-def side_table_row(row: SideRow) -> DifferenceTableRow:
+def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
     """One measure of both legs, their difference and symmetry."""
     symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
-    return DifferenceTableRow(
-        tr(row.measure.name),
-        None,
-        (_value(row.first, row.verdicts[0]), _value(row.second, row.verdicts[1]), _changed(row), Cell(symmetry)),
+    values = _value(row.first, row.verdicts[0]), _value(row.second, row.verdicts[1])
+    return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _figure(symmetry)))
+
+
+def _table_row(name: str, side: Side | None, heads: Sequence[str], cells: Sequence[TextCell]) -> TableRow:
+    """A row whose cells say which leg, measure and part they are of, for who hears one cell at a time."""
+    chip = EMPTY if side is None else TextCell(side=side, spoken=side_name(side))
+    who = name if side is None else f"{LETTERS[side]} {name}"
+    said = (replace(cell, spoken=f"{who}, {head}: {cell.words}") for head, cell in zip(heads, cells, strict=True))
+    return TableRow((chip, TextCell(name), *said))
+
+
+def _figure(value: str, small: str = "", *, is_marked: bool = False, is_grey: bool = False) -> TextCell:
+    """A value and what stands smaller behind it; marked: beyond the error; grey: not to be relied on."""
+    return TextCell(
+        value,
+        small,
+        align=RIGHT,
+        size=FIGURE,
+        weight=SEMIBOLD if is_marked else REGULAR,
+        tone="ink3" if is_grey else "ink",
+        mark=Icon.WARNING if is_marked else None,
     )
 
 
@@ -100,22 +127,22 @@ def _verdict(part: Part, side: Side, measure: Measure) -> Verdict:
     return part.assessment(side, measure.column).verdict if is_measured else Verdict.NOT_MEASURED
 
 
-def _value(value: MeanAndSd, verdict: Verdict = Verdict.READ) -> Cell:
+def _value(value: MeanAndSd, verdict: Verdict = Verdict.READ) -> TextCell:
     if verdict is Verdict.WITHHELD:
-        return Cell(verdict_word(verdict), is_grey=True)
+        return _figure(verdict_word(verdict), is_grey=True)
     if not value.n:
-        return Cell(DASH, is_grey=True)
+        return _figure(DASH, is_grey=True)
     spread = f"± {value.sd:.1f}" if is_spread_enough(value.n) else ""
     spread = f"{spread} {CARE_MARK}".lstrip() if verdict is Verdict.CARE else spread
     mean = f"{value.mean:.1f}"
-    return Cell("0.0" if float(mean) == 0 else mean.replace("-", MINUS), spread, is_grey=not is_mean_enough(value.n))
+    return _figure("0.0" if float(mean) == 0 else mean.replace("-", MINUS), spread, is_grey=not is_mean_enough(value.n))
 
 
-def _changed(row: Compared | SideRow) -> Cell:
+def _changed(row: Compared | SideRow) -> TextCell:
     if not row.is_told:
-        return Cell(DASH, is_grey=True)  # the values beside it say why
+        return _figure(DASH, is_grey=True)  # the values beside it say why
     words = change_in_words(row.difference.difference, row.measure)
-    return Cell(words, _doubt(row.difference), row.exceeds)
+    return _figure(words, _doubt(row.difference), is_marked=row.exceeds)
 
 
 def _doubt(found: Difference) -> str:

@@ -56,7 +56,7 @@ def fact_rows(found: Mapping[Joint, JointCalibration]) -> list[TableRow]:
 
 def _joint_head(joint: Joint) -> TextCell:
     words = tr("Knee") if joint.is_knee else tr("Ankle")
-    return TextCell(words, align=RIGHT, weight=MEDIUM, side=joint.side, copied=name_of(joint))
+    return TextCell(words, align=RIGHT, weight=MEDIUM, side=joint.side, spoken=name_of(joint))
 
 
 def _cell(fact: Fact, question: str, joint: Joint) -> TextCell:

@@ -41,7 +41,7 @@ def figure_rows(rows: Sequence[str | Figure]) -> list[TableRow]:
 def _side_head(side: Side, strides: Mapping[Side, int]) -> TextCell:
     count = strides.get(side)
     words = tr_n("{count} stride", "{count} strides", count).format(count=count) if count is not None else ""
-    return TextCell(words, align=RIGHT, size=12, tone="ink2", side=side, copied=f"{LETTERS[side]}, {words}")
+    return TextCell(words, align=RIGHT, size=12, tone="ink2", side=side, spoken=f"{LETTERS[side]}, {words}")
 
 
 def _figure_cells(row: Figure, heading: str) -> tuple[TextCell, ...]:

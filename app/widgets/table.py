@@ -201,7 +201,7 @@ class CellTable(QTableView):
 
     def as_text(self) -> str:
         """Give the table as tab-separated lines."""
-        lines = [[column.head.words for column in self.cells.columns]]
+        lines = [[column.head.said for column in self.cells.columns]]
         lines += [[cell.words for cell in row.cells] for row in self.cells.rows]
         return "\n".join("\t".join(cells) for cells in lines)
 
@@ -232,7 +232,7 @@ class CellTable(QTableView):
     def room_of(self, rect: QRectF, column: int, *, is_heading: bool = False) -> QRectF:
         """What a cell's padding leaves of it; a heading lies on a ground of its own and begins after its edge."""
         px = self._look.theme.px
-        left = px(self._padding) if column or is_heading else self._first_edge
+        left = px(self._padding) if is_heading else self._left_padding(column)
         return rect.adjusted(left, 0, -px(self._padding), 0)
 
     def fit(self) -> None:
@@ -290,12 +290,13 @@ class CellTable(QTableView):
             measured.append(described.widest)
         else:
             measured += [row.cells[column] for row in self.cells.rows if row.cells[column].span == 1]
-        left = theme.px(self._padding) if column else self._first_edge
-        return max(cell.width(theme) for cell in measured) + left + theme.px(self._padding) + 1
+        return max(cell.width(theme) for cell in measured) + self._left_padding(column) + theme.px(self._padding) + 1
 
-    @property
-    def _first_edge(self) -> int:
-        return self._look.theme.px(self._edge) if self._edge else 0
+    def _left_padding(self, column: int) -> int:
+        """The padding before a cell, which is the table's edge at the first column that is shown."""
+        is_first = all(self.isColumnHidden(before) for before in range(column))
+        length = self._edge if is_first else self._padding
+        return self._look.theme.px(length) if length else 0
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
         if not self._is_list and event.matches(QKeySequence.StandardKey.Copy):

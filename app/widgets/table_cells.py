@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter
 
 from app.icons import Icon, paint_icon
 from app.tokens import Theme
-from app.widgets.chip import CHIP, paint_chip
+from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import REGULAR
 from core.body import Side
 
@@ -67,7 +67,7 @@ class TextCell(TableCell):
     r"""A text in one or several lines ("\n"), with a mark or the chip of a leg before and smaller words behind it.
 
     `align` is LEFT, RIGHT or CENTRE, `tone` the token of the text's colour. `wraps`: it asks for the room of its
-    longest word only. `spoken` and `copied` stand for its words where these alone would not be understood.
+    longest word only. `spoken` stands for its words where these alone would not be understood.
     """
 
     text: str = ""
@@ -81,11 +81,11 @@ class TextCell(TableCell):
     span: int = 1
     wraps: bool = False
     spoken: str = ""
-    copied: str = ""
 
     @property
     def words(self) -> str:
-        return self.copied or " ".join(filter(None, [self.text.replace("\n", " "), self.small]))
+        letter = LETTERS[self.side] if self.side is not None else ""
+        return " ".join(filter(None, [letter, self.text.replace("\n", " "), self.small]))
 
     @property
     def said(self) -> str:
@@ -116,11 +116,12 @@ class TextCell(TableCell):
 
     def _paint_mark(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
         assert self.mark is not None
-        paint_icon(painter, self.mark, self._square(room, theme.px(MARK), theme.px(MARK_GAP)), theme.colours.ink)
+        width = self._mark_width(theme)
+        paint_icon(painter, self.mark, self._square(room, theme.px(MARK), width), theme.colours.ink)
 
     def _paint_chip(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
         assert self.side is not None
-        paint_chip(painter, self._square(room, theme.px(CHIP), theme.px(CHIP_GAP)), self.side, theme)
+        paint_chip(painter, self._square(room, theme.px(CHIP), self._chip_width(theme)), self.side, theme)
 
     def _paint_text(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
         gap = theme.px(SMALL_GAP) if self.small and self.align == RIGHT else 0
@@ -138,16 +139,20 @@ class TextCell(TableCell):
     def _way(self) -> Qt.AlignmentFlag:
         return RIGHT if self.align == RIGHT else LEFT
 
-    def _square(self, room: QRectF, side: int, gap: int) -> QRectF:
-        """The place of a mark or a chip at the edge of `room`, with the gap to the text behind it."""
-        left = room.right() - side - gap if self.align == RIGHT else room.left()
+    def _square(self, room: QRectF, side: int, width: int) -> QRectF:
+        """The place of a mark or a chip at the edge of `room`, where it takes `width` with the gap to the text."""
+        left = room.right() - width if self.align == RIGHT else room.left()
         return QRectF(left, room.center().y() - side / 2, side, side)
 
     def _mark_width(self, theme: Theme) -> int:
-        return theme.px(MARK) + theme.px(MARK_GAP) if self.mark is not None else 0
+        return theme.px(MARK) + self._gap(MARK_GAP, theme) if self.mark is not None else 0
 
     def _chip_width(self, theme: Theme) -> int:
-        return theme.px(CHIP) + theme.px(CHIP_GAP) if self.side is not None else 0
+        return theme.px(CHIP) + self._gap(CHIP_GAP, theme) if self.side is not None else 0
+
+    def _gap(self, length: int, theme: Theme) -> int:
+        """The room between a mark or a chip and the text, where there is one."""
+        return theme.px(length) if self.text or self.small else 0
 
     def _text_width(self, theme: Theme) -> int:
         metrics = QFontMetrics(theme.font(self.size, self.weight))

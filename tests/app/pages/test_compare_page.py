@@ -7,10 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.icons import Icon
 from app.pages.compare_page import CURVES, PLOT, TABLE
+from app.pages.compared_words import side_table_row
 from app.pages.result_page import COMPARE, ResultPage
 from app.reports.comparison import Comparison, Kind, Part, compare_sides, conditions_of, first_and_second
 from app.reports.differences import (
@@ -25,12 +28,14 @@ from app.reports.differences import (
 from app.reports.patient_report.request import Visit
 from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme import Look, load_fonts
+from app.widgets.table_cells import TextCell
+from app.widgets.text import SEMIBOLD
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.samples import Session
 from core.verdicts.gates import judged
-from core.verdicts.measurement_error import ComparisonKind, ErrorSource
+from core.verdicts.measurement_error import ComparisonKind, ErrorSource, Judgement
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.walker_body import Tissue
 from tests.app.changed_analysis import recalibrated
@@ -356,12 +361,45 @@ def test_between_walks_only_what_is_worth_a_sentence_is_said(
     assert not any(row.difference.is_worth_a_sentence for row in few.rows)
 
 
+def table_words(page: ResultPage) -> list[list[str]]:
+    """The leg, the name and the cells of every row."""
+    return [line.split("\t") for line in page.compare.table.as_text().split("\n")[1:]]
+
+
+def test_every_cell_of_the_table_says_leg_measure_and_part(
+    page: ResultPage, analysis: Analysis, session: Session
+) -> None:
+    """Legs stand in a column of their own, where rows are of one of them."""
+    cells, said = page.compare.table.cells, Qt.ItemDataRole.AccessibleTextRole
+    shown(page, analysis, session, Kind.CONDITIONS)
+    assert not page.compare.table.isColumnHidden(0)
+    assert (cells.index(0, 0).data(), cells.index(0, 0).data(said)) == ("L", "left")
+    heard = str(cells.index(0, 4).data(said))
+    assert heard.startswith(f"L {cells.index(0, 1).data()}, B \N{MINUS SIGN} A: ")
+    assert heard.endswith(f": {cells.index(0, 4).data()}")
+    shown(page, analysis, session, Kind.SIDES)
+    assert page.compare.table.isColumnHidden(0)
+    assert str(cells.index(0, 2).data(said)).startswith(f"{cells.index(0, 1).data()}, L: ")
+    assert all(not line[0] for line in table_words(page))
+
+
+def test_what_lies_beyond_its_error_is_marked_and_nothing_else(parts: tuple[Part, ...]) -> None:
+    rows = compare_sides(parts[0], (Side.LEFT, Side.RIGHT))
+    knee = next(row for row in rows if row.measure.column == "knee_range_deg")
+    for judgement, mark in ((Judgement.INSIDE_ERROR, None), (Judgement.EXCEEDS_ERROR, Icon.WARNING)):
+        row = replace(knee, difference=replace(knee.difference, judgement=judgement))
+        cell = side_table_row(row, ["L", "R", "L - R", "symmetry, %"]).cells[4]
+        assert isinstance(cell, TextCell)
+        assert cell.mark is mark
+        assert (cell.weight == SEMIBOLD) is (mark is not None)
+
+
 def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
     shown(page, analysis, session, Kind.SIDES)
-    rows = {row.name: row.cells for row in page.compare.table.figures.rows}
-    assert rows["Ankle range"][2].addition == "\N{DAGGER}"
+    rows = {name: cells for _, name, *cells in table_words(page)}
+    assert rows["Ankle range"][2].endswith(" \N{DAGGER}")
     assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
     assert "For the ankle the knee's figure is borrowed." in page.compare.error.text()
     assert "strapping the sensors on" in page.compare.error.text()
@@ -371,14 +409,15 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     for words in ("chance between strides", "drift within a walk", "another walking speed", "what walks differ by"):
         assert words in told
     assert "strapping" not in told
-    stance = [row.cells[2] for row in page.compare.table.figures.rows if row.name.startswith("Stance")]
-    assert [cell.addition for cell in stance] == ["", ""]  # measured by ourselves
+    stance = [cells[2] for _, name, *cells in table_words(page) if name.startswith("Stance")]
+    assert len(stance) == 2
+    assert "\N{DAGGER}" not in "".join(stance)  # measured by ourselves
 
 
 def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
     shown(page, doubtful, session, Kind.SIDES)
-    rows = {row.name: [cell.value for cell in row.cells] for row in page.compare.table.figures.rows}
+    rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range"][1:3] == ["withheld", "\N{EN DASH}"]
     assert rows["Ankle range"][0] not in ("withheld", "\N{EN DASH}")
     assert "withheld" not in rows["Knee range"]
