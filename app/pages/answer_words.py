@@ -4,11 +4,12 @@ import math
 from collections import Counter
 from statistics import fmean
 
+from app.charts.cycles import is_mean_enough
 from app.gates_in_words import verdict_word
 from app.reports.patient_report.data_quality import DataQuality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed
-from app.reports.walk_figures import Figure, is_mean_enough
+from app.reports.walk_figures import Figure
 from app.widgets.fact_strip import KeyFigure
 from app.wording import tr, tr_n
 from core.body import Side

@@ -6,6 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
 from app.pages.compared_words import (
     MINUS,
@@ -25,7 +26,7 @@ from app.pages.compared_words import (
 )
 from app.plots.axes import ANKLE_DEG, KNEE_DEG, joint_of
 from app.plots.compared_chart import ComparedChart, ComparedFrame
-from app.plots.cycle_chart import Band, CycleCharts
+from app.plots.cycle_chart import CycleCharts
 from app.plots.difference_plot import DifferenceGroup, DifferencePlot, DifferenceRow, Dot
 from app.reports.comparison import (
     Compared,
@@ -40,7 +41,6 @@ from app.reports.comparison import (
 )
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.visits import ComparedVisits, condition_in_words
-from app.reports.walk_figures import SideCycle
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS

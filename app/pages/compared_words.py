@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
 from app.icons import Icon
 from app.plots.compared_chart import Line
 from app.plots.difference_plot import DifferenceRow, Dot
 from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
-from app.reports.walk_figures import is_mean_enough, is_spread_enough, reason_in_words
+from app.reports.walk_figures import reason_in_words
 from app.widgets.chip import LETTERS
 from app.widgets.figures_table import CARE_MARK, FIGURE
 from app.widgets.table import TableColumn, TableRow

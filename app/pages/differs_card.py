@@ -3,11 +3,11 @@
 import math
 from collections.abc import Sequence
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.icons import Icon
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words, signed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS

@@ -4,7 +4,6 @@ The chart paints itself: nobody zooms a stride, and so every label finds its pla
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 import pyqtgraph as pg
@@ -12,6 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
+from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
 from app.icons import Icon
 from app.plots.axes import (
     ABOUT_MEAN_DEG,
@@ -27,18 +27,7 @@ from app.plots.axes import (
     sign_in_words,
     title_in_words,
 )
-from app.reports.walk_figures import (
-    MAY_BE_MIRRORED,
-    NO_HEIGHT,
-    NO_ZERO,
-    WITHHELD,
-    SideCycle,
-    doubt_in,
-    is_mean_enough,
-    is_spread_enough,
-    verdict_of,
-    why_in_words,
-)
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
@@ -49,7 +38,6 @@ from app.widgets.verdict_chip import VerdictChip
 from app.widgets.withheld_panel import WithheldPanel
 from app.wording import capitalised, joined, later, tr
 from core.body import Joint, Side
-from core.gait.cycles import POINTS
 from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
@@ -70,15 +58,6 @@ DOUBTS = {
 }
 SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
 SIMULATED = later("SIMULATED")
-PERCENT = np.arange(POINTS, dtype=np.float64)
-
-
-@dataclass(frozen=True, slots=True)
-class Band:
-    """Mean and standard deviation between subjects (101,), degrees."""
-
-    mean_deg: FloatArray
-    sd_deg: FloatArray
 
 
 class CycleCharts(Themed):

@@ -5,20 +5,20 @@ The window and the report show the same rows, so that no number stands in one th
 
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.charts.cycles import SideCycle, is_mean_enough, is_spread_enough
 from app.gates_in_words import GateWords, gate_words
 from app.wording import NAMES, joined, later, side_name, tr, tr_n
 from core.body import Joint, Side, ankle_of, knee_of
 from core.chosen_strides import left_out_by_hand
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, MeanCycle, find_peak, mean_cycle
+from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak, mean_cycle
 from core.gait.spatiotemporal import MeanAndSd
 from core.gait.strides import Reason
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD, ReferenceCurves, ReferenceValues
 from core.results import RecordingAnalysis, SideGait
-from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict, worst
 from core.verdicts.quantities import assessment_of_both, both_sides, side_mean, used_cycles
 
@@ -42,25 +42,6 @@ class Figure:
     with_care: frozenset[Side] = frozenset()
 
 
-@dataclass(frozen=True, slots=True)
-class SideCycle:
-    """One joint over the strides used, degrees: the mean with its spread, and single strides (k, 101)."""
-
-    mean: MeanCycle
-    strides_deg: FloatArray
-    toe_off_percent: float
-
-    @property
-    def height_deg(self) -> float:
-        """The mean over the stride: how high the curve lies as a whole."""
-        return float(np.mean(self.mean.mean)) if self.mean.n else 0.0
-
-    def about_mean(self) -> "SideCycle":
-        """The same without its height, as it is drawn where that says nothing."""
-        lowered = replace(self.mean, mean=self.mean.mean - self.height_deg)
-        return replace(self, mean=lowered, strides_deg=self.strides_deg - self.height_deg)
-
-
 PEAKS = (  # name of the column in strides.csv, name for the reader, window of the band's peak
     ("at_initial_contact_deg", later("At initial contact"), None),
     ("loading_peak_deg", later("Loading peak"), "knee_loading_peak"),
@@ -79,14 +60,6 @@ NO_ZERO, NO_HEIGHT = later("no zero"), later("height withheld")
 
 def strides_used(gait: SideGait) -> int:
     return int(np.count_nonzero(gait.strides.is_used))
-
-
-def is_mean_enough(n: int) -> bool:
-    return n >= MIN_STRIDES_FOR_MEAN
-
-
-def is_spread_enough(n: int) -> bool:
-    return n >= MIN_STRIDES_FOR_SD
 
 
 def strides_in_words(side: Side, gait: SideGait) -> str:

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Mapping, Sequence
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
-from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import Figure
 from app.widgets.chip import LETTERS
 from app.widgets.table import TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, RIGHT, TextCell

@@ -6,10 +6,10 @@ They are the sentences of the report's first page, so that nobody reads on paper
 from dataclasses import dataclass
 from enum import StrEnum
 
+from app.charts.cycles import is_mean_enough
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.what_stands_out import judged_differences, nothing_found, ranked_findings
-from app.reports.walk_figures import is_mean_enough
 from app.wording import joined, later, tr
 from core.body import Side
 from core.verdicts.model import Verdict

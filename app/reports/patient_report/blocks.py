@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from app.reports.patient_report.drawing import Picture
+from app.charts.drawing import Picture
 
 Block = dict[str, object]
 

@@ -6,6 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.charts.drawing import DASHES, MM, Picture
 from app.gates_in_words import verdict_word
 from app.reports.comparison import (
     MEASURES,
@@ -23,7 +25,6 @@ from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
 from app.reports.patient_report.cycle_chart import Chart, Line, draw
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.drawing import DASHES, MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import (
     CARE,
@@ -39,7 +40,6 @@ from app.reports.patient_report.numbers_in_words import (
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.visits import by_condition, condition_in_words
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import capitalised, joined, tr
 from core.body import Side
 from core.samples import FloatArray

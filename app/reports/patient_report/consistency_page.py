@@ -5,15 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.charts.drawing import MM, Picture
 from app.gates_in_words import verdict_word
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
-from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed, marked
 from app.reports.patient_report.small_charts import StrideValues, stride_strip
-from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import by_hand_in_words
 from app.wording import side_name, tr
 from core.body import Side
 from core.verdicts.model import Verdict

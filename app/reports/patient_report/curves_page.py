@@ -2,15 +2,16 @@
 
 import math
 
+from app.charts.cycles import is_mean_enough
+from app.charts.drawing import MM
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, figure_with_words, heading, note, paragraph
 from app.reports.patient_report.cycle_chart import Chart, draw
-from app.reports.patient_report.drawing import MM
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.first_page import why_no_band
 from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.reference_bands import OTHER_AGES
-from app.reports.walk_figures import by_hand_in_words, is_mean_enough
+from app.reports.walk_figures import by_hand_in_words
 from app.wording import capitalised, joined, side_name, tr
 from core.body import Side
 

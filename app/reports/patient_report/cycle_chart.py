@@ -5,7 +5,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.reports.patient_report.drawing import (
+from app.charts.cycles import PERCENT
+from app.charts.drawing import (
     BADGE,
     BAND_MEAN,
     COLOURS,
@@ -37,7 +38,6 @@ from core.samples import FloatArray
 LEFT_MARGIN, RIGHT_MARGIN, TOP, TOP_LABELS, FOOT = 27.0, 9.0, 13.0, 14.0, 30.0
 SPAN_HEIGHT, SPAN_ROW = 9.0, 11.0
 MIN_BADGE_DISTANCE = 14.0
-PERCENT = np.arange(POINTS, dtype=np.float64)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Mapping
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
 from app.reports.comparison import Comparison
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
@@ -25,7 +26,7 @@ from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.small_charts import gauge
 from app.reports.reference_bands import WHY_NO_BAND
-from app.reports.walk_figures import Figure, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import Figure
 from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.reports.patient_report.cycle_chart import Axis, Line, Mark, Span
-from app.reports.patient_report.drawing import (
+from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.charts.drawing import (
     BAND_MEAN,
     COLOURS,
     DASHES,
@@ -24,9 +24,9 @@ from app.reports.patient_report.drawing import (
     picture,
     text,
 )
+from app.reports.patient_report.cycle_chart import Axis, Line, Mark, Span
 from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
-from app.reports.walk_figures import is_mean_enough, is_spread_enough
 from app.wording import side_name, tr
 from core.body import Side
 from core.samples import FloatArray

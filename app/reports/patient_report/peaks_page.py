@@ -2,12 +2,13 @@
 
 import math
 
+from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.charts.drawing import MM, Picture
 from app.gates_in_words import verdict_word
 from app.reports.comparison import compare_legs
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, if_room, legend, note, table
 from app.reports.patient_report.cycle_chart import Chart, draw
-from app.reports.patient_report.drawing import MM, Picture
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
@@ -24,7 +25,7 @@ from app.reports.patient_report.numbers_in_words import (
     spread,
 )
 from app.reports.patient_report.panels import peak_name
-from app.reports.walk_figures import by_hand_in_words, is_mean_enough, is_spread_enough
+from app.reports.walk_figures import by_hand_in_words
 from app.wording import capitalised, tr
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd

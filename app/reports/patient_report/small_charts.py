@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.reports.patient_report.drawing import (
+from app.charts.drawing import (
     COLOURS,
     DASHES,
     GREY,

@@ -6,10 +6,10 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.charts.cycles import SideCycle
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
-from app.reports.walk_figures import SideCycle
 from app.theme import Look, load_fonts
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.charts.drawing import Picture
 from app.reports.patient_report import comparison_page, consistency_page, curves_page, cycle_chart, panels, peaks_page
 from app.reports.patient_report.cycle_chart import Chart
 from app.reports.patient_report.document import report_data
-from app.reports.patient_report.drawing import Picture
 from app.reports.patient_report.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
 from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.reference_bands import reference_curves, time_distance_classes
