@@ -19,6 +19,7 @@ from app.pages.quality_page import QualityPage
 from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
+from app.plots.moving_legs import MovingLegs
 from app.reports.comparison import Kind as ComparedKind
 from app.reports.comparison import conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
@@ -26,6 +27,7 @@ from app.reports.patient_report.data_quality import data_quality, quality_withou
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.request import Visit
 from app.reports.reference_bands import age_and_height, sides_with_band
+from app.review.mean_legs import mean_legs
 from app.theme import Look
 from app.widgets.button import Button, Kind
 from app.widgets.choice import Choice
@@ -122,12 +124,18 @@ class ResultParts:
         return JointCharts(self._look)
 
     @cached_property
+    def legs(self) -> MovingLegs:
+        return MovingLegs(self._look)
+
+    @cached_property
     def quality(self) -> QualityPage:
         return QualityPage(self._look)
 
     def make_next(self) -> bool:
         """Make one part; whether there was one left to be made."""
-        left = [name for name in ("cycles", "strides", "compare", "charts", "quality") if name not in vars(self)]
+        left = [
+            name for name in ("cycles", "strides", "compare", "charts", "quality", "legs") if name not in vars(self)
+        ]
         if left:
             getattr(self, left[0])
         return bool(left)
@@ -177,7 +185,9 @@ class ResultPage(Themed):
         self.differs = DiffersCard(look)
         self.door = Door(look, tr("Q"))
         self.all_figures = Toggle(look, tr("All figures"), tr("F"), is_on=False)
+        self.show_legs = Toggle(look, tr("Legs"), tr("G"), is_on=False)
         self.cycles = parts.cycles
+        self.legs = parts.legs
         self.strides = parts.strides
         self.compare = parts.compare
         self.charts = parts.charts
@@ -278,7 +288,14 @@ class ResultPage(Themed):
     @property
     def tab_order(self) -> list[QWidget]:
         """What takes the focus, in the order of reading."""
-        choices = [self.to_answer, *self.view.segments, self.recordings, self.beside, *self.methods.segments]
+        choices = [
+            self.to_answer,
+            *self.view.segments,
+            self.recordings,
+            self.beside,
+            self.show_legs,
+            *self.methods.segments,
+        ]
         shown = [
             self.charts,
             self.whole,
@@ -299,7 +316,7 @@ class ResultPage(Themed):
         self._choices = QWidget()
         choices = QHBoxLayout(self._choices)
         choices.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.recordings, self.beside, self._against):
+        for widget in (self.recordings, self.beside, self.show_legs, self._against):
             choices.addWidget(widget)
         self._curves = QWidget()
         left = QVBoxLayout(self._curves)
@@ -326,6 +343,7 @@ class ResultPage(Themed):
         for widget, share in (
             (self._curves, 1),
             (self.cycles, 1),
+            (self.legs, 0),
             (self.strides, 0),
             (self.compare, 1),
             (self._figures, 1),
@@ -356,12 +374,15 @@ class ResultPage(Themed):
         self.whole.clicked.connect(self.charts.show_whole)
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
+        self.show_legs.toggled.connect(self._on_legs_toggled)
+        self.legs.moved.connect(lambda: self.cycles.charts.show_cursor(self.legs.cursor))
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))
         for key, button in (
             (tr("Q"), self.door),
             (tr("F"), self.all_figures),
+            (tr("G"), self.show_legs),
             (tr("Esc"), self.to_answer),
             (tr("E"), self.quality.engineering),
         ):
@@ -403,6 +424,7 @@ class ResultPage(Themed):
         self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
         self.cycles.charts.set_brief(self._room.is_compact)
+        self.legs.set_brief(self._room.is_compact)
         stacked = QBoxLayout.Direction.TopToBottom if self._room.is_narrow else QBoxLayout.Direction.LeftToRight
         self._tables.setDirection(stacked)
         self._on_look_changed()
@@ -451,25 +473,33 @@ class ResultPage(Themed):
         has_door = self._visit is not None and view in (ANSWER, WHOLE)
         behind = self._behind if has_answer or (has_door and self._behind is Behind.QUALITY) else Behind.NOTHING
         is_answer = view == ANSWER and behind is Behind.NOTHING
+        has_curves = is_answer and not (self._room.is_compact and self.show_legs.isChecked())
         is_quality = behind is Behind.QUALITY
         self.view.setVisible(is_walk and not is_quality)
         self.to_answer.setVisible(is_quality)
         self.methods.setVisible(view == WHOLE and not is_quality)
         self.recordings.setVisible(view != COMPARE and self.recordings.count() > 0)
-        self.beside.setVisible(view == ANSWER and not is_quality)
+        self.beside.setVisible(view == ANSWER and not is_quality and (has_curves or behind is Behind.FIGURES))
+        self.show_legs.setVisible(view == ANSWER and behind is Behind.NOTHING)
         self._against.setVisible(view == COMPARE)
         self.compare.setVisible(view == COMPARE)
         self.answer.setVisible(has_answer and behind is Behind.NOTHING and bool(self.answer.text))
         self.key_figures.setVisible(is_answer and not self._room.is_compact)
         self._curves.setVisible(view == WHOLE and not is_quality)
-        self.cycles.setVisible(is_answer or (view == STRIDES and self._room.has_strides_beside))
-        self.cycles.charts.set_side_by_side(self._room.has_two_charts and view == ANSWER)
+        self.cycles.setVisible(has_curves or (view == STRIDES and self._room.has_strides_beside))
+        has_legs = is_answer and self.show_legs.isChecked()
+        has_table = not has_legs or self._room.is_spacious
+        self.legs.setVisible(has_legs)
+        if not has_legs:
+            self.cycles.charts.show_cursor({})
+        is_beside = self._room.has_two_charts and view == ANSWER and (self._room.is_spacious or not has_legs)
+        self.cycles.charts.set_side_by_side(is_beside)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()
         self._figures.setVisible(behind is Behind.FIGURES)
         self.quality.setVisible(is_quality)
-        self.differs.setVisible(is_answer and not self._room.is_compact and self.differs.has_rows)
+        self.differs.setVisible(is_answer and has_table and not self._room.is_compact and self.differs.has_rows)
         self.door.setVisible(has_door and not is_quality)
         self.all_figures.setVisible(view == ANSWER and not is_quality)
         self._page.activate()  # now, else the charts would be painted once too small and once right
@@ -509,6 +539,8 @@ class ResultPage(Themed):
         self.key_figures.show_figures(key_figures(facts))
         self.differs.show_facts(facts)
         self._fit_table()
+        if self.show_legs.isChecked():
+            self._show_moving_legs()
 
     def _show_quality(self) -> None:
         """Say what can be read of a walk, and of anything else what was noticed."""
@@ -559,8 +591,22 @@ class ResultPage(Themed):
         self._stride = curves_deg
         self._show_strides()
 
+    def _on_legs_toggled(self, is_on: bool) -> None:
+        if is_on:
+            self._show_moving_legs()
+        self._show_parts()
+        if is_on:
+            self.legs.setFocus()
+
+    def _show_moving_legs(self) -> None:
+        recording, visit = self.recording, self._visit
+        if recording is not None and visit is not None:
+            self.legs.show_legs(mean_legs(visit.session, visit.analysis, recording))
+
     def _on_stride_picked(self, is_knee: bool, percent: float, angle_deg: float) -> None:
-        if self.view.choice == STRIDES:
+        if self.legs.isVisible():
+            self.legs.show_percent(percent)
+        elif self.view.choice == STRIDES:
             self.strides.choose_nearest(is_knee, percent, angle_deg, self.cycles.charts.heights_deg)
 
     def _on_beside_changed(self) -> None:

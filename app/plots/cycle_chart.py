@@ -42,7 +42,7 @@ from core.norms import ReferenceCurves
 from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
-LEAST_SIZE = (284, 160)
+LEAST_SIZE = (284, 156)
 LABEL_HEIGHT = 24  # toe-off stands above the plot
 TICKS_HEIGHT = 24
 RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
@@ -122,6 +122,12 @@ class CycleCharts(Themed):
         for frame in self.frames:
             frame.chart.has_band = is_shown
             frame.chart.redraw()
+
+    def show_cursor(self, percent: Mapping[Side, float]) -> None:
+        """Mark a place on each leg's own stride; none: no cursor."""
+        for frame in self.frames:
+            frame.chart.cursor = percent
+            frame.chart.update()
 
     def set_brief(self, is_brief: bool) -> None:
         """Leave out what the axis and the icons say as well, where there is little room."""
@@ -283,6 +289,7 @@ class CycleChart(Themed):
         self.is_about_mean = False
         self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
+        self.cursor: Mapping[Side, float] = {}  # percent of each leg's own stride
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
@@ -347,7 +354,9 @@ class CycleChart(Themed):
             self._picture.setDevicePixelRatio(ratio)
             self._picture.fill(QColor(self._look.theme.colours.surface))
             self._paint(QPainter(self._picture))
-        QPainter(self).drawPixmap(0, 0, self._picture)
+        painter = QPainter(self)
+        painter.drawPixmap(0, 0, self._picture)
+        self._paint_cursor(painter)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         area, (lowest, highest) = self.plot_area(), self.range_deg
@@ -394,6 +403,33 @@ class CycleChart(Themed):
             self._paint_stride(painter, *self.stride)
         painter.restore()
         self._paint_labels(painter)
+
+    def _paint_cursor(self, painter: QPainter) -> None:
+        """A line at each leg's place with what the curve has there; solid at the left leg's, dashed at the right's."""
+        theme, area = self._look.theme, self.plot_area()
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        painter.setFont(theme.font(12, SEMIBOLD))
+        metrics, rows = QFontMetrics(theme.font(12, SEMIBOLD)), theme.px(16)
+        for number, (side, cycle) in enumerate(self._means()):
+            percent = self.cursor.get(side)
+            if percent is None or not cycle.mean.n:
+                continue
+            angle = float(np.interp(percent, PERCENT, cycle.mean.mean))
+            at = self.at(percent, angle)
+            pen = theme.pen(theme.colours.ink, 1.5)
+            pen.setStyle(Qt.PenStyle.SolidLine if side is Side.LEFT else Qt.PenStyle.DashLine)
+            painter.setPen(pen)
+            painter.drawLine(QPointF(at.x(), area.top()), QPointF(at.x(), area.bottom()))
+            painter.setPen(theme.pen(theme.curve(side), 2))
+            painter.setBrush(theme.curve(side) if side is Side.LEFT else QColor(theme.colours.surface))
+            painter.drawEllipse(at, theme.px(5), theme.px(5))
+            words = f"{LETTERS[side]} {degrees_in_words(angle)}"
+            width = metrics.horizontalAdvance(words)
+            left = at.x() + theme.px(6) if at.x() + theme.px(6) + width < area.right() else at.x() - theme.px(6) - width
+            box = QRectF(left, area.bottom() - (number + 1) * rows - theme.px(2), width + 1, rows)
+            painter.fillRect(box, QColor(theme.colours.surface))
+            painter.setPen(theme.text(side))
+            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, words)
 
     def _paint_axes(self, painter: QPainter) -> None:
         theme = self._look.theme

@@ -1,0 +1,288 @@
+"""The legs over a mean stride, from the side, in step with the cursor in the curves."""
+
+import math
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt, QTimer, Signal
+from PySide6.QtGui import QColor, QHideEvent, QKeyEvent, QMouseEvent, QPainter, QPaintEvent, QPolygonF
+from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
+
+from app.icons import Icon
+from app.review.mean_legs import MeanLegs
+from app.theme import Look
+from app.widgets.button import Button, Kind
+from app.widgets.card import Card
+from app.widgets.chip import CHIP, LETTERS, paint_chip
+from app.widgets.segmented import Segmented
+from app.widgets.text import MEDIUM, SEMIBOLD, Text
+from app.widgets.themed import Themed
+from app.wording import later, side_name, tr
+from core.body import Side
+
+LEAST_SIZE = (300, 136)
+BESIDE_FROM = 2.4  # times as wide as high: legs and lanes stand side by side
+FRAME_MS = 33
+STEP, LONG_STEP = 1.0, 10.0  # percent
+SPEEDS = (
+    ("quarter", "\N{VULGAR FRACTION ONE QUARTER}", 0.25),
+    ("half", "\N{VULGAR FRACTION ONE HALF}", 0.5),
+    ("one", "1\u00a0\N{MULTIPLICATION SIGN}", 1.0),
+)
+LANE, LANE_GAP, LANES_HEIGHT = 18, 8, 84
+WIDTHS_M = ((0.075, 0.055), (0.055, 0.035), (0.05, 0.025))  # of thigh, shank and foot at either end, half of them
+NO_LEGS = later("Legs are drawn where a thigh was heard and a knee's height can be read.")
+APART = later("The clocks of both legs are not known to agree: drawn half a stride apart.")
+DRAWN = later("Drawn from angles and the thighs' inclination, not measured.")
+
+
+class MovingLegs(Card):
+    """`moved` tells where in the reference leg's stride the cursor is, percent, whoever moved it."""
+
+    moved = Signal(float)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__(look, padding=16)
+        self._legs: MeanLegs | None = None
+        self._is_brief = False
+        self.percent = 0.0
+        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
+        head = QHBoxLayout()
+        head.setSpacing(8)
+        head.addWidget(Text(look, tr("Legs"), size=16, weight=SEMIBOLD))
+        head.addWidget(Text(look, tr("from the side"), size=12, tone="ink2"))
+        head.addStretch(1)
+        self.picture = _LegsPicture(look)
+        self.picture.pointed.connect(self.show_percent)
+        self.play = Button(look, "", Kind.SECONDARY, Icon.PLAY, height=40)
+        self.speed = Segmented(look, tr("Speed"), [(key, word, "") for key, word, _ in SPEEDS])
+        self.where = Text(look, weight=SEMIBOLD)
+        self.note = Text(look, size=12, tone="ink2", wraps=True)
+        foot = QHBoxLayout()
+        foot.setSpacing(12)
+        foot.addWidget(self.play)
+        foot.addWidget(self.speed)
+        foot.addWidget(self.where, 1, Qt.AlignmentFlag.AlignRight)
+        self.column.addLayout(head)
+        self.column.addWidget(self.picture, 1)
+        self.column.addLayout(foot)
+        self.column.addWidget(self.note)
+        self._timer = QTimer(self)
+        self._timer.setInterval(FRAME_MS)
+        self._timer.timeout.connect(self._on_beat)
+        self.play.clicked.connect(self.turn)
+        self._tell()
+
+    @property
+    def is_playing(self) -> bool:
+        return self._timer.isActive()
+
+    @property
+    def cursor(self) -> dict[Side, float]:
+        """Where each leg is on its own stride, percent."""
+        legs = self._legs
+        return {side: legs.percent_of(side, self.percent) for side in legs.legs} if legs is not None else {}
+
+    def set_brief(self, is_brief: bool) -> None:
+        """Leave out the note, where there is little room."""
+        self._is_brief = is_brief
+        self.note.setVisible(not is_brief or self._legs is None)
+
+    def show_legs(self, legs: MeanLegs | None) -> None:
+        """Show the legs of another walk, where the cursor was."""
+        self._legs = legs
+        self.stop()
+        notes = [tr(NO_LEGS)] if legs is None else [tr(DRAWN)]
+        if legs is not None and len(legs.legs) == len(Side) and not legs.is_together:
+            notes.append(tr(APART))
+        self.note.setText(" ".join(notes))
+        for part in (self.play, self.speed, self.where):
+            part.setVisible(legs is not None)
+        self.set_brief(self._is_brief)
+        self.show_percent(self.percent)
+
+    def show_percent(self, percent: float) -> None:
+        """Put the cursor to a place of the reference leg's stride."""
+        self.percent = percent % 100.0
+        self.picture.show_legs(self._legs, self.percent)
+        if self._legs is not None:
+            said = tr("{percent:.0f} % of the {side} stride")
+            self.where.setText(said.format(percent=self.percent, side=side_name(self._legs.reference)))
+        self.setAccessibleName(tr("Legs"))
+        self.setAccessibleDescription(self.where.text() if self._legs is not None else self.note.text())
+        self.moved.emit(self.percent)
+
+    def turn(self) -> None:
+        """Play, or stop."""
+        if self.is_playing:
+            self.stop()
+        elif self._legs is not None:
+            self._timer.start()
+            self._tell()
+
+    def stop(self) -> None:
+        self._timer.stop()
+        self._tell()
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        steps = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
+        if event.key() in steps:
+            is_long = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
+            self.show_percent(self.percent + steps[Qt.Key(event.key())] * (LONG_STEP if is_long else STEP))
+        elif event.key() == Qt.Key.Key_Space:
+            self.turn()
+        else:
+            super().keyPressEvent(event)
+
+    def hideEvent(self, event: QHideEvent) -> None:
+        self.stop()
+        super().hideEvent(event)
+
+    def _on_beat(self) -> None:
+        assert self._legs is not None
+        factor = next(value for key, _, value in SPEEDS if key == self.speed.choice)
+        stride_s = self._legs.legs[self._legs.reference].stride_s
+        self.show_percent(self.percent + 100.0 * FRAME_MS / 1000.0 * factor / stride_s)
+
+    def _tell(self) -> None:
+        self.play.setText(tr("Stop") if self.is_playing else tr("Play"))
+        self.play.setAccessibleName(self.play.text())
+        self.play.set_face(icon=Icon.STOP if self.is_playing else Icon.PLAY)
+
+
+class _LegsPicture(Themed):
+    """The legs over the floor, and below them when each foot stands in one stride of the reference leg."""
+
+    pointed = Signal(float)
+
+    def __init__(self, look: Look) -> None:
+        super().__init__()
+        self._look = look
+        self._legs: MeanLegs | None = None
+        self._percent = 0.0
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+
+    def show_legs(self, legs: MeanLegs | None, percent: float) -> None:
+        self._legs, self._percent = legs, percent
+        self.update()
+
+    def sizeHint(self) -> QSize:
+        px = self._look.theme.px
+        return QSize(px(LEAST_SIZE[0]), px(LEAST_SIZE[1]))
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def mousePressEvent(self, event: QMouseEvent) -> None:
+        self._point(event.position())
+
+    def mouseMoveEvent(self, event: QMouseEvent) -> None:
+        self._point(event.position())
+
+    def _point(self, at: QPointF) -> None:
+        lanes = self._lanes()
+        if self._legs is not None and at.y() >= lanes.top() and lanes.left() <= at.x() <= lanes.right():
+            self.pointed.emit(min(100 * (at.x() - lanes.left()) / lanes.width(), 99.99))
+
+    def paintEvent(self, _event: QPaintEvent) -> None:
+        if self._legs is None:
+            return
+        painter = QPainter(self)
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        self._paint_legs(painter, self._legs)
+        self._paint_lanes(painter, self._legs)
+
+    def _paint_legs(self, painter: QPainter, legs: MeanLegs) -> None:
+        """Right nearer than left, as the patient walks to the right; the standing foot is on the floor."""
+        theme, px = self._look.theme, self._look.theme.px
+        poses = {side: legs.pose_m(side, legs.percent_of(side, self._percent)) for side in legs.legs}
+        below = px(6) if self._is_wide else px(LANES_HEIGHT + 12)
+        width = self._lanes().left() - px(CHIP + 24) if self._is_wide else self.width()
+        room = QRectF(0, px(8), width, self.height() - px(8) - below)
+        reach = max(float(-np.nanmin(leg.points_m[..., 1])) for leg in legs.legs.values())
+        scale = (room.height() - px(10)) / (1.08 * reach)
+        standing = [side for side in poses if legs.is_standing(side, self._percent)] or list(poses)
+        lowest = min(float(np.nanmin(poses[side][:, 1])) for side in standing)
+        floor = room.bottom() - px(10)  # a swinging foot, drawn from its angle, may reach a little below it
+
+        def at(point: np.ndarray) -> QPointF:
+            return QPointF(room.center().x() + scale * float(point[0]), floor - scale * (float(point[1]) - lowest))
+
+        painter.setPen(theme.pen(theme.colours.control, 1))
+        painter.drawLine(QPointF(room.left(), floor), QPointF(room.right(), floor))
+        for side in (Side.LEFT, Side.RIGHT):
+            if side in poses:
+                self._paint_leg(painter, side, [at(point) for point in poses[side]], scale)
+
+    def _paint_leg(self, painter: QPainter, side: Side, points: list[QPointF], scale: float) -> None:
+        theme = self._look.theme
+        painter.setPen(theme.side_pen(side, 2))
+        painter.setBrush(theme.pale(side))
+        for k, (first, last) in enumerate(WIDTHS_M):
+            if all(math.isfinite(one.x()) for one in points[k : k + 2]):
+                painter.drawPolygon(_segment(points[k], points[k + 1], scale * first, scale * last))
+        painter.setBrush(QColor(theme.colours.surface))
+        for joint in points[:3]:
+            if math.isfinite(joint.x()):
+                painter.drawEllipse(joint, theme.px(5), theme.px(5))
+        ends = [point for point in points if math.isfinite(point.x())]
+        painter.setFont(theme.font(14, SEMIBOLD))
+        painter.setPen(theme.text(side))
+        painter.drawText(ends[-1] + QPointF(theme.px(8), -theme.px(2)), LETTERS[side])
+
+    def _paint_lanes(self, painter: QPainter, legs: MeanLegs) -> None:
+        """Each foot's stance within one stride of the reference leg, and the cursor."""
+        theme, px, lanes = self._look.theme, self._look.theme.px, self._lanes()
+        reference = legs.legs[legs.reference]
+        for number, side in enumerate(side for side in Side if side in legs.legs):
+            top = lanes.top() + number * px(LANE + LANE_GAP)
+            chip = px(CHIP)
+            box = QRectF(lanes.left() - px(12) - chip, top + (px(LANE) - chip) / 2, chip, chip)
+            paint_chip(painter, box, side, theme)
+            leg = legs.legs[side]
+            ratio = leg.stride_s / reference.stride_s
+            begins = 0.0 if side is legs.reference else legs.other_contact_percent
+            painter.setPen(theme.side_pen(side, 1.5))
+            painter.drawLine(QPointF(lanes.left(), top + px(LANE)), QPointF(lanes.right(), top + px(LANE)))
+            if math.isfinite(leg.toe_off_percent):
+                length = leg.toe_off_percent * ratio
+                for begin in (begins - 100.0 * ratio, begins):
+                    low, high = max(begin, 0.0), min(begin + length, 100.0)
+                    if high > low:
+                        left = lanes.left() + lanes.width() * low / 100
+                        painter.fillRect(
+                            QRectF(left, top, lanes.width() * (high - low) / 100, px(LANE)), theme.soft(side)
+                        )
+        painter.setFont(theme.font(12, MEDIUM))
+        painter.setPen(QColor(theme.colours.ink2))
+        words = QRectF(lanes.left(), lanes.bottom() - px(20), lanes.width(), px(20))
+        said = tr("one {side} stride, {time:.2f} s").format(side=side_name(legs.reference), time=reference.stride_s)
+        painter.drawText(words, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter, said)
+        painter.drawText(words, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, "0")
+        painter.drawText(words, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, "100\u00a0%")
+        x = lanes.left() + lanes.width() * self._percent / 100
+        painter.setPen(theme.pen(theme.colours.ink, 2))
+        painter.drawLine(QPointF(x, lanes.top() - px(6)), QPointF(x, lanes.bottom() - px(22)))
+
+    @property
+    def _is_wide(self) -> bool:
+        return self.width() > BESIDE_FROM * self.height()
+
+    def _lanes(self) -> QRectF:
+        px = self._look.theme.px
+        left = px(CHIP) + px(12) + (round(0.4 * self.width()) if self._is_wide else 0)
+        return QRectF(left, self.height() - px(LANES_HEIGHT) + px(8), self.width() - left, px(LANES_HEIGHT) - px(8))
+
+    def _on_look_changed(self) -> None:
+        self.updateGeometry()
+        self.update()
+
+
+def _segment(first: QPointF, last: QPointF, wide: float, narrow: float) -> QPolygonF:
+    """The outline of a segment: round at both ends, as wide as its halves."""
+    way = math.atan2(last.y() - first.y(), last.x() - first.x())
+    outline = []
+    for centre, radius, begin in ((first, wide, way + math.pi / 2), (last, narrow, way - math.pi / 2)):
+        for k in range(13):
+            turn = begin + math.pi * k / 12
+            outline.append(QPointF(centre.x() + radius * math.cos(turn), centre.y() + radius * math.sin(turn)))
+    return QPolygonF(outline)
