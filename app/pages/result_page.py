@@ -375,7 +375,7 @@ class ResultPage(Themed):
         self.strides.chosen.connect(self._on_stride_chosen)
         self.cycles.charts.picked.connect(self._on_stride_picked)
         self.show_legs.toggled.connect(self._on_legs_toggled)
-        self.legs.moved.connect(lambda: self.cycles.charts.show_cursor(self.legs.cursor))
+        self.legs.moved.connect(lambda: self.cycles.charts.show_cursor(self.legs.places))
         self.door.clicked.connect(self._on_door)
         self.to_answer.clicked.connect(self.leave_behind)
         self.all_figures.toggled.connect(lambda is_on: self._show_behind(Behind.FIGURES if is_on else Behind.NOTHING))

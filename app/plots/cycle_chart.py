@@ -126,7 +126,7 @@ class CycleCharts(Themed):
     def show_cursor(self, percent: Mapping[Side, float]) -> None:
         """Mark a place on each leg's own stride; none: no cursor."""
         for frame in self.frames:
-            frame.chart.cursor = percent
+            frame.chart.places = percent
             frame.chart.update()
 
     def set_brief(self, is_brief: bool) -> None:
@@ -289,7 +289,7 @@ class CycleChart(Themed):
         self.is_about_mean = False
         self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
-        self.cursor: Mapping[Side, float] = {}  # percent of each leg's own stride
+        self.places: Mapping[Side, float] = {}  # percent of each leg's own stride
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
@@ -411,7 +411,7 @@ class CycleChart(Themed):
         painter.setFont(theme.font(12, SEMIBOLD))
         metrics, rows = QFontMetrics(theme.font(12, SEMIBOLD)), theme.px(16)
         for number, (side, cycle) in enumerate(self._means()):
-            percent = self.cursor.get(side)
+            percent = self.places.get(side)
             if percent is None or not cycle.mean.n:
                 continue
             angle = float(np.interp(percent, PERCENT, cycle.mean.mean))

@@ -77,7 +77,7 @@ class MovingLegs(Card):
         return self._timer.isActive()
 
     @property
-    def cursor(self) -> dict[Side, float]:
+    def places(self) -> dict[Side, float]:
         """Where each leg is on its own stride, percent."""
         legs = self._legs
         return {side: legs.percent_of(side, self.percent) for side in legs.legs} if legs is not None else {}

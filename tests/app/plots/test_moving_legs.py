@@ -39,7 +39,7 @@ def test_arrows_step_through_the_stride_and_each_leg_has_its_own_place(legs: Mov
     QTest.keyClick(legs, Qt.Key.Key_Right)
     QTest.keyClick(legs, Qt.Key.Key_Right, Qt.KeyboardModifier.ShiftModifier)
     assert legs.percent == pytest.approx(11.0)
-    assert legs.cursor == {Side.LEFT: pytest.approx(11.0), Side.RIGHT: pytest.approx(61.0)}
+    assert legs.places == {Side.LEFT: pytest.approx(11.0), Side.RIGHT: pytest.approx(61.0)}
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     QTest.keyClick(legs, Qt.Key.Key_Left, Qt.KeyboardModifier.ShiftModifier)
     assert legs.percent == pytest.approx(91.0)
@@ -56,14 +56,13 @@ def test_another_place_is_another_picture(legs: MovingLegs) -> None:
 def test_space_plays_and_stops_and_out_of_sight_nothing_plays(qtbot: QtBot, legs: MovingLegs) -> None:
     legs.show_percent(0.0)
     QTest.keyClick(legs, Qt.Key.Key_Space)
-    assert legs.is_playing
     qtbot.waitUntil(lambda: legs.percent > 2.0, timeout=5000)
-    assert legs.play.text() == "Stop"
+    assert (legs.is_playing, legs.play.text()) == (True, "Stop")
     QTest.keyClick(legs, Qt.Key.Key_Space)
-    assert not legs.is_playing
+    assert (legs.is_playing, legs.play.text()) == (False, "Play")
     legs.turn()
     legs.hide()
-    assert not legs.is_playing
+    assert (legs.is_playing, legs.isHidden()) == (False, True)
 
 
 def test_clocks_that_do_not_agree_are_said_and_no_legs_say_why(legs: MovingLegs) -> None:
@@ -72,6 +71,6 @@ def test_clocks_that_do_not_agree_are_said_and_no_legs_say_why(legs: MovingLegs)
     assert "The clocks of both legs are not known to agree" in legs.note.text()
     legs.show_legs(None)
     assert legs.note.text().startswith("Legs are drawn where a thigh was heard")
-    assert legs.cursor == {}
+    assert legs.places == {}
     legs.turn()
     assert not legs.is_playing
