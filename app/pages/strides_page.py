@@ -60,15 +60,14 @@ class StridesPage(Card):
     def show_walk(self, recording: RecordingAnalysis, can_choose: bool) -> None:
         """Show the strides of a walk; `can_choose`: there is a library that keeps what is chosen."""
         self._recording = recording
-        self.list.set_can_turn(can_choose)
-        self.list.show_lines(stride_lines(recording))
+        self.list.show_lines(stride_lines(recording), can_turn=can_choose)
         told = [by_hand_in_words(recording)]
         if not can_choose:
             told.append(tr("Strides are left out in the library: import this session first."))
         said = " ".join(filter(None, told))
         self.note.setText(said or tr("What is left out stays in the files, with the reason beside it."))
         self.turn.setVisible(can_choose)
-        self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.strides.lines))
+        self.all.setVisible(can_choose and any(line.is_by_hand for line in self.list.lines))
 
     def set_charts_beside(self, are_beside: bool) -> None:
         """Draw the curves in the list itself where no charts have room beside it."""
@@ -81,7 +80,7 @@ class StridesPage(Card):
         """Go to the stride whose curve runs nearest to a point of its chart; `heights_deg`: drawn so much lower."""
         best: tuple[float, int] | None = None
         at = int(np.clip(round(percent), 0, 100))
-        for row, line in enumerate(self.list.strides.lines):
+        for row, line in enumerate(self.list.lines):
             joint = Joint(f"{line.side}_{'knee' if is_knee else 'ankle'}")
             curve = self._curves(line).get(joint)
             if curve is not None and line.is_used:

@@ -37,14 +37,15 @@ ROOT = QModelIndex()
 
 @dataclass(frozen=True, slots=True)
 class TableColumn:
-    """`head` stands above. `share`: its part of what the columns do not need. `widest`: what is measured for all cells.
+    """`head` stands above. `share`: its part of what the columns do not need; where none has one, the last takes all.
 
-    Where nothing says `widest`, every cell of the column is measured, which is for tables of tens of rows.
+    `widest` is measured in place of all cells, which is for tables of hundreds of rows; `least`: px of the design.
     """
 
     head: TableCell = EMPTY
     share: int = 0
     widest: TableCell | None = None
+    least: int = 0
     is_hidden: bool = False
 
 
@@ -145,6 +146,7 @@ class CellTable(QTableView):
         super().__init__()
         self._look, self._row, self._head, self._padding, self._edge = look, row, head, padding, edge
         self._is_list = is_list
+        self.needed_widths: list[int] = []  # px of the screen by column; nothing for a hidden one
         self.cells = TableModel()
         self.cells.setParent(self)
         self.setModel(self.cells)
@@ -241,6 +243,7 @@ class CellTable(QTableView):
         self.setFont(self._look.theme.font(14))
         self.horizontalHeader().setFixedHeight(px(self._head) if self._head else 0)
         self.fit_rows()
+        self.needed_widths = [self.needed_width(column) for column in range(len(self.cells.columns))]
         self.setMinimumWidth(self.minimumSizeHint().width())
         if not self._is_list:
             self.setFixedHeight(self.minimumSizeHint().height())
@@ -255,21 +258,18 @@ class CellTable(QTableView):
         for number, row in enumerate(self.cells.rows) if not self._is_list else ():
             self.setRowHeight(number, max(theme.px(self._row), *(cell.height(theme) for cell in row.cells)))
 
-    @property
-    def needed_widths(self) -> list[int]:
-        """What each column needs; nothing for a hidden one."""
-        return [self._needed_width(column) for column in range(len(self.cells.columns))]
-
     def share_width(self) -> None:
         """Give every column what it needs, and its share of the rest."""
-        needed = self.needed_widths
-        shares = [column.share if width else 0 for column, width in zip(self.cells.columns, needed, strict=True)]
-        spare, left = max(0, self.viewport().width() - sum(needed)), sum(shares)
-        for column, (width, share) in enumerate(zip(needed, shares, strict=True)):
+        needed, columns = self.needed_widths, self.cells.columns
+        shown = [column for column in range(len(needed)) if not self.isColumnHidden(column)]
+        shares = {column: columns[column].share for column in shown}
+        if shown and not any(shares.values()):
+            shares[shown[-1]] = 1
+        spare, left = max(0, self.viewport().width() - sum(needed)), sum(shares.values())
+        for column, share in shares.items():
             more = spare * share // left if share else 0
             spare, left = spare - more, left - share
-            if width:
-                self.setColumnWidth(column, width + more)
+            self.setColumnWidth(column, needed[column] + more)
 
     def minimumSizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -281,7 +281,8 @@ class CellTable(QTableView):
     def sizeHint(self) -> QSize:
         return self.minimumSizeHint()
 
-    def _needed_width(self, column: int) -> int:
+    def needed_width(self, column: int) -> int:
+        """What a column needs, in px of the screen."""
         if self.isColumnHidden(column):
             return 0
         theme, described = self._look.theme, self.cells.columns[column]
@@ -290,7 +291,8 @@ class CellTable(QTableView):
             measured.append(described.widest)
         else:
             measured += [row.cells[column] for row in self.cells.rows if row.cells[column].span == 1]
-        return max(cell.width(theme) for cell in measured) + self._left_padding(column) + theme.px(self._padding) + 1
+        needed = max(cell.width(theme) for cell in measured) + self._left_padding(column) + theme.px(self._padding) + 1
+        return max(needed, theme.px(described.least)) if described.least else needed
 
     def _left_padding(self, column: int) -> int:
         """The padding before a cell, which is the table's edge at the first column that is shown."""

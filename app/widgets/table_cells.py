@@ -156,7 +156,7 @@ class TextCell(TableCell):
 
     def _text_width(self, theme: Theme) -> int:
         metrics = QFontMetrics(theme.font(self.size, self.weight))
-        lines = self.text.split() if self.wraps else self.text.split("\n")
+        lines = self.text.split(" ") if self.wraps else self.text.split("\n")
         gap = theme.px(SMALL_GAP) if self.small and self.text else 0
         return max(map(metrics.horizontalAdvance, lines), default=0) + gap
 

@@ -66,7 +66,7 @@ def without(session: Session, analysis: Analysis, line: StrideLine) -> Analysis:
 
 
 def first_used(page: ResultPage) -> int:
-    return next(row for row, line in enumerate(page.strides.list.strides.lines) if line.is_used)
+    return next(row for row, line in enumerate(page.strides.list.lines) if line.is_used)
 
 
 def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
@@ -83,7 +83,7 @@ def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
         QTest.keyClick(strides, key)
     page.strides.turn.click()
     for column, count in ((STRIDE, 4), (STATE, 4)):
-        at = strides.visualRect(strides.strides.index(row, column)).center()
+        at = strides.visualRect(strides.cells.index(row, column)).center()
         QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=at)
         assert len(turned) == count
     assert turned == [("walk 1", line, True)] * 4
@@ -101,7 +101,7 @@ def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
 @pytest.mark.endurance
 def test_a_stride_that_cannot_be_used_cannot_be_turned(page: ResultPage, turned: Turned) -> None:
     """What was found to be wrong with a stride is not put right by a mark."""
-    lines = page.strides.list.strides.lines
+    lines = page.strides.list.lines
     out = next(row for row, line in enumerate(lines) if not line.is_used)
     page.strides.list.choose(out)
     QTest.keyClick(page.strides.list, Qt.Key.Key_Space)
@@ -117,7 +117,7 @@ def test_where_nothing_is_kept_nothing_can_be_left_out(
     page.show_visit(Visit(session, analysis))
     row = first_used(page)
     strides.choose(row)
-    mark = strides.strides.index(row, STRIDE)
+    mark = strides.cells.index(row, STRIDE)
     without_boxes = strides.grab().toImage()
     QTest.keyClick(strides, Qt.Key.Key_Space)
     QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=strides.visualRect(mark).center())
@@ -143,7 +143,7 @@ def test_the_stride_in_force_is_drawn_and_found_by_a_click_into_the_chart(page: 
     curve = np.rad2deg(walk.gait[Side.LEFT].cycles[Joint.LEFT_KNEE][line.number - 1])
     assert knee.stride is not None
     np.testing.assert_array_equal(knee.stride[1], curve)
-    page.strides.list.choose(len(page.strides.list.strides.lines) - 2)
+    page.strides.list.choose(len(page.strides.list.lines) - 2)
     at = knee.at(70, float(curve[70])).toPoint()
     QTest.mouseClick(knee, Qt.MouseButton.LeftButton, pos=QPoint(at.x(), at.y()))
     found = page.strides.list.line
@@ -191,10 +191,10 @@ def test_without_room_for_charts_every_line_draws_its_own_curves(page: ResultPag
     assert not any(strides.isColumnHidden(shape) for shape in shapes)
     (walk,) = (recording for recording in analysis.recordings if recording.gait)
     row = first_used(page)
-    line = strides.strides.lines[row]
+    line = strides.lines[row]
     for shape, joint in zip(shapes, (Joint.LEFT_KNEE, Joint.LEFT_ANKLE), strict=True):
         np.testing.assert_array_equal(line.shapes_deg[shape], np.rad2deg(walk.gait[Side.LEFT].cycles[joint][row]))
-        room = strides.visualRect(strides.strides.index(row, shape))
+        room = strides.visualRect(strides.cells.index(row, shape))
         picture = strides.viewport().grab(room).toImage()
         colours = {picture.pixelColor(x, y).rgb() for x in range(picture.width()) for y in range(4, picture.height())}
         assert page.strides.list.viewport().rect().contains(room)
@@ -215,3 +215,20 @@ def test_no_word_is_cut_in_any_room(page: ResultPage) -> None:
         assert page.minimumSizeHint().width() <= width
         assert words_cut(page) == []
         assert page.cycles.isVisible() == (width > 940)
+
+
+def test_every_cell_of_a_stride_is_said_and_the_mark_is_a_box_to_tick(
+    page: ResultPage, session: Session, analysis: Analysis
+) -> None:
+    strides, said = page.strides.list, Qt.ItemDataRole.AccessibleTextRole
+    row = first_used(page)
+    line = strides.lines[row]
+    heard = [str(strides.cells.index(row, column).data(said)) for column in range(strides.cells.columnCount())]
+    assert heard[STRIDE] == heard[STATE] == heard[KNEE_SHAPE] == f"Left stride {line.number}, used"
+    assert heard[1:3] == [f"at (s): {line.start_s:.1f}", f"takes (s): {line.end_s - line.start_s:.2f}"]
+    ticked = Qt.ItemDataRole.CheckStateRole
+    assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Checked
+    assert strides.cells.index(row, STATE).data(ticked) is None
+    page.show_analysis(without(session, analysis, line), can_choose=True)
+    assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Unchecked
+    assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, left out by hand"

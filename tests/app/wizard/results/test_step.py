@@ -244,7 +244,7 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
     page = step.page.results()
     page.view.choose(STRIDES)
     strides = page.strides.list
-    rows = [row for row, line in enumerate(strides.strides.lines) if line.is_used][:2]
+    rows = [row for row, line in enumerate(strides.lines) if line.is_used][:2]
     used = int(walk_of(visit).gait[Side.LEFT].strides.is_used.sum())
     strides.setFocus()
     for row in rows:  # both before the library has answered
