@@ -229,6 +229,6 @@ def test_every_cell_of_a_stride_is_said_and_the_mark_is_a_box_to_tick(
     ticked = Qt.ItemDataRole.CheckStateRole
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Checked
     assert strides.cells.index(row, STATE).data(ticked) is None
-    page.show_analysis(without(session, analysis, line), can_choose=True)
+    page.show_visit(Visit(session, without(session, analysis, line)), can_choose=True)
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Unchecked
     assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, left out by hand"
