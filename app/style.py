@@ -141,6 +141,8 @@ class ControlStyle(QProxyStyle):
             painter.fillRect(option.rect.adjusted(1, 1, -1, -1), QColor(c.surface))
         elif element is Primitive.PE_PanelTipLabel:
             painter.fillRect(option.rect, QColor(c.inv))
+        elif element is Primitive.PE_PanelItemViewRow and isinstance(widget, QTableView):
+            return  # tables paint the ground of their rows, which Fusion would fill with the highlight
         elif element not in (Primitive.PE_FrameMenu, Primitive.PE_PanelScrollAreaCorner):
             super().drawPrimitive(element, option, painter, widget)
 

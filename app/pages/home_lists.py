@@ -2,31 +2,31 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import IntEnum
 from heapq import nlargest
-from typing import Any
 from uuid import UUID
 
-from PySide6.QtCore import QAbstractListModel, QModelIndex, QPersistentModelIndex, QRect, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFocusEvent, QFont, QFontMetrics, QKeyEvent, QPainter
-from PySide6.QtWidgets import QAbstractItemView, QListView, QStyle, QStyledItemDelegate, QStyleOptionViewItem
+from PySide6.QtCore import QModelIndex, QRectF, Qt
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QResizeEvent
+from PySide6.QtWidgets import QStyle, QStyleOptionViewItem
 
 from app.icons import Icon, paint_icon
 from app.theme import Look
-from app.tokens import CONTROL_RADIUS
+from app.tokens import Theme
+from app.widgets.table import CellTable, Index, TableColumn, TableRow
+from app.widgets.table_cells import EMPTY, TableCell
 from app.widgets.text import REGULAR, SEMIBOLD
 
 ROW = 72
+TEXT_ROW = 23  # px from one row of words to the next
+MORE_HEIGHT = 22  # of a line for each row of words over two
 PAD = 24  # from the list's edge to the words
 BAR = 4  # of ink, before the line that is chosen
 ICON = 20
+ARROW = ICON + 8  # at the right of a session
 GAP = 12
 MEASURED = 20  # of the longest lines, which say how high all of thousands are
-WIDE_SESSION_FROM = 500
+WIDE_SESSION_FROM = 500 - 2 * PAD
 DATE, AMOUNT, STATE = 112, 110, 178  # columns of a session
-
-ModelIndex = QModelIndex | QPersistentModelIndex
-ROOT = QModelIndex()
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +41,10 @@ class PatientLine:
     searched: str
     needs_look: bool = False
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        return self.code, self.person, self.when, self.sessions
+
 
 @dataclass(frozen=True, slots=True)
 class SessionLine:
@@ -53,265 +57,17 @@ class SessionLine:
     state: str = ""
     needs_look: bool = False
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        return self.when, self.conditions, self.amount, self.state
+
 
 Line = PatientLine | SessionLine
 
 
-class Role(IntEnum):
-    LINE = Qt.ItemDataRole.UserRole
-
-
-class Lines(QAbstractListModel):
-    """The lines of one list, replaced as a whole."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._lines: Sequence[Line] = ()
-        self.longest: Sequence[Line] = ()
-        self.has_states = False
-
-    @property
-    def lines(self) -> Sequence[Line]:
-        return self._lines
-
-    def show(self, lines: Sequence[Line]) -> None:
-        self.beginResetModel()
-        self._lines = tuple(lines)
-        self.longest = nlargest(MEASURED, self._lines, key=lambda line: sum(map(len, _words(line))))
-        self.has_states = any(isinstance(line, SessionLine) and line.state for line in lines)
-        self.endResetModel()
-
-    def rowCount(self, parent: ModelIndex = ROOT) -> int:
-        return 0 if parent.isValid() else len(self._lines)
-
-    def data(self, index: ModelIndex, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
-        line = self._lines[index.row()]
-        if role == Role.LINE:
-            return line
-        if role in (Qt.ItemDataRole.DisplayRole, Qt.ItemDataRole.AccessibleTextRole):
-            return ", ".join(filter(None, _words(line)))
-        return None
-
-
-class LineList(QListView):
-    """A list of lines, one of which may be chosen. Enter and a click on a session open it."""
-
-    chosen = Signal(object)  # the line's id, or None
-    opened = Signal(object)
-
-    def __init__(self, look: Look, name: str, is_opened_by_click: bool = False) -> None:
-        super().__init__()
-        self._look = look
-        self.lines = Lines()
-        self.setModel(self.lines)
-        self.setItemDelegate(_LineDelegate(look, self))
-        self.setAccessibleName(name)
-        self.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
-        self.setVerticalScrollMode(QAbstractItemView.ScrollMode.ScrollPerPixel)
-        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        self.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
-        self.setMouseTracking(True)
-        self.setFrameShape(QListView.Shape.NoFrame)
-        self.setResizeMode(QListView.ResizeMode.Adjust)
-        self.viewport().setAutoFillBackground(False)
-        self.setUniformItemSizes(not is_opened_by_click)  # patients may be thousands, sessions are of one patient
-        if is_opened_by_click:
-            self.clicked.connect(self._on_opened)
-        self.selectionModel().currentChanged.connect(self._on_current_changed)
-
-    @property
-    def line(self) -> Line | None:
-        """The line that is chosen."""
-        index = self.currentIndex()
-        return index.data(Role.LINE) if index.isValid() else None
-
-    @property
-    def room(self) -> int:
-        """The width that lines have, whether or not there is a scroll bar."""
-        return self.width() - self.verticalScrollBar().sizeHint().width()
-
-    def show_lines(self, lines: Sequence[Line], chosen: UUID | None = None) -> None:
-        """Show other lines, with the one that has this id chosen, where it is among them."""
-        self.selectionModel().blockSignals(True)
-        self.lines.show(lines)
-        self.selectionModel().blockSignals(False)
-        self.choose(chosen)
-
-    def choose(self, line_id: UUID | None) -> None:
-        row = next((k for k, line in enumerate(self.lines.lines) if line.id == line_id), -1)
-        self.setCurrentIndex(self.lines.index(row))
-        if row >= 0:
-            self.scrollTo(self.lines.index(row))
-
-    def step(self, rows: int) -> None:
-        """Choose the line above or below, as the arrow keys do."""
-        last = self.lines.rowCount() - 1
-        if last >= 0:
-            row = self.currentIndex().row()
-            self.setCurrentIndex(self.lines.index(min(max(row + rows, 0), last)))
-
-    def focusInEvent(self, event: QFocusEvent) -> None:
-        super().focusInEvent(event)
-        if not self.currentIndex().isValid() and event.reason() != Qt.FocusReason.MouseFocusReason:
-            self.step(1)
-
-    def keyPressEvent(self, event: QKeyEvent) -> None:
-        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter) and self.currentIndex().isValid():
-            self._on_opened(self.currentIndex())
-            return
-        super().keyPressEvent(event)
-
-    def _on_opened(self, index: ModelIndex) -> None:
-        self.opened.emit(index.data(Role.LINE).id)
-
-    def _on_current_changed(self, index: ModelIndex, _before: ModelIndex) -> None:
-        self.chosen.emit(index.data(Role.LINE).id if index.isValid() else None)
-
-
-class _LineDelegate(QStyledItemDelegate):
-    def __init__(self, look: Look, view: LineList) -> None:
-        super().__init__(view)
-        self._look, self._view = look, view
-
-    def sizeHint(self, _option: QStyleOptionViewItem, index: ModelIndex) -> QSize:
-        px = self._look.theme.px
-        width = self._view.room
-        lines = self._view.lines.longest if self._view.uniformItemSizes() else (index.data(Role.LINE),)
-        rows = max(2, *(len(self._rows(line, width)) for line in lines))
-        return QSize(0, px(ROW) + (rows - 2) * px(22))
-
-    def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: ModelIndex) -> None:
-        theme = self._look.theme
-        c, px = theme.colours, theme.px
-        line: Line = index.data(Role.LINE)
-        rect: QRect = option.rect
-        state: QStyle.StateFlag = option.state
-        is_chosen = bool(state & QStyle.StateFlag.State_Selected)
-        is_under_mouse = bool(state & QStyle.StateFlag.State_MouseOver)
-        painter.save()
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        box = QRectF(rect.adjusted(px(6), px(6), -px(6), -px(6)))
-        if is_chosen or is_under_mouse:
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(QColor(c.sunken) if is_chosen else theme.veil(is_pressed=False))
-            painter.drawRoundedRect(box, CONTROL_RADIUS * theme.scale, CONTROL_RADIUS * theme.scale)
-        if is_chosen:
-            painter.setBrush(QColor(c.ink))
-            bar = QRectF(rect.x() + px(5), box.y() + px(10), px(BAR), box.height() - px(20))
-            painter.drawRoundedRect(bar, px(BAR) / 2, px(BAR) / 2)
-        if index.row() + 1 < self._view.lines.rowCount() and not is_chosen:
-            painter.setPen(theme.pen(c.line, 1))
-            painter.drawLine(rect.x() + px(20), rect.bottom(), rect.right() - px(20), rect.bottom())
-        self._paint_words(painter, rect, line)
-        painter.restore()
-
-    def _paint_words(self, painter: QPainter, rect: QRect, line: Line) -> None:
-        px = self._look.theme.px
-        rows = self._rows(line, self._view.room)
-        step = px(23)
-        top = rect.y() + (rect.height() - step * len(rows)) // 2
-        right = rect.x() + self._view.room - px(PAD)
-        if isinstance(line, SessionLine):
-            side = px(ICON)
-            arrow = QRectF(right - side + px(4), rect.center().y() - side / 2, side, side)
-            paint_icon(painter, Icon.NEXT, arrow, self._look.theme.colours.ink2)
-            right -= side + px(8)
-        for number, row in enumerate(rows):
-            for word in row:
-                x = rect.x() + px(PAD) + word.left
-                if word.is_right:
-                    x = right - self._width(word)
-                self._paint_word(painter, word, x, top + number * step, step)
-
-    def _paint_word(self, painter: QPainter, word: "_Word", x: int, y: int, height: int) -> None:
-        theme = self._look.theme
-        colour = QColor(getattr(theme.colours, word.tone))
-        if word.icon is not None:
-            side = theme.px(ICON)
-            paint_icon(painter, word.icon, QRectF(x, y + (height - side) / 2, side, side), colour)
-            x += side + theme.px(8)
-        painter.setFont(self._font(word))
-        painter.setPen(colour)
-        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextSingleLine
-        painter.drawText(QRect(x, y, self._width(word), height), flags, word.text)
-
-    def _rows(self, line: Line, width: int) -> list[list["_Word"]]:
-        """Arrange a line's words in rows, as many as the width asks for."""
-        room = width / self._look.theme.scale
-        if isinstance(line, PatientLine):
-            return self._patient_rows(line, width)
-        date = _Word(line.when, 15, SEMIBOLD)
-        conditions = _Word(line.conditions)
-        amount = _Word(line.amount, tone="ink2")
-        state = _Word(line.state, weight=SEMIBOLD if line.needs_look else REGULAR)
-        state.icon = Icon.WARNING if line.needs_look else None
-        px = self._look.theme.px
-        left = width - px(2 * PAD + ICON + 8)  # what the words have, beside the arrow
-        if room >= WIDE_SESSION_FROM:
-            state.left = left - px(STATE)
-            amount.left = state.left - px(AMOUNT) if self._view.lines.has_states else left - px(AMOUNT)
-            conditions.left = px(DATE)
-            needed = conditions.left + self._width(conditions) + px(GAP)
-            first = [date, amount, *([state] if line.state else [])]
-            if needed <= amount.left:
-                return [[*first, conditions]]
-            conditions.left = 0
-            return [first, *([row] for row in self._wrapped(conditions, left))]
-        state.is_right = True
-        rows = [[date], [word for word in (conditions, amount) if word.text]]
-        if line.state:
-            fits = self._beside(date, state, width)
-            rows = [[date, state], *rows[1:]] if fits else [[date], [_lefted(state)], *rows[1:]]
-        if conditions.text:
-            amount.is_right = True
-            if not self._beside(conditions, amount, width):
-                rows = [*rows[:-1], *([row] for row in self._wrapped(conditions, left)), [_lefted(amount)]]
-        return [row for row in rows if row]
-
-    def _patient_rows(self, line: PatientLine, width: int) -> list[list["_Word"]]:
-        code = _Word(line.code, 16, SEMIBOLD, is_code=True)
-        when = _Word(line.when, tone="ink2", is_right=True)
-        person = _Word(line.person, tone="ink2")
-        sessions = _Word(line.sessions, tone="ink2", is_right=True)
-        if line.needs_look:
-            sessions = _Word(line.sessions, weight=SEMIBOLD, is_right=True, icon=Icon.WARNING)
-        rows: list[list[_Word]] = []
-        for first, second in ((code, when), (person, sessions)):
-            if self._beside(first, second, width):
-                rows.append([first, second])
-            else:
-                room = width - 2 * self._look.theme.px(PAD)
-                rows += [*([row] for row in self._wrapped(first, room)), [_lefted(second)]]
-        return [[word for word in row if word.text] for row in rows]
-
-    def _beside(self, first: "_Word", second: "_Word", width: int) -> bool:
-        """Tell whether both find room in one row."""
-        px = self._look.theme.px
-        arrow = px(ICON + 8)
-        return self._width(first) + px(GAP) + self._width(second) + 2 * px(PAD) + arrow <= width
-
-    def _wrapped(self, word: "_Word", room: int) -> list["_Word"]:
-        """Break a long text between its words."""
-        rows: list[str] = []
-        for part in word.text.split(" "):
-            longer = f"{rows[-1]} {part}" if rows else part
-            if rows and self._width(replace(word, text=longer)) <= room:
-                rows[-1] = longer
-            else:
-                rows.append(part)
-        return [replace(word, text=row) for row in rows]
-
-    def _width(self, word: "_Word") -> int:
-        width = QFontMetrics(self._font(word)).horizontalAdvance(word.text)
-        return width + (self._look.theme.px(ICON + 8) if word.icon is not None else 0)
-
-    def _font(self, word: "_Word") -> QFont:
-        return self._look.theme.font(word.size, word.weight, word.is_code)
-
-
-@dataclass(slots=True)
-class _Word:
-    """A piece of a row; `left` in px of the screen from where words begin."""
+@dataclass(frozen=True, slots=True)
+class Word:
+    """A piece of a row; `left` in px of the screen from where words begin, or it ends where they end."""
 
     text: str
     size: float = 14
@@ -322,13 +78,235 @@ class _Word:
     icon: Icon | None = None
     left: int = 0
 
+    def font(self, theme: Theme) -> QFont:
+        return theme.font(self.size, self.weight, self.is_code)
 
-def _lefted(word: _Word) -> _Word:
-    word.is_right = False
-    return word
+    def width(self, theme: Theme) -> int:
+        width = QFontMetrics(self.font(theme)).horizontalAdvance(self.text)
+        return width + (theme.px(ICON + 8) if self.icon is not None else 0)
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        """Draw it from the left edge of `room`."""
+        colour = QColor(getattr(theme.colours, self.tone))
+        if self.icon is not None:
+            side = theme.px(ICON)
+            paint_icon(painter, self.icon, QRectF(room.left(), room.center().y() - side / 2, side, side), colour)
+            room = room.adjusted(theme.px(ICON + 8), 0, 0, 0)
+        painter.setFont(self.font(theme))
+        painter.setPen(colour)
+        flags = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter | Qt.TextFlag.TextSingleLine
+        painter.drawText(room, flags, self.text)
 
 
-def _words(line: Line) -> tuple[str, ...]:
-    if isinstance(line, PatientLine):
-        return (line.code, line.person, line.when, line.sessions)
-    return (line.when, line.conditions, line.amount, line.state)
+@dataclass(frozen=True, slots=True)
+class PatientCell(TableCell):
+    """Code and person at the left, at the right when and how often they came; rows as the width asks for."""
+
+    line: PatientLine
+
+    @property
+    def words(self) -> str:
+        return ", ".join(filter(None, self.line.words))
+
+    def width(self, _theme: Theme) -> int:
+        return 0
+
+    def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
+        """Arrange the words in a room of this width, in px of the screen."""
+        line = self.line
+        code = Word(line.code, 16, SEMIBOLD, is_code=True)
+        when = Word(line.when, tone="ink2", is_right=True)
+        person = Word(line.person, tone="ink2")
+        sessions = Word(line.sessions, tone="ink2", is_right=True)
+        if line.needs_look:
+            sessions = Word(line.sessions, weight=SEMIBOLD, is_right=True, icon=Icon.WARNING)
+        rows: list[list[Word]] = []
+        for first, second in ((code, when), (person, sessions)):
+            if _are_beside(first, second, width - theme.px(ARROW), theme):
+                rows.append([first, second])
+            else:
+                rows += [*([row] for row in _wrapped(first, width, theme)), [replace(second, is_right=False)]]
+        return _placed(rows, width, theme)
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        _paint_rows(painter, room, self.word_rows(int(room.width()), theme), theme)
+
+
+@dataclass(frozen=True, slots=True)
+class SessionCell(TableCell):
+    """Date, conditions, amount and state before an arrow, in columns where there is room for them.
+
+    `has_states`: some line of the list has one, so that all keep its place free.
+    """
+
+    line: SessionLine
+    has_states: bool
+
+    @property
+    def words(self) -> str:
+        return ", ".join(filter(None, self.line.words))
+
+    def width(self, _theme: Theme) -> int:
+        return 0
+
+    def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
+        """Arrange the words in a room of this width, in px of the screen, beside the arrow."""
+        line, room = self.line, width - theme.px(ARROW)
+        date = Word(line.when, 15, SEMIBOLD)
+        conditions = Word(line.conditions)
+        amount = Word(line.amount, tone="ink2")
+        state = Word(line.state, weight=SEMIBOLD if line.needs_look else REGULAR)
+        state = replace(state, icon=Icon.WARNING if line.needs_look else None)
+        is_wide = width >= WIDE_SESSION_FROM * theme.scale
+        arrange = self._in_columns if is_wide else self._stacked
+        return _placed(arrange(date, conditions, amount, state, room, theme), room, theme)
+
+    def _in_columns(
+        self, date: Word, conditions: Word, amount: Word, state: Word, room: int, theme: Theme
+    ) -> list[list[Word]]:
+        px = theme.px
+        state = replace(state, left=room - px(STATE))
+        amount = replace(amount, left=(state.left if self.has_states else room) - px(AMOUNT))
+        first = [date, amount, state]
+        if px(DATE) + conditions.width(theme) + px(GAP) <= amount.left:
+            return [[*first, replace(conditions, left=px(DATE))]]
+        return [first, *([row] for row in _wrapped(conditions, room, theme))]
+
+    def _stacked(
+        self, date: Word, conditions: Word, amount: Word, state: Word, room: int, theme: Theme
+    ) -> list[list[Word]]:
+        at_right = replace(state, is_right=True)
+        is_beside = _are_beside(date, at_right, room, theme)
+        rows = [[date, at_right]] if is_beside else [[date], [state]]
+        amount = replace(amount, is_right=bool(conditions.text))
+        if _are_beside(conditions, amount, room, theme):
+            return [*rows, [conditions, amount]]
+        return [*rows, *([row] for row in _wrapped(conditions, room, theme)), [replace(amount, is_right=False)]]
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        side = theme.px(ICON)
+        arrow = QRectF(room.right() - side + theme.px(4), room.center().y() - side / 2, side, side)
+        paint_icon(painter, Icon.NEXT, arrow, theme.colours.ink2)
+        _paint_rows(painter, room, self.word_rows(int(room.width()), theme), theme)
+
+
+class LineList(CellTable):
+    """A list of lines, one of which may be chosen. Enter and a click on a session open it.
+
+    `chosen` and `opened` tell the id of a line.
+    """
+
+    def __init__(self, look: Look, name: str, is_opened_by_click: bool = False) -> None:
+        super().__init__(look, name, row=ROW, head=0, padding=PAD, edge=PAD, is_list=True)
+        self.lines: tuple[Line, ...] = ()
+        self._longest: list[PatientCell | SessionCell] = []
+        self._are_even = not is_opened_by_click  # patients may be thousands, sessions are of one patient
+        if is_opened_by_click:
+            self.clicked.connect(self._on_clicked)
+
+    @property
+    def line(self) -> Line | None:
+        """The line that is chosen."""
+        index = self.currentIndex()
+        return self.lines[index.row()] if index.isValid() else None
+
+    @property
+    def word_room(self) -> int:
+        """The width that words have, whether or not there is a scroll bar."""
+        return self.width() - self.verticalScrollBar().sizeHint().width() - 2 * self._look.theme.px(PAD)
+
+    def show_lines(self, lines: Sequence[Line], chosen: UUID | None = None) -> None:
+        """Show other lines, with the one that has this id chosen, where it is among them."""
+        self.lines = tuple(lines)
+        has_states = any(isinstance(line, SessionLine) and line.state for line in lines)
+        cells = [
+            PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, has_states) for line in lines
+        ]
+        self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
+        self.selectionModel().reset()  # the line that is chosen now is told, even if it is the same
+        self.show_rows(
+            [TableColumn(share=1, widest=EMPTY)],
+            [TableRow((cell,), key=cell.line.id) for cell in cells],
+        )
+        self.choose_line(chosen)
+
+    def choose_line(self, line_id: UUID | None) -> None:
+        self.choose(next((row for row, line in enumerate(self.lines) if line.id == line_id), -1))
+
+    def fit_rows(self) -> None:
+        """Make every line as high as its words in this width, or all of thousands as high as the longest one."""
+        if self._are_even:
+            heights = [self._height(cell) for cell in self._longest]
+            self.verticalHeader().setDefaultSectionSize(max([self._look.theme.px(ROW), *heights]))
+        else:
+            for number, row in enumerate(self.cells.rows):
+                self.setRowHeight(number, self._height(row.cells[0]))
+
+    def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
+        """A line under each row; the row that is chosen or under the mouse stands on a round ground."""
+        theme = self._look.theme
+        c, px, rect = theme.colours, theme.px, option.rect
+        is_chosen = bool(option.state & QStyle.StateFlag.State_Selected)
+        box = QRectF(rect.adjusted(px(6), px(6), -px(6), -px(6)))
+        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+        if is_chosen or option.state & QStyle.StateFlag.State_MouseOver:
+            theme.paint_box(painter, box, c.sunken if is_chosen else theme.veil(is_pressed=False))
+        if is_chosen:
+            bar = QRectF(rect.x() + px(5), box.y() + px(10), px(BAR), box.height() - px(20))
+            painter.setBrush(QColor(c.ink))
+            painter.drawRoundedRect(bar, px(BAR) / 2, px(BAR) / 2)
+        elif index.row() + 1 < len(self.lines):
+            painter.setPen(theme.pen(c.line, 1))
+            painter.drawLine(rect.x() + px(20), rect.bottom(), rect.right() - px(20), rect.bottom())
+
+    def room_of(self, rect: QRectF, column: int, *, is_heading: bool = False) -> QRectF:
+        room = super().room_of(rect, column, is_heading=is_heading)
+        room.setWidth(self.word_room)
+        return room
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.fit_rows()
+
+    def _height(self, cell: TableCell) -> int:
+        assert isinstance(cell, PatientCell | SessionCell)
+        px = self._look.theme.px
+        return px(ROW) + (max(2, len(cell.word_rows(self.word_room, self._look.theme))) - 2) * px(MORE_HEIGHT)
+
+    def _on_clicked(self, _index: QModelIndex) -> None:
+        self.opened.emit(self.key)
+
+
+def _are_beside(first: Word, second: Word, room: int, theme: Theme) -> bool:
+    """Tell whether both find room in one row."""
+    return first.width(theme) + theme.px(GAP) + second.width(theme) <= room
+
+
+def _wrapped(word: Word, room: int, theme: Theme) -> list[Word]:
+    """Break a long text between its words."""
+    rows: list[str] = []
+    for part in word.text.split(" "):
+        longer = f"{rows[-1]} {part}" if rows else part
+        if rows and replace(word, text=longer).width(theme) <= room:
+            rows[-1] = longer
+        else:
+            rows.append(part)
+    return [replace(word, text=row) for row in rows]
+
+
+def _placed(rows: list[list[Word]], room: int, theme: Theme) -> list[list[Word]]:
+    """Give what stands at the right its place, and leave out what says nothing."""
+    placed = [
+        [replace(word, left=room - word.width(theme)) if word.is_right else word for word in row if word.text]
+        for row in rows
+    ]
+    return [row for row in placed if row]
+
+
+def _paint_rows(painter: QPainter, room: QRectF, rows: list[list[Word]], theme: Theme) -> None:
+    step = theme.px(TEXT_ROW)
+    top = int(room.top()) + (int(room.height()) - step * len(rows)) // 2
+    for number, row in enumerate(rows):
+        for word in row:
+            box = QRectF(room.left() + word.left, top + number * step, word.width(theme), step)
+            word.paint(painter, box, theme)

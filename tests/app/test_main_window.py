@@ -387,7 +387,7 @@ def test_another_operator_leaves_nothing_behind(qtbot: QtBot, open_window: Open,
         QTest.mouseClick(window.entry.log_in.leave, Qt.MouseButton.LeftButton)
     assert not window.is_covered
     assert window.home is not None
-    assert window.home.page.patients.lines.rowCount() == 0
+    assert len(window.home.page.patients.lines) == 0
     logged_in(qtbot, window)
 
 

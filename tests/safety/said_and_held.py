@@ -92,7 +92,7 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     if home.current is not page or page._patients is None:
         return  # of what is still to be read nothing is said
     if not page.search.text():
-        lines = [line for line in page.patients.lines.lines if isinstance(line, PatientLine)]
+        lines = [line for line in page.patients.lines if isinstance(line, PatientLine)]
         said = Counter((line.code, _number(line.sessions)) for line in lines)
         are = Counter((str(code), int(count)) for code, count in held.ask(PATIENTS))
         if said != are:
@@ -102,7 +102,7 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     told = held.ask("SELECT code FROM patients WHERE id = ?", page.patient_id.hex)
     if not told or page._code.text() != told[0][0]:
         yield f"home shows the sessions of {page._code.text()!r}, held is {told}"
-    shown = [line for line in page.sessions.lines.lines if isinstance(line, SessionLine)]
+    shown = [line for line in page.sessions.lines if isinstance(line, SessionLine)]
     said_of = Counter((line.id.hex, _number(line.amount)) for line in shown)
     rows = held.ask(SESSIONS, page.patient_id.hex)
     held_of = Counter((str(identity), int(count)) for identity, _, count in rows)

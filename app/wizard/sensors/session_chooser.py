@@ -93,7 +93,7 @@ class SessionChooser(Themed):
         return [self.sessions, self.folder, self.back]
 
     def focus(self) -> None:
-        (self.sessions if self.sessions.lines.lines else self.folder).setFocus()
+        (self.sessions if self.sessions.lines else self.folder).setFocus()
 
     def show_sessions(self, lines: Sequence[PatientLine]) -> None:
         """Offer these, latest first; the one that was chosen stays chosen."""

@@ -96,11 +96,11 @@ def open_library(qtbot: QtBot, controller: LibraryController, home: Home, folder
     (state,) = told.args or []
     assert isinstance(state, OpenedState)
     home.show_library(state)
-    qtbot.waitUntil(lambda: home.page.patients.lines.rowCount() > 0, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.patients.lines), timeout=WAIT_MS)
 
 
 def lines(home: Home) -> list[PatientLine]:
-    return [line for line in home.page.patients.lines.lines if isinstance(line, PatientLine)]
+    return [line for line in home.page.patients.lines if isinstance(line, PatientLine)]
 
 
 def codes(home: Home) -> list[str]:
@@ -108,7 +108,7 @@ def codes(home: Home) -> list[str]:
 
 
 def sessions(home: Home) -> list[SessionLine]:
-    return [line for line in home.page.sessions.lines.lines if isinstance(line, SessionLine)]
+    return [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
 
 
 def restores(home: Home) -> dict[str, Button]:
@@ -121,7 +121,7 @@ def test_the_latest_seen_comes_first_with_its_sessions(qtbot: QtBot, home: Home)
     assert codes(home) == ["P-0163", "P-0147"]
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     assert [line.when for line in sessions(home)] == ["20 May 2026", "20 Apr 2026", "20 Mar 2026"]
-    first = home.page.patients.lines.lines[0]
+    first = home.page.patients.lines[0]
     assert isinstance(first, PatientLine)
     assert (first.person, first.sessions) == ("1951, female · right affected", "3 sessions")
     assert home.bar.primary.text() == "New session for P-0163"
@@ -153,7 +153,7 @@ def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -
 
 def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -> None:
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
-    place = home.page.sessions.visualRect(home.page.sessions.lines.index(1)).center()
+    place = home.page.sessions.visualRect(home.page.sessions.cells.index(1, 0)).center()
     with qtbot.waitSignal(home.session_opened) as told:
         QTest.mouseClick(home.page.sessions.viewport(), Qt.MouseButton.LeftButton, pos=place)
     assert told.args == [sessions(home)[1].id]
@@ -608,9 +608,9 @@ def test_an_operator_is_added_and_may_log_in(
 def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_read(qtbot: QtBot, home: Home) -> None:
     page = home.page
     visited = next(line.id for line in lines(home) if line.code == "P-0163")
-    page.patients.choose(visited)
+    page.patients.choose_line(visited)
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
-    page.patients.choose(next(line.id for line in lines(home) if line.code == "P-0147"))
+    page.patients.choose_line(next(line.id for line in lines(home) if line.code == "P-0147"))
     assert sessions(home) == []
     assert not page._none_yet.isVisible()
     qtbot.waitUntil(page._none_yet.isVisible, timeout=WAIT_MS)

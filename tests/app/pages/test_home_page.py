@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.home_lists import PatientLine, Role, SessionLine
+from app.pages.home_lists import TEXT_ROW, PatientCell, PatientLine, SessionCell, SessionLine
 from app.pages.home_page import HomePage
 from app.theme import Look, load_fonts
 
@@ -56,7 +56,7 @@ def test_thousands_of_patients_are_shown_and_searched_in_no_time(page: HomePage,
     QTest.keyClicks(page.search, "4")
     qapp.processEvents()
     searched_s = process_time() - began_s
-    assert page.patients.lines.rowCount() == sum("4" in f"P-{number:04d}" for number in range(MANY))
+    assert len(page.patients.lines) == sum("4" in f"P-{number:04d}" for number in range(MANY))
     assert shown_s < 3 * MOST_S  # half of it is the first painting
     assert searched_s < 2 * MOST_S
 
@@ -83,10 +83,10 @@ def test_an_empty_library_offers_a_patient_and_the_demonstration(qtbot: QtBot, p
 
 def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
     page.show_patients([patient(147)])
-    said = page.patients.lines.data(page.patients.lines.index(0), Qt.ItemDataRole.AccessibleTextRole)
+    said = page.patients.cells.data(page.patients.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
     assert said == "P-0147, 1968, male · left prosthetic, 24 Oct 2026, 5 sessions"
     page.show_sessions([session(1, "Alignment A", "recovered, look at it")])
-    said = page.sessions.lines.data(page.sessions.lines.index(0), Qt.ItemDataRole.AccessibleTextRole)
+    said = page.sessions.cells.data(page.sessions.cells.index(0, 0), Qt.ItemDataRole.AccessibleTextRole)
     assert said == "24 Oct 2026, Alignment A, 3 recordings, recovered, look at it"
 
 
@@ -103,19 +103,19 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
     for _ in range(3):
         qapp.processEvents()
     for view in (page.patients, page.sessions):
-        delegate = view.itemDelegate()
-        for line in view.lines.lines:
-            for row in delegate._rows(line, view.room):  # type: ignore[attr-defined]  # the delegate is our own
-                spans = []
-                for word in row:
-                    wide = delegate._width(word)  # type: ignore[attr-defined]  # of our delegate, which Qt hands out as its own kind
-                    left = view.room - wide - 2 * look.theme.px(24) if word.is_right else word.left
-                    spans.append((left, left + wide))
-                spans.sort()
+        for at in range(view.cells.rowCount()):
+            (cell,) = view.cells.rows[at].cells
+            assert isinstance(cell, PatientCell | SessionCell)
+            rows = cell.word_rows(view.word_room, look.theme)
+            for words in rows:
+                spans = sorted((word.left, word.left + word.width(look.theme)) for word in words)
                 assert all(before[1] <= after[0] for before, after in pairwise(spans))
                 assert spans[0][0] >= 0
-                assert spans[-1][1] <= view.room - 2 * look.theme.px(24)
-            assert view.model().index(0, 0).data(Role.LINE) is not None
+                assert spans[-1][1] <= view.word_room
+            assert view.rowHeight(at) >= len(rows) * look.theme.px(TEXT_ROW)
+            assert sorted(" ".join(word.text for words in rows for word in words).replace(",", "").split()) == sorted(
+                cell.words.replace(",", "").split()
+            )
 
 
 def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
@@ -128,8 +128,8 @@ def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page
     assert page._none_yet.isVisible()
     page.show_sessions([session(1, "barefoot")])
     page.forget_sessions()
-    assert page.sessions.lines.rowCount() == 0
+    assert len(page.sessions.lines) == 0
     assert not page._none_yet.isVisible()
     page.forget_patients()
-    assert page.patients.lines.rowCount() == 0
+    assert len(page.patients.lines) == 0
     assert not page._nobody.isVisible()

@@ -169,6 +169,18 @@ def test_every_cell_is_said_with_its_row_and_column(qtbot: QtBot, look: Look) ->
     assert QApplication.clipboard().text().split("\n")[1:] == ["Knee range\t+2.0\t", "Swing\t−12.1\t"]
 
 
+@pytest.mark.parametrize("is_dark", [False, True])
+def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: Look, is_dark: bool) -> None:
+    """Qt fills what is chosen with the palette's dark highlight before a cell is painted in ink."""
+    table = table_of(qtbot, look, [row("Knee range", "+2.0")])
+    look.set_dark(is_dark)
+    before = table.grab().toImage()
+    middle = table.visualRect(table.cells.index(0, 0)).center()
+    QTest.mouseClick(table.viewport(), Qt.MouseButton.LeftButton, pos=middle)
+    assert table.currentIndex().isValid()
+    assert table.grab().toImage() == before
+
+
 def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: Look) -> None:
     heading = TextCell("A heading that is much longer than the names of the rows", span=3)
     table = table_of(qtbot, look, [row("Knee", "+2.0")])

@@ -74,7 +74,7 @@ def home_in_sight(
     home = Home(Look(), controller, Settings(QSettings(str(tmp_path / "s.ini"), QSettings.Format.IniFormat)))
     qtbot.addWidget(home)
     home.show_library(controller.state)
-    qtbot.waitUntil(lambda: bool(home.page.sessions.lines.lines), timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
     yield SimpleNamespace(screens=SimpleNamespace(currentWidget=lambda: home), home=home, wizard=None)
     qapp.setStyleSheet("")
 

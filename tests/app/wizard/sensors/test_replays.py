@@ -77,8 +77,8 @@ def test_a_session_of_the_library_is_chosen_by_code_and_date(
 ) -> None:
     stored(controller, short_session)
     step.page.source_chosen.emit(REPLAY)
-    qtbot.waitUntil(lambda: bool(step.page.stored.sessions.lines.lines), timeout=5000)
-    (line,) = step.page.stored.sessions.lines.lines
+    qtbot.waitUntil(lambda: bool(step.page.stored.sessions.lines), timeout=5000)
+    (line,) = step.page.stored.sessions.lines
     assert (line.code, line.when, line.sessions) == ("P-7", "24 Oct 2026", "3 recordings")  # type: ignore[union-attr]  # lines of patients only
     bar = step.bar()
     assert bar.primary is not None
