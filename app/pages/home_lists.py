@@ -1,5 +1,6 @@
 """Patients and sessions as lines of a list: quick with thousands, for only what is in sight is painted."""
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from heapq import nlargest
@@ -99,20 +100,38 @@ class Word:
 
 
 @dataclass(frozen=True, slots=True)
-class PatientCell(TableCell):
-    """Code and person at the left, at the right when and how often they came; rows as the width asks for."""
+class LineCell(TableCell):
+    """All of one line: its words in rows, as many as the width asks for."""
 
-    line: PatientLine
+    line: Line
 
     @property
     def words(self) -> str:
         return ", ".join(filter(None, self.line.words))
 
     def width(self, _theme: Theme) -> int:
-        return 0
+        return 0  # words are arranged in what there is
 
+    @abstractmethod
     def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
         """Arrange the words in a room of this width, in px of the screen."""
+
+    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        rows, step = self.word_rows(int(room.width()), theme), theme.px(TEXT_ROW)
+        top = int(room.top()) + (int(room.height()) - step * len(rows)) // 2
+        for number, row in enumerate(rows):
+            for word in row:
+                box = QRectF(room.left() + word.left, top + number * step, word.width(theme), step)
+                word.paint(painter, box, theme)
+
+
+@dataclass(frozen=True, slots=True)
+class PatientCell(LineCell):
+    """Code and person at the left, at the right when and how often they came."""
+
+    line: PatientLine
+
+    def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
         line = self.line
         code = Word(line.code, 16, SEMIBOLD, is_code=True)
         when = Word(line.when, tone="ink2", is_right=True)
@@ -125,15 +144,12 @@ class PatientCell(TableCell):
             if _are_beside(first, second, width - theme.px(ARROW), theme):
                 rows.append([first, second])
             else:
-                rows += [*([row] for row in _wrapped(first, width, theme)), [replace(second, is_right=False)]]
+                rows += [*_wrapped(first, width, theme), [replace(second, is_right=False)]]
         return _placed(rows, width, theme)
-
-    def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
-        _paint_rows(painter, room, self.word_rows(int(room.width()), theme), theme)
 
 
 @dataclass(frozen=True, slots=True)
-class SessionCell(TableCell):
+class SessionCell(LineCell):
     """Date, conditions, amount and state before an arrow, in columns where there is room for them.
 
     `has_states`: some line of the list has one, so that all keep its place free.
@@ -142,52 +158,40 @@ class SessionCell(TableCell):
     line: SessionLine
     has_states: bool
 
-    @property
-    def words(self) -> str:
-        return ", ".join(filter(None, self.line.words))
-
-    def width(self, _theme: Theme) -> int:
-        return 0
-
     def word_rows(self, width: int, theme: Theme) -> list[list[Word]]:
-        """Arrange the words in a room of this width, in px of the screen, beside the arrow."""
-        line, room = self.line, width - theme.px(ARROW)
-        date = Word(line.when, 15, SEMIBOLD)
-        conditions = Word(line.conditions)
-        amount = Word(line.amount, tone="ink2")
-        state = Word(line.state, weight=SEMIBOLD if line.needs_look else REGULAR)
-        state = replace(state, icon=Icon.WARNING if line.needs_look else None)
-        is_wide = width >= WIDE_SESSION_FROM * theme.scale
-        arrange = self._in_columns if is_wide else self._stacked
-        return _placed(arrange(date, conditions, amount, state, room, theme), room, theme)
-
-    def _in_columns(
-        self, date: Word, conditions: Word, amount: Word, state: Word, room: int, theme: Theme
-    ) -> list[list[Word]]:
-        px = theme.px
-        state = replace(state, left=room - px(STATE))
-        amount = replace(amount, left=(state.left if self.has_states else room) - px(AMOUNT))
-        first = [date, amount, state]
-        if px(DATE) + conditions.width(theme) + px(GAP) <= amount.left:
-            return [[*first, replace(conditions, left=px(DATE))]]
-        return [first, *([row] for row in _wrapped(conditions, room, theme))]
-
-    def _stacked(
-        self, date: Word, conditions: Word, amount: Word, state: Word, room: int, theme: Theme
-    ) -> list[list[Word]]:
-        at_right = replace(state, is_right=True)
-        is_beside = _are_beside(date, at_right, room, theme)
-        rows = [[date, at_right]] if is_beside else [[date], [state]]
-        amount = replace(amount, is_right=bool(conditions.text))
-        if _are_beside(conditions, amount, room, theme):
-            return [*rows, [conditions, amount]]
-        return [*rows, *([row] for row in _wrapped(conditions, room, theme)), [replace(amount, is_right=False)]]
+        room, is_wide = width - theme.px(ARROW), width >= WIDE_SESSION_FROM * theme.scale
+        return _placed(self._in_columns(room, theme) if is_wide else self._stacked(room, theme), room, theme)
 
     def paint(self, painter: QPainter, room: QRectF, theme: Theme) -> None:
+        LineCell.paint(self, painter, room, theme)
         side = theme.px(ICON)
         arrow = QRectF(room.right() - side + theme.px(4), room.center().y() - side / 2, side, side)
         paint_icon(painter, Icon.NEXT, arrow, theme.colours.ink2)
-        _paint_rows(painter, room, self.word_rows(int(room.width()), theme), theme)
+
+    def _in_columns(self, room: int, theme: Theme) -> list[list[Word]]:
+        px, (date, conditions, amount, state) = theme.px, self._pieces()
+        state = replace(state, left=room - px(STATE))
+        amount = replace(amount, left=(state.left if self.has_states else room) - px(AMOUNT))
+        if px(DATE) + conditions.width(theme) + px(GAP) <= amount.left:
+            return [[date, amount, state, replace(conditions, left=px(DATE))]]
+        return [[date, amount, state], *_wrapped(conditions, room, theme)]
+
+    def _stacked(self, room: int, theme: Theme) -> list[list[Word]]:
+        date, conditions, amount, state = self._pieces()
+        at_right = replace(state, is_right=True)
+        rows = [[date, at_right]] if _are_beside(date, at_right, room, theme) else [[date], [state]]
+        if _are_beside(conditions, amount, room, theme):
+            return [*rows, [conditions, replace(amount, is_right=bool(conditions.text))]]
+        return [*rows, *_wrapped(conditions, room, theme), [amount]]
+
+    def _pieces(self) -> tuple[Word, Word, Word, Word]:
+        line = self.line
+        state = Word(
+            line.state,
+            weight=SEMIBOLD if line.needs_look else REGULAR,
+            icon=Icon.WARNING if line.needs_look else None,
+        )
+        return Word(line.when, 15, SEMIBOLD), Word(line.conditions), Word(line.amount, tone="ink2"), state
 
 
 class LineList(CellTable):
@@ -199,7 +203,7 @@ class LineList(CellTable):
     def __init__(self, look: Look, name: str, is_opened_by_click: bool = False) -> None:
         super().__init__(look, name, row=ROW, head=0, padding=PAD, edge=PAD, is_list=True)
         self.lines: tuple[Line, ...] = ()
-        self._longest: list[PatientCell | SessionCell] = []
+        self._longest: list[LineCell] = []
         self._are_even = not is_opened_by_click  # patients may be thousands, sessions are of one patient
         if is_opened_by_click:
             self.clicked.connect(self._on_clicked)
@@ -219,7 +223,7 @@ class LineList(CellTable):
         """Show other lines, with the one that has this id chosen, where it is among them."""
         self.lines = tuple(lines)
         has_states = any(isinstance(line, SessionLine) and line.state for line in lines)
-        cells = [
+        cells: list[LineCell] = [
             PatientCell(line) if isinstance(line, PatientLine) else SessionCell(line, has_states) for line in lines
         ]
         self._longest = nlargest(MEASURED, cells, key=lambda cell: len(cell.words))
@@ -269,7 +273,7 @@ class LineList(CellTable):
         self.fit_rows()
 
     def _height(self, cell: TableCell) -> int:
-        assert isinstance(cell, PatientCell | SessionCell)
+        assert isinstance(cell, LineCell)
         px = self._look.theme.px
         return px(ROW) + (max(2, len(cell.word_rows(self.word_room, self._look.theme))) - 2) * px(MORE_HEIGHT)
 
@@ -282,8 +286,8 @@ def _are_beside(first: Word, second: Word, room: int, theme: Theme) -> bool:
     return first.width(theme) + theme.px(GAP) + second.width(theme) <= room
 
 
-def _wrapped(word: Word, room: int, theme: Theme) -> list[Word]:
-    """Break a long text between its words."""
+def _wrapped(word: Word, room: int, theme: Theme) -> list[list[Word]]:
+    """Break a long text between its words, into a row each."""
     rows: list[str] = []
     for part in word.text.split(" "):
         longer = f"{rows[-1]} {part}" if rows else part
@@ -291,7 +295,7 @@ def _wrapped(word: Word, room: int, theme: Theme) -> list[Word]:
             rows[-1] = longer
         else:
             rows.append(part)
-    return [replace(word, text=row) for row in rows]
+    return [[replace(word, text=row)] for row in rows]
 
 
 def _placed(rows: list[list[Word]], room: int, theme: Theme) -> list[list[Word]]:
@@ -301,12 +305,3 @@ def _placed(rows: list[list[Word]], room: int, theme: Theme) -> list[list[Word]]
         for row in rows
     ]
     return [row for row in placed if row]
-
-
-def _paint_rows(painter: QPainter, room: QRectF, rows: list[list[Word]], theme: Theme) -> None:
-    step = theme.px(TEXT_ROW)
-    top = int(room.top()) + (int(room.height()) - step * len(rows)) // 2
-    for number, row in enumerate(rows):
-        for word in row:
-            box = QRectF(room.left() + word.left, top + number * step, word.width(theme), step)
-            word.paint(painter, box, theme)

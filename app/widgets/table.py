@@ -207,8 +207,6 @@ class CellTable(QTableView):
         lines += [[cell.words for cell in row.cells] for row in self.cells.rows]
         return "\n".join("\t".join(cells) for cells in lines)
 
-    # How it is painted -----------------------------------------------------------------------------------------------
-
     def paint_ground(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
         """Draw what lies under a cell: the line above it, and whether its row is a heading, chosen or in focus."""
         theme, rect = self._look.theme, QRectF(option.rect)

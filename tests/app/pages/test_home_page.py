@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.pages.home_lists import TEXT_ROW, PatientCell, PatientLine, SessionCell, SessionLine
+from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionLine
 from app.pages.home_page import HomePage
 from app.theme import Look, load_fonts
 
@@ -105,7 +105,7 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
     for view in (page.patients, page.sessions):
         for at in range(view.cells.rowCount()):
             (cell,) = view.cells.rows[at].cells
-            assert isinstance(cell, PatientCell | SessionCell)
+            assert isinstance(cell, LineCell)
             rows = cell.word_rows(view.word_room, look.theme)
             for words in rows:
                 spans = sorted((word.left, word.left + word.width(look.theme)) for word in words)
