@@ -25,6 +25,7 @@ from app.reports.comparison import conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
 from app.reports.patient_report.request import Visit
 from app.reports.reference_bands import age_and_height, sides_with_band
 from app.review.mean_legs import mean_legs
@@ -538,6 +539,7 @@ class ResultPage(Themed):
     def _show_facts(self, facts: Facts) -> None:
         self.key_figures.show_figures(key_figures(facts))
         self.differs.show_facts(facts)
+        self.cycles.charts.show_marks(deviations_of(facts), gaps_of(facts))
         self._fit_table()
         if self.show_legs.isChecked():
             self._show_moving_legs()

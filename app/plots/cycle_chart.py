@@ -3,7 +3,8 @@
 The chart paints itself: nobody zooms a stride, and so every label finds its place.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 import pyqtgraph as pg
@@ -12,6 +13,10 @@ from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEve
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
+from app.charts.frame import Frame
+from app.charts.marks import BAND_SDS, MOST_MARKS, Deviation, Gap, Point
+from app.charts.on_screen import gap_boxes, paint_deviation, paint_gap_bars, paint_gaps, place_deviation
+from app.charts.places import Ground, Place, line_of
 from app.icons import Icon
 from app.plots.axes import (
     ABOUT_MEAN_DEG,
@@ -114,6 +119,14 @@ class CycleCharts(Themed):
             found = [(joint.side, curve) for joint, curve in curves_deg.items() if joint.is_knee is is_knee]
             frame.show_stride(found[0] if found else None)
 
+    def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap] = ()) -> None:
+        """Mark on the curves what stands out, degrees as measured; the next walk shown is without."""
+        for frame, is_knee in ((self.knee, True), (self.ankle, False)):
+            frame.show_marks(
+                [found for found in deviations if found.is_knee is is_knee],
+                [gap for gap in gaps if gap.joint.is_knee is is_knee],
+            )
+
     def set_strides_shown(self, is_shown: bool) -> None:
         for frame in self.frames:
             frame.set_strides_shown(is_shown)
@@ -126,7 +139,7 @@ class CycleCharts(Themed):
     def show_cursor(self, percent: Mapping[Side, float]) -> None:
         """Mark a place on each leg's own stride; none: no cursor."""
         for frame in self.frames:
-            frame.chart.places = percent
+            frame.chart.readings = percent
             frame.chart.update()
 
     def set_brief(self, is_brief: bool) -> None:
@@ -202,6 +215,25 @@ class CycleFrame(Card):
         self.chart.setAccessibleName(tr("{joint} over one stride").format(joint=title_in_words(self._is_knee)))
         self.chart.setAccessibleDescription(self.in_words())
 
+    def show_marks(self, deviations: Sequence[Deviation], gaps: Sequence[Gap]) -> None:
+        """Mark the curves that are drawn; of several differences the first two."""
+
+        def lowered(point: Point) -> Point:
+            return point.lowered(self.heights_deg.get(point.joint.side, 0.0))
+
+        drawn = self.chart.sides_with_mean
+        self.chart.deviations = tuple(
+            replace(found, first=lowered(found.first), second=lowered(found.second))
+            for found in deviations
+            if drawn.issuperset(point.joint.side for point in found.points)
+        )[:MOST_MARKS]
+        heights = self.heights_deg
+        self.chart.gaps = tuple(
+            gap.lowered(heights.get(gap.joint.side, 0.0)) for gap in gaps if gap.joint.side in drawn
+        )
+        self.chart.redraw()
+        self.chart.setAccessibleDescription(self.in_words())
+
     def show_stride(self, stride: tuple[Side, FloatArray] | None) -> None:
         """Draw one stride (101,) over all others, bold."""
         self.chart.stride = (stride[0], stride[1] - self.heights_deg.get(stride[0], 0.0)) if stride else None
@@ -253,6 +285,8 @@ class CycleFrame(Card):
         for side, chip in self.chips.items():
             if side in self.chart.cycles and chip.verdict is Verdict.CARE:
                 said.append(f"{capitalised(chip.accessibleName())}.")
+        said += [deviation.in_words() for deviation in self.chart.deviations]
+        said += [gap.in_words() for gap in self.chart.gaps]
         said += [self.note] if self.note else []
         return " ".join(said) or nothing_in_words(self._is_knee)
 
@@ -289,7 +323,9 @@ class CycleChart(Themed):
         self.is_about_mean = False
         self.withheld: frozenset[Side] = frozenset()  # of whom no mean is drawn
         self.stride: tuple[Side, FloatArray] | None = None
-        self.places: Mapping[Side, float] = {}  # percent of each leg's own stride
+        self.readings: Mapping[Side, float] = {}  # percent of each leg's own stride
+        self.deviations: tuple[Deviation, ...] = ()
+        self.gaps: tuple[Gap, ...] = ()
         self._picture: QPixmap | None = None
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
@@ -318,6 +354,7 @@ class CycleChart(Themed):
         """Draw each side's strides, and widen the axis where their mean leaves it."""
         self.cycles, self.is_simulated = cycles, is_simulated
         self.withheld, self.is_about_mean = withheld, is_about_mean
+        self.deviations, self.gaps = (), ()
         means = [cycle.mean.mean for side, cycle in cycles.items() if side not in withheld]
         self.range_deg = range_for(self._usual_deg, means)
         self.redraw()
@@ -332,6 +369,36 @@ class CycleChart(Themed):
     def _means(self) -> Iterator[tuple[Side, SideCycle]]:
         """Those whose mean may be seen."""
         return ((side, cycle) for side, cycle in self.cycles.items() if side not in self.withheld)
+
+    @property
+    def sides_with_mean(self) -> frozenset[Side]:
+        return frozenset(side for side, cycle in self._means() if cycle.mean.n)
+
+    def places(self) -> list[Place]:
+        """Where each difference that is marked finds room, px of the widget."""
+        frame = self.frame
+        curves = [line_of(frame, PERCENT, cycle.mean.mean) for _, cycle in self._means() if cycle.mean.n]
+        edges = []
+        if self._band_drawn is not None:
+            reach = BAND_SDS * self._band_drawn.sd_deg
+            edges = [self._band_drawn.mean_deg - reach, self._band_drawn.mean_deg, self._band_drawn.mean_deg + reach]
+        ground = Ground(
+            frame,
+            curves,
+            [line_of(frame, PERCENT, edge) for edge in edges],
+            [float(frame.x(percent)) for _, percent in self._toe_offs()],
+            gap_boxes(self._look.theme, frame, self.gaps),
+        )
+        return [place_deviation(self._look.theme, ground, deviation) for deviation in self.deviations]
+
+    @property
+    def _band_drawn(self) -> Band | None:
+        return self.band if self.has_band and not self.is_about_mean else None
+
+    @property
+    def frame(self) -> Frame:
+        area, (lowest, highest) = self.plot_area(), self.range_deg
+        return Frame(area.left(), area.top(), area.width(), area.height(), lowest, highest)
 
     def redraw(self) -> None:
         """Paint anew, since what is shown has changed."""
@@ -383,13 +450,15 @@ class CycleChart(Themed):
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         painter.save()
         painter.setClipRect(self.plot_area())
-        if self.has_band and self.band is not None and not self.is_about_mean:
+        if (band := self._band_drawn) is not None:
             for sds, colour in ((2, self._look.theme.colours.band_2sd), (1, self._look.theme.colours.band_1sd)):
-                self._fill(painter, self.band.mean_deg, sds * self.band.sd_deg, QColor(colour))
+                self._fill(painter, band.mean_deg, sds * band.sd_deg, QColor(colour))
         painter.restore()
         self._paint_axes(painter)
         painter.save()
         painter.setClipRect(self.plot_area())
+        theme, frame = self._look.theme, self.frame
+        paint_gaps(painter, theme, frame, self.gaps, {side: cycle.mean.mean for side, cycle in self._means()})
         for side, cycle in self._means():
             if is_spread_enough(cycle.mean.n) and not self.has_strides:
                 self._fill(painter, cycle.mean.mean, cycle.mean.sd, self._look.theme.band(side))
@@ -403,6 +472,9 @@ class CycleChart(Themed):
             self._paint_stride(painter, *self.stride)
         painter.restore()
         self._paint_labels(painter)
+        paint_gap_bars(painter, theme, frame, self.gaps)
+        for deviation, place in zip(self.deviations, self.places(), strict=True):
+            paint_deviation(painter, theme, frame, deviation, place)
 
     def _paint_cursor(self, painter: QPainter) -> None:
         """A line at each leg's place with what the curve has there; solid at the left leg's, dashed at the right's."""
@@ -411,7 +483,7 @@ class CycleChart(Themed):
         painter.setFont(theme.font(12, SEMIBOLD))
         metrics, rows = QFontMetrics(theme.font(12, SEMIBOLD)), theme.px(16)
         for number, (side, cycle) in enumerate(self._means()):
-            percent = self.places.get(side)
+            percent = self.readings.get(side)
             if percent is None or not cycle.mean.n:
                 continue
             angle = float(np.interp(percent, PERCENT, cycle.mean.mean))

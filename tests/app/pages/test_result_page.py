@@ -357,12 +357,12 @@ def test_legs_stand_beside_the_curves_in_step_with_their_cursor(page: ResultPage
     assert not page.differs.isVisible()
     page.legs.show_percent(72.0)
     knee = page.cycles.charts.knee.chart
-    assert knee.places[Side.LEFT] == pytest.approx(72.0)
-    assert knee.places[Side.RIGHT] == pytest.approx(22.0, abs=3.0)
+    assert knee.readings[Side.LEFT] == pytest.approx(72.0)
+    assert knee.readings[Side.RIGHT] == pytest.approx(22.0, abs=3.0)
     at = knee.at(30.0, 20.0).toPoint()
     QTest.mouseClick(knee, Qt.MouseButton.LeftButton, pos=at)
     assert page.legs.percent == pytest.approx(30.0, abs=1.0)
     page.show_legs.click()
     assert not page.legs.isVisible()
-    assert knee.places == {}
+    assert knee.readings == {}
     assert page.differs.isVisible()

@@ -1,5 +1,7 @@
 """The mean cycle: what is painted for how many strides, where toe-off stands, and the same axes for everyone."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtGui import QColor
@@ -7,6 +9,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.cycles import SideCycle
+from app.charts.marks import Deviation, Gap, Point
 from app.plots.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
@@ -260,3 +263,81 @@ def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look
             ]
             inked.append(min(corner) < 100)
     assert inked == [False, False, True, True]
+
+
+def peak(side: Side, angle_deg: float) -> Point:
+    return Point(Joint(f"{side}_knee"), 72.0, angle_deg)
+
+
+LEFT_UNDER_RIGHT = Deviation(
+    peak(Side.LEFT, 40.0), peak(Side.RIGHT, 60.0), "L 20° under R", "loading too", is_larger_than_error=True
+)
+
+
+def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts, look: Look) -> None:
+    charts.set_band_shown(False)
+    chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
+    assert chart.places() == []
+    charts.show_marks([LEFT_UNDER_RIGHT])
+    (place,) = chart.places()
+    assert place.lines == 2
+    assert (place.top, place.bottom) == (chart.at(72, 60).y(), chart.at(72, 40).y())
+    middle = (place.top + place.bottom) / 2
+    picture = chart.grab().toImage()
+    assert is_like(picture.pixelColor(round(place.bar_x - 0.5), round(middle)), look.theme.colours.ink)
+    at = chart.at(72, 60)
+    assert (
+        picture.pixelColor(round(at.x()), round(at.y())).name() == look.theme.colours.surface.lower()
+    )  # right: outlined
+    assert is_like(colour_at(chart, 72, 40), look.theme.curve(Side.LEFT))
+    assert "L 20° under R, larger than the measurement error; loading too." in charts.knee.in_words()
+    assert "L 20° under R" not in charts.ankle.in_words()
+
+
+def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: Look) -> None:
+    chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
+    charts.show_marks([replace(LEFT_UNDER_RIGHT, is_larger_than_error=False)])
+    (place,) = chart.places()
+    found = chart.grab().toImage().pixelColor(round(place.bar_x - 0.5), round((place.top + place.bottom) / 2))
+    assert is_like(found, look.theme.colours.control)
+    assert "larger than the measurement error" not in charts.knee.in_words()
+
+
+def test_marks_stand_on_curves_that_are_drawn_alone_two_at_most_and_for_one_walk(charts: CycleCharts) -> None:
+    cycles = {Joint.LEFT_KNEE: cycle(12, 40), Joint.RIGHT_KNEE: cycle(12, 60)}
+    charts.show_cycles(cycles, {}, is_simulated=False)
+    charts.show_marks([LEFT_UNDER_RIGHT, LEFT_UNDER_RIGHT, LEFT_UNDER_RIGHT])
+    marks = [len(charts.knee.chart.deviations)]
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
+    marks.append(len(charts.knee.chart.deviations))
+    assert marks == [2, 0]
+    beside = np.zeros(101)
+    outside = [Gap(joint, 60, 80, beside, "outside") for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE)]
+    charts.show_marks([LEFT_UNDER_RIGHT], outside)
+    assert charts.knee.chart.deviations == ()
+    assert [gap.joint for gap in charts.knee.chart.gaps] == [Joint.RIGHT_KNEE]
+
+
+def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCharts, look: Look) -> None:
+    charts.set_band_shown(False)
+    chart = show(charts, left=cycle(9, 40))
+    surface = look.theme.colours.surface.lower()
+    limit_deg = chart.cycles[Side.LEFT].mean.mean + 12.0
+    on_axis = chart.frame.low_deg + 2.5 / chart.frame.height * (chart.frame.high_deg - chart.frame.low_deg)
+    assert colour_at(chart, 76, 42).name() == surface
+    charts.show_marks([], [Gap(Joint.LEFT_KNEE, 66, 84, limit_deg, "outside 2 SD of the band")])
+    assert colour_at(chart, 72, 47).name() == look.theme.soft(Side.LEFT).name()
+    assert is_like(colour_at(chart, 75, on_axis), look.theme.curve(Side.LEFT))
+    for percent in (55, 95):
+        assert colour_at(chart, percent, on_axis).name() == surface
+    assert colour_at(chart, 72, 56).name() == surface  # beyond the limit
+    assert "Left knee, 66 to 84 %: outside 2 SD of the band." in charts.knee.in_words()
+
+
+def test_marks_are_lowered_with_the_curves_that_have_no_height(charts: CycleCharts) -> None:
+    cycles = {Joint.LEFT_KNEE: cycle(12, 40, shift_deg=25.0), Joint.RIGHT_KNEE: cycle(12, 60)}
+    charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(height=ZERO)}, is_simulated=False)
+    highest = {side: charts.knee.chart.cycles[side].mean.mean.max() for side in Side}
+    charts.show_marks([replace(LEFT_UNDER_RIGHT, first=peak(Side.LEFT, 65.0))])
+    (mark,) = charts.knee.chart.deviations
+    assert [point.angle_deg for point in mark.points] == pytest.approx([highest[Side.LEFT], highest[Side.RIGHT]])

@@ -1,0 +1,168 @@
+"""Free places in a chart: where a mark's bar and words cover the curves least."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.charts.frame import Frame
+from core.samples import FloatArray
+
+USUAL_EMPTY_PERCENT = {True: 50.0, False: 43.0}  # of a knee and an ankle: between the stance's curve and the swing's
+CANDIDATES_PERCENT = np.arange(2.0, 99.0)
+WORDS_APART = 10.0  # between bar and words
+CLEAR = 3.0  # around words
+LEADER = 0.5  # half of a leader's width
+POINT_APART = 12.0  # between the bar and the points it stands for
+# What a length of covered curve costs, an upright line, a crossing; a mark over a mark cannot be read.
+PER_CURVE, PER_SOFT_CURVE, PER_UPRIGHT, PER_CROSSING = 5.0, 0.25, 15.0, 8.0
+UNREADABLE = 1000.0
+MOST_COVERED = 100.0  # before the second line is left away
+WORDS_AT_RIGHT, TOO_NEAR, PER_LENGTH_AWAY = 25.0, 60.0, 0.15
+
+
+@dataclass(frozen=True, slots=True)
+class Box:
+    """A box in a painter's own unit, y downwards."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+    def grown(self, by: float) -> "Box":
+        return Box(self.left - by, self.top - by, self.right + by, self.bottom + by)
+
+    def overlaps(self, other: "Box") -> bool:
+        is_beside = self.right <= other.left or other.right <= self.left
+        return not (is_beside or self.bottom <= other.top or other.bottom <= self.top)
+
+    def contains(self, other: "Box") -> bool:
+        is_across = self.left <= other.left and other.right <= self.right
+        return is_across and self.top <= other.top and other.bottom <= self.bottom
+
+
+@dataclass
+class Ground:
+    """What a chart has drawn already: curves (n, 2), pale ones such as a band's edges, upright lines, and boxes."""
+
+    frame: Frame
+    curves: Sequence[FloatArray]
+    soft_curves: Sequence[FloatArray] = ()
+    uprights: Sequence[float] = ()
+    taken: list[Box] = field(default_factory=list)
+    leaders: list[Box] = field(default_factory=list)
+    _pieces: FloatArray = field(init=False)  # of all curves: middle x, middle y, what covering it costs
+
+    def __post_init__(self) -> None:
+        weighed = [*((curve, PER_CURVE) for curve in self.curves), *((c, PER_SOFT_CURVE) for c in self.soft_curves)]
+        pieces = [
+            np.column_stack([(curve[1:] + curve[:-1]) / 2, weight * np.hypot(*np.diff(curve, axis=0).T)])
+            for curve, weight in weighed
+        ]
+        self._pieces = np.concatenate([np.empty((0, 3)), *pieces])
+
+    def covered(self, box: Box) -> float:
+        """What it costs to cover the curves in a box."""
+        x, y, cost = self._pieces.T
+        return float(cost[(box.left < x) & (x < box.right) & (box.top < y) & (y < box.bottom)].sum())
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A mark's bar, and the room of its words: None where there is none. `lines` are those that have room."""
+
+    bar_x: float
+    top: float
+    bottom: float
+    words: Box | None
+    lines: int
+
+    @property
+    def are_words_at_right(self) -> bool:
+        return self.words is not None and self.words.left > self.bar_x
+
+
+def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatArray:
+    """A curve (4n, 2) as it lies in the frame, close enough for its steep parts to be met; what is unknown is left."""
+    is_known = np.isfinite(angle_deg)
+    if not is_known.any():
+        return np.empty((0, 2))
+    close = np.linspace(percent[is_known][0], percent[is_known][-1], 4 * len(percent))
+    return np.column_stack([frame.x(close), frame.y(np.interp(close, percent[is_known], angle_deg[is_known]))])
+
+
+def place_mark(
+    ground: Ground, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
+) -> Place:
+    """The place that covers least for the bar between two `ends` (x, y), and for the words beside it.
+
+    `sizes` are width and height of the words with one line, two lines and so on; as many are kept as have room. The
+    place is taken from then on.
+    """
+    top, bottom = sorted(y for _, y in ends)
+    usual_x = float(ground.frame.x(usual_percent))
+    all_x = map(float, ground.frame.x(CANDIDATES_PERCENT))
+    bars = sorted((_cost_of_bar(ground, x, ends, usual_x), x) for x in all_x)
+    place = Place(bars[0][1], top, bottom, None, 0)
+    for lines in range(len(sizes), 0, -1):
+        most = MOST_COVERED if lines > 1 else UNREADABLE
+        for cost_of_bar, bar_x in bars:
+            if cost_of_bar >= most:
+                break
+            for words in _rooms(ground.frame, bar_x, top, bottom, sizes[lines - 1]):
+                cost = cost_of_bar + _cost_of_words(ground, words, bar_x, ends)
+                if cost < most:
+                    most, place = cost, Place(bar_x, top, bottom, words, lines)
+        if place.words is not None:
+            break
+    ground.taken.append(Box(place.bar_x - CLEAR, top, place.bar_x + CLEAR, bottom))
+    ground.taken += [place.words] if place.words is not None else []
+    ground.leaders += [_leader(place.bar_x, x, y) for x, y in ends]
+    return place
+
+
+def _rooms(frame: Frame, bar_x: float, top: float, bottom: float, size: tuple[float, float]) -> Iterator[Box]:
+    """Rooms for words beside a bar, that lie inside the frame: at its middle, its ends, and above and below it."""
+    width, height = size
+    inside = Box(frame.left, frame.top, frame.right, frame.bottom)
+    middle = (top + bottom) / 2
+    for left in (bar_x - WORDS_APART - width, bar_x + WORDS_APART):
+        beyond_ends = top - height / 2, bottom + height / 2, top + height / 2, bottom - height / 2
+        for centre in (middle, top, bottom, *beyond_ends):
+            words = Box(left, centre - height / 2, left + width, centre + height / 2)
+            if inside.contains(words):
+                yield words
+
+
+def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float]], usual_x: float) -> float:
+    top, bottom = sorted(y for _, y in ends)
+    bar = Box(bar_x - CLEAR, top, bar_x + CLEAR, bottom)
+    cost = PER_LENGTH_AWAY * abs(bar_x - usual_x) + UNREADABLE * any(map(bar.overlaps, ground.taken))
+    cost += PER_CROSSING * sum(map(bar.overlaps, ground.leaders))
+    cost += PER_UPRIGHT * any(abs(x - bar_x) < 2 * CLEAR for x in ground.uprights)
+    for curve in ground.curves:
+        y = curve[np.argmin(np.abs(curve[:, 0] - bar_x)), 1] if len(curve) else np.nan
+        cost += PER_CROSSING * bool(top + CLEAR < y < bottom - CLEAR)
+    for x, y in ends:
+        leader = _leader(bar_x, x, y)
+        cost += TOO_NEAR * (abs(x - bar_x) < POINT_APART) + UNREADABLE * any(map(leader.overlaps, ground.taken))
+        for curve in ground.curves:
+            is_near_point = np.abs(curve[:, 0] - x) < POINT_APART
+            is_under = (leader.left < curve[:, 0]) & (curve[:, 0] < leader.right) & ~is_near_point
+            cost += PER_CROSSING * np.count_nonzero(np.diff(curve[is_under, 1] > y))
+    return float(cost)
+
+
+def _cost_of_words(ground: Ground, words: Box, bar_x: float, ends: Sequence[tuple[float, float]]) -> float:
+    room = words.grown(CLEAR)
+    cost = ground.covered(room) + PER_UPRIGHT * sum(room.left < x < room.right for x in ground.uprights)
+    cost += WORDS_AT_RIGHT * (words.left > bar_x)
+    points = [Box(x, y, x, y).grown(CLEAR) for x, y in ends]
+    in_the_way = [*ground.taken, *ground.leaders, *points, *(_leader(bar_x, x, y) for x, y in ends)]
+    return cost + UNREADABLE * any(map(room.overlaps, in_the_way))
+
+
+def _leader(bar_x: float, x: float, y: float) -> Box:
+    """The level line from a point to its bar."""
+    return Box(min(x, bar_x), y - LEADER, max(x, bar_x), y + LEADER)

@@ -1,0 +1,87 @@
+"""Which places of a walk's curves does the answer speak of? What differs most, and where a curve leaves the band."""
+
+import numpy as np
+
+from app.charts.cycles import Band, is_mean_enough
+from app.charts.marks import BAND_SDS, Deviation, Gap, extreme_of, gaps_outside, laid_at_height_of
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
+from app.reports.patient_report.numbers_in_words import fixed
+from app.reports.patient_report.what_differs import LegsRow, what_differs
+from app.wording import tr
+from core.body import Joint, Side
+from core.norms import KNEE_OVERREAD
+from core.samples import FloatArray
+from core.verdicts.quantities import QUANTITIES, QuantityClass
+
+ALL = 0.0, 100.0
+WINDOWS = {"knee_range_deg": (ALL, ALL), "ankle_range_deg": (ALL, ALL)}  # where an excursion has its highest and lowest
+
+
+def deviations_of(facts: Facts) -> list[Deviation]:
+    """Of each kind of joint the excursion that differs most, where a sentence may tell it: one mark on each leg."""
+    found: list[Deviation] = []
+    for kind in KINDS:
+        row = next((row for row in what_differs(facts) if _is_told_of(row, kind)), None)
+        if row is not None:
+            found += [_on_leg(facts, row, kind, side) for side in facts.first_and_second]
+    return found
+
+
+def _is_told_of(row: LegsRow, kind: str) -> bool:
+    is_excursion = row.column in WINDOWS and row.column.startswith(kind)
+    return is_excursion and QUANTITIES[row.column] is not QuantityClass.HEIGHT and row.difference.is_worth_a_sentence
+
+
+def _on_leg(facts: Facts, row: LegsRow, kind: str, side: Side) -> Deviation:
+    """The extremes of one leg's mean curve; the size is the mean of the strides, as everywhere."""
+    joint, curve = joint_of(kind, side), facts.mean_curve_deg(side, kind)
+    high, low = WINDOWS[row.column]
+    size = fixed(row.values[side].mean, row.decimals) + row.unit
+    first, second = facts.first_and_second
+    more = ""
+    if side is first:
+        pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
+        apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
+        more = pattern.format(size=apart, other=second[0].upper())
+    return Deviation(
+        extreme_of(joint, curve, *low, is_maximum=False),
+        extreme_of(joint, curve, *high, is_maximum=True),
+        words=f"{side[0].upper()} {size}",
+        more=more,
+        is_larger_than_error=side is first,
+        size=size,
+    )
+
+
+def gaps_of(facts: Facts) -> list[Gap]:
+    """Where a leg's curve lies beyond 2 SD both of the band as drawn and of the band laid at the curve's height.
+
+    A knee has to do so as measured and divided by what knees over-read; without a height nothing is said.
+    """
+    group = facts.curves_group
+    if group is None or facts.bands.are_curves_of_other_ages:
+        return []
+    found: list[Gap] = []
+    for side in Side:
+        for kind in KINDS:
+            joint = joint_of(kind, side)
+            curve = facts.mean_curve_deg(side, kind)
+            is_judged = side in facts.sides_with_band and facts.verdicts.joint(joint).height.is_told
+            if is_judged and np.isfinite(curve).all() and is_mean_enough(facts.strides(side)):
+                found += _beyond(joint, curve, Band(*group.mean_and_sd_deg(kind)))
+    return found
+
+
+def _beyond(joint: Joint, curve: FloatArray, band: Band) -> tuple[Gap, ...]:
+    limits = [_limits(band), _limits(laid_at_height_of(curve, band))]
+    if joint.is_knee:
+        low, high = _limits(laid_at_height_of(curve / KNEE_OVERREAD, band))
+        limits.append((KNEE_OVERREAD * low, KNEE_OVERREAD * high))
+    low = np.min([one for one, _ in limits], axis=0)
+    high = np.max([one for _, one in limits], axis=0)
+    return gaps_outside(joint, curve, low, high, tr("more than 2 SD from the band"))
+
+
+def _limits(band: Band) -> tuple[FloatArray, FloatArray]:
+    reach = BAND_SDS * band.sd_deg
+    return band.mean_deg - reach, band.mean_deg + reach

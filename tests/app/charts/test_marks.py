@@ -1,0 +1,68 @@
+"""Marks of a chart: which points differ, where a curve leaves a limit, and what is said of them."""
+
+import numpy as np
+import pytest
+
+from app.charts.cycles import PERCENT, Band
+from app.charts.marks import Deviation, Point, extreme_of, gaps_outside, gaps_outside_band, laid_at_height_of
+from core.body import Joint
+from core.samples import FloatArray
+
+KNEE: FloatArray = 50 * np.exp(-(((PERCENT - 72) / 12) ** 2))
+BAND = Band(KNEE, np.full(101, 3.0))
+POINT = Point(Joint.LEFT_KNEE, 72.0, 50.0)
+
+
+def test_an_extreme_is_looked_for_inside_its_window_alone() -> None:
+    assert extreme_of(Joint.LEFT_KNEE, KNEE, 55, 90, is_maximum=True) == POINT
+    highest = extreme_of(Joint.LEFT_KNEE, KNEE, 54.5, 60.5, is_maximum=True)
+    assert (highest.percent, highest.angle_deg) == (60.0, KNEE[60])
+    assert extreme_of(Joint.LEFT_KNEE, KNEE, 55, 60, is_maximum=False).percent == 55.0
+
+
+def test_a_curve_inside_its_band_has_no_gap() -> None:
+    assert gaps_outside_band(Joint.LEFT_KNEE, KNEE + 5.9, BAND) == ()
+    assert gaps_outside_band(Joint.LEFT_KNEE, np.full(101, np.nan), BAND) == ()
+
+
+def test_a_gap_lasts_as_long_as_the_curve_is_out_and_keeps_the_limit_it_left() -> None:
+    curve = KNEE.copy()
+    curve[66:85] -= 7.0
+    curve[10:15] += 6.5
+    above, below = gaps_outside_band(Joint.LEFT_KNEE, curve, BAND)
+    assert (above.first_percent, above.last_percent) == (10, 14)
+    assert (below.first_percent, below.last_percent) == (66, 84)
+    np.testing.assert_allclose(above.limit_deg, KNEE + 6.0)
+    np.testing.assert_allclose(below.limit_deg, KNEE - 6.0)
+    np.testing.assert_allclose(below.lowered(4.0).limit_deg, KNEE - 10.0)
+    assert below.in_words() == "Left knee, 66 to 84 %: outside 2 SD of the band."
+
+
+def test_a_gap_that_the_line_itself_would_hide_is_none() -> None:
+    curve = KNEE.copy()
+    curve[70:72] += 10
+    assert gaps_outside(Joint.LEFT_KNEE, curve, KNEE - 5, KNEE + 5, "beyond the error") == ()
+    curve[72] += 10
+    assert [gap.words for gap in gaps_outside(Joint.LEFT_KNEE, curve, KNEE - 5, KNEE + 5, "beyond the error")] == [
+        "beyond the error"
+    ]
+
+
+def test_a_band_laid_at_the_curves_height_judges_shape_alone() -> None:
+    curve = KNEE + 20.0
+    assert gaps_outside_band(Joint.LEFT_KNEE, curve, BAND) != ()
+    laid = laid_at_height_of(curve, BAND)
+    np.testing.assert_allclose(laid.mean_deg, curve)
+    assert gaps_outside_band(Joint.LEFT_KNEE, curve, laid) == ()
+
+
+def test_only_what_is_larger_than_the_error_is_said_to_be() -> None:
+    other = Point(Joint.RIGHT_KNEE, 73.0, 61.0)
+    told = Deviation(POINT, other, "L 11° under R", "band 55 to 70°", is_larger_than_error=True)
+    assert told.in_words() == "L 11° under R, larger than the measurement error; band 55 to 70°."
+    assert Deviation(POINT, other, "L 3° under R").in_words() == "L 3° under R."
+
+
+def test_a_knee_and_an_ankle_have_no_chart_in_common() -> None:
+    with pytest.raises(ValueError, match="not drawn in one chart"):
+        Deviation(POINT, Point(Joint.LEFT_ANKLE, 60.0, -10.0), "")

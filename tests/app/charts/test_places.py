@@ -1,0 +1,88 @@
+"""Places of marks: they leave curves, lines and one another free, and lie inside the chart."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from app.charts.cycles import PERCENT
+from app.charts.frame import Frame
+from app.charts.places import Box, Ground, Place, line_of, place_mark
+from core.samples import FloatArray
+
+FRAME = Frame(40, 24, 428, 150, -10, 80)
+KNEE: FloatArray = 10 * np.exp(-(((PERCENT - 14) / 8) ** 2)) + 55 * np.exp(-(((PERCENT - 73) / 12) ** 2))
+ONE_LINE, TWO_LINES = (90.0, 16.0), (170.0, 32.0)
+
+
+def ground_of(*curves: FloatArray, uprights: tuple[float, ...] = ()) -> Ground:
+    return Ground(FRAME, [line_of(FRAME, PERCENT, curve) for curve in curves], (), uprights)
+
+
+def ends(*points: tuple[float, float]) -> list[tuple[float, float]]:
+    return [(float(FRAME.x(percent)), float(FRAME.y(angle))) for percent, angle in points]
+
+
+def length_covered(ground: Ground, box: Box) -> float:
+    """How much of the curves lies in a box, px, found point by point."""
+    total = 0.0
+    for curve in ground.curves:
+        for (x, y), (next_x, next_y) in pairwise(curve):
+            if box.left < x < box.right and box.top < y < box.bottom:
+                total += float(np.hypot(next_x - x, next_y - y))
+    return total
+
+
+def is_inside(place: Place) -> bool:
+    words = place.words
+    return words is not None and (
+        FRAME.left <= words.left < words.right <= FRAME.right and FRAME.top <= words.top < words.bottom <= FRAME.bottom
+    )
+
+
+def test_two_peaks_in_swing_are_told_in_the_empty_middle_of_the_stride() -> None:
+    ground = ground_of(KNEE, 0.8 * KNEE, uprights=(float(FRAME.x(60)), float(FRAME.x(62))))
+    place = place_mark(ground, ends((73, 55), (73, 44)), [ONE_LINE, TWO_LINES], 50)
+    assert place.bar_x == pytest.approx(float(FRAME.x(50)), abs=20)
+    assert (place.top, place.bottom) == (float(FRAME.y(55)), float(FRAME.y(44)))
+    assert place.lines == 2
+    assert is_inside(place)
+    assert place.words is not None
+    assert place.words.right < place.bar_x
+    assert length_covered(ground, place.words) == 0
+
+
+@pytest.mark.parametrize("percent", [5, 30, 60, 97])
+def test_wherever_two_points_lie_no_curve_is_covered(percent: float) -> None:
+    curve: FloatArray = np.interp(percent, PERCENT, KNEE) + 30 * np.sin((PERCENT - percent) / 15)
+    ground = ground_of(curve, curve + 8)
+    at = float(np.interp(percent, PERCENT, curve))
+    place = place_mark(ground, ends((percent, at), (percent, at + 8)), [ONE_LINE, TWO_LINES], 50)
+    assert is_inside(place)
+    assert place.words is not None
+    assert length_covered(ground, place.words) == 0
+
+
+def test_a_second_mark_leaves_the_first_free() -> None:
+    ground = ground_of(KNEE, 0.8 * KNEE)
+    points = ends((73, 55), (73, 44))
+    first = place_mark(ground, points, [ONE_LINE, TWO_LINES], 50)
+    second = place_mark(ground, points, [ONE_LINE, TWO_LINES], 50)
+    assert first.words is not None
+    assert second.words is not None
+    assert not first.words.overlaps(second.words)
+    assert abs(first.bar_x - second.bar_x) > 5
+
+
+def test_in_a_narrow_chart_the_second_line_goes_first_and_words_before_the_bar() -> None:
+    ground = ground_of(KNEE)
+    points = ends((73, 55), (50, 0))
+    assert place_mark(ground, points, [ONE_LINE, (500.0, 32.0)], 50).lines == 1
+    place = place_mark(ground_of(KNEE), points, [(500.0, 16.0)], 50)
+    assert (place.words, place.lines) == (None, 0)
+
+
+def test_of_a_curve_that_is_nowhere_known_nothing_is_in_the_way() -> None:
+    assert line_of(FRAME, PERCENT, np.full(101, np.nan)).shape == (0, 2)
+    place = place_mark(ground_of(np.full(101, np.nan)), ends((73, 55), (73, 44)), [ONE_LINE], 50)
+    assert place.bar_x == pytest.approx(float(FRAME.x(50)))
