@@ -30,5 +30,5 @@ class Frame:
         return np.asarray(self.left + self.width * np.asarray(percent, dtype=np.float64) / 100)
 
     def y(self, angle_deg: FloatArray | float) -> FloatArray:
-        share = (np.asarray(angle_deg, dtype=np.float64) - self.low_deg) / (self.high_deg - self.low_deg)
-        return np.asarray(self.bottom - self.height * share)
+        height_deg = np.asarray(angle_deg, dtype=np.float64) - self.low_deg
+        return np.asarray(self.bottom - self.height * height_deg / (self.high_deg - self.low_deg))

@@ -11,7 +11,7 @@ from core.body import Joint
 from core.samples import FloatArray
 
 MOST_MARKS = 2  # in one chart; more would hide the curves
-LEAST_GAP_PERCENT = 2  # a shorter one is hidden by the curve's own line
+LEAST_GAP_PERCENT = 4  # a shorter one is hardly seen, and says little
 BAND_SDS = 2.0
 
 

@@ -9,7 +9,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPolygonF
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks import Deviation, Gap, Point
-from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, Place, place_mark
+from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, MarkPlace, place_mark
 from app.icons import Icon, paint_icon
 from app.tokens import Theme
 from core.body import Side
@@ -26,7 +26,7 @@ def polygon(x: FloatArray, y: FloatArray) -> QPolygonF:
     return QPolygonF([QPointF(*at) for at in zip(x.tolist(), y.tolist(), strict=True)])
 
 
-def place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> Place:
+def place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> MarkPlace:
     """Where a difference finds room, in px."""
     frame = ground.frame
     ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
@@ -38,7 +38,7 @@ def place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> Place
     return place_mark(ground, ends, sizes, USUAL_EMPTY_PERCENT[deviation.is_knee])
 
 
-def paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: Place) -> None:
+def paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: MarkPlace) -> None:
     """Dots on both points, hairlines to the bar between their heights, and the words beside it."""
     colour = theme.colours.ink if deviation.is_larger_than_error else theme.colours.control
     for point in deviation.points:
@@ -120,7 +120,7 @@ def _paint_dot(painter: QPainter, theme: Theme, frame: Frame, point: Point) -> N
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def _paint_words(painter: QPainter, theme: Theme, deviation: Deviation, place: Place) -> None:
+def _paint_words(painter: QPainter, theme: Theme, deviation: Deviation, place: MarkPlace) -> None:
     if place.words is None:
         return
     box, line, c = place.words, theme.px(LINE_HEIGHT), theme.colours

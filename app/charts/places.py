@@ -69,7 +69,7 @@ class Ground:
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class MarkPlace:
     """A mark's bar, and the room of its words: None where there is none. `lines` are those that have room."""
 
     bar_x: float
@@ -94,7 +94,7 @@ def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatAr
 
 def place_mark(
     ground: Ground, ends: Sequence[tuple[float, float]], sizes: Sequence[tuple[float, float]], usual_percent: float
-) -> Place:
+) -> MarkPlace:
     """The place that covers least for the bar between two `ends` (x, y), and for the words beside it.
 
     `sizes` are width and height of the words with one line, two lines and so on; as many are kept as have room. The
@@ -104,7 +104,7 @@ def place_mark(
     usual_x = float(ground.frame.x(usual_percent))
     all_x = map(float, ground.frame.x(CANDIDATES_PERCENT))
     bars = sorted((_cost_of_bar(ground, x, ends, usual_x), x) for x in all_x)
-    place = Place(bars[0][1], top, bottom, None, 0)
+    place = MarkPlace(bars[0][1], top, bottom, None, 0)
     for lines in range(len(sizes), 0, -1):
         most = MOST_COVERED if lines > 1 else UNREADABLE
         for cost_of_bar, bar_x in bars:
@@ -113,7 +113,7 @@ def place_mark(
             for words in _rooms(ground.frame, bar_x, top, bottom, sizes[lines - 1]):
                 cost = cost_of_bar + _cost_of_words(ground, words, bar_x, ends)
                 if cost < most:
-                    most, place = cost, Place(bar_x, top, bottom, words, lines)
+                    most, place = cost, MarkPlace(bar_x, top, bottom, words, lines)
         if place.words is not None:
             break
     ground.taken.append(Box(place.bar_x - CLEAR, top, place.bar_x + CLEAR, bottom))

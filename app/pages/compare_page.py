@@ -6,6 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
+from app.charts.axes import ANKLE_DEG, KNEE_DEG, joint_of
 from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
 from app.pages.compared_words import (
@@ -24,7 +25,6 @@ from app.pages.compared_words import (
     why_not_told,
     withheld_in_words,
 )
-from app.plots.axes import ANKLE_DEG, KNEE_DEG, joint_of
 from app.plots.compared_chart import ComparedChart, ComparedFrame
 from app.plots.cycle_chart import CycleCharts
 from app.plots.difference_plot import DifferenceGroup, DifferencePlot, DifferenceRow, Dot

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QPainter, QPainterPath, QPen, QPolygonF
 from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
-from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
+from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
 from app.theme import Look
 from core.body import Side

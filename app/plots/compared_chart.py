@@ -8,9 +8,9 @@ from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
+from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
 from app.charts.cycles import PERCENT, is_mean_enough
 from app.icons import Icon
-from app.plots.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
 from app.plots.cycle_chart import CASING_PX, SIMULATED, CycleChart
 from app.theme import Look
 from app.widgets.card import Card

@@ -12,13 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
-from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
-from app.charts.frame import Frame
-from app.charts.marks import BAND_SDS, MOST_MARKS, Deviation, Gap, Point
-from app.charts.on_screen import gap_boxes, paint_deviation, paint_gap_bars, paint_gaps, place_deviation
-from app.charts.places import Ground, Place, line_of
-from app.icons import Icon
-from app.plots.axes import (
+from app.charts.axes import (
     ABOUT_MEAN_DEG,
     ANKLE_DEG,
     AXIS_WIDTH,
@@ -32,7 +26,17 @@ from app.plots.axes import (
     sign_in_words,
     title_in_words,
 )
+<<<<<<< HEAD
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
+=======
+from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
+from app.charts.frame import Frame
+from app.charts.marks import BAND_SDS, MOST_MARKS, Deviation, Gap, Point
+from app.charts.on_screen import gap_boxes, paint_deviation, paint_gap_bars, paint_gaps, place_deviation
+from app.charts.places import Ground, MarkPlace, line_of
+from app.icons import Icon
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, reason_in_words
+>>>>>>> bfbdb04 (Charts: the report draws from a description in data units)
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
@@ -374,7 +378,7 @@ class CycleChart(Themed):
     def sides_with_mean(self) -> frozenset[Side]:
         return frozenset(side for side, cycle in self._means() if cycle.mean.n)
 
-    def places(self) -> list[Place]:
+    def places(self) -> list[MarkPlace]:
         """Where each difference that is marked finds room, px of the widget."""
         frame = self.frame
         curves = [line_of(frame, PERCENT, cycle.mean.mean) for _, cycle in self._means() if cycle.mean.n]

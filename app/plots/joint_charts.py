@@ -7,9 +7,7 @@ from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.icons import Icon
-from app.plots.angle_chart import AngleChart, Curve
-from app.plots.axes import (
+from app.charts.axes import (
     ANKLE_DEG,
     KNEE_DEG,
     degrees_in_words,
@@ -20,6 +18,8 @@ from app.plots.axes import (
     sign_in_words,
     title_in_words,
 )
+from app.icons import Icon
+from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
 from app.theme import Look
 from app.widgets.card import Card

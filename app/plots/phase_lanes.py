@@ -12,7 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEvent
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
-from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.theme import Look
 from app.tokens import Theme
 from app.widgets.card import Card

@@ -8,8 +8,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy
 
+from app.charts.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
-from app.plots.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, range_for
 from app.plots.thinning import thin
 from app.theme import Look
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText

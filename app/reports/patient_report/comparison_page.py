@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.charts.cycles import is_mean_enough, is_spread_enough
-from app.charts.drawing import DASHES, MM, Picture
+from app.charts.cycles import Band, is_mean_enough, is_spread_enough
+from app.charts.drawing import MM, Picture
+from app.charts.on_paper import compared_look, draw
+from app.charts.stride_chart import StrideChart, StrideCurve
 from app.gates_in_words import verdict_word
 from app.reports.comparison import (
     MEASURES,
@@ -23,7 +25,6 @@ from app.reports.comparison import (
 )
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, paragraph, table
-from app.reports.patient_report.cycle_chart import Chart, Line, draw
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import (
@@ -42,7 +43,6 @@ from app.reports.patient_report.request import ReportRequest, Visit
 from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
 from core.body import Side
-from core.samples import FloatArray
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
 
@@ -132,44 +132,39 @@ def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
 
 
 def _legend_entry(comparison: Comparison, k: int) -> tuple[Picture, str]:
-    looks = [(side, *panels.condition_look(k, len(comparison.parts), side)) for side in comparison.sides]
+    looks = [(side, *compared_look(k, len(comparison.parts), side)) for side in comparison.sides]
     part = comparison.parts[k]
     return panels.pair_swatch(part.letter, looks), typed(part.name, CONDITION_LENGTH)
 
 
 def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Picture:
     is_about_mean = not comparison.has_one_zero_throughout  # heights from different zeros are no comparison
-    lines, alts = [], []
+    curves, alts = [], []
     for k, part in enumerate(comparison.parts):
         if joint_of(kind, side) in part.joints:
-            colour, width = panels.condition_look(k, len(comparison.parts), side)
-            lines.append(_line(part, side, kind, colour, width, is_about_mean=is_about_mean))
+            order = k, len(comparison.parts)
+            curves.append(_curve(part, side, kind, order, is_about_mean=is_about_mean))
             alts.append(_alt(part, side, kind))
-    chart = Chart(
+    chart = StrideChart(
         title=panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean),
         axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
-        lines=tuple(lines),
+        curves=tuple(curves),
         band=_band(comparison, shown, kind, side),
-        plot_width=PLOT_WIDTH,
         is_simulated=comparison.is_simulated,
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
-    return draw(chart)
+    return draw(chart, PLOT_WIDTH)
 
 
-def _line(part: Part, side: Side, kind: str, colour: str, width: float, *, is_about_mean: bool) -> Line:
+def _curve(part: Part, side: Side, kind: str, order: tuple[int, int], *, is_about_mean: bool) -> StrideCurve:
     found, off = part.cycle(joint_of(kind, side)), part.value(side, "stance_percent")
     mean = found.mean if is_mean_enough(found.n) else np.full_like(found.mean, np.nan)
-    return Line(
+    return StrideCurve(
         letter=part.letter,
         side=side,
-        colour=colour,
-        width=width,
-        dash=DASHES[side],
-        casing=0.9,
+        order=order,
         angle_deg=mean - np.mean(mean) if is_about_mean else mean,
         toe_off_percent=off.mean if is_mean_enough(off.n) else math.nan,
-        toe_off_sd=math.nan,
         toe_off_label=part.letter,
     )
 
@@ -189,7 +184,7 @@ def _alt(part: Part, side: Side, kind: str) -> str:
     return f"{part.letter}: {', '.join(numbers)}."
 
 
-def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> tuple[FloatArray, FloatArray] | None:
+def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> Band | None:
     return panels.band_of(shown, kind, [side]) if comparison.has_one_zero_throughout else None
 
 

@@ -7,10 +7,11 @@ import numpy as np
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.charts.drawing import MM, Picture
+from app.charts.on_paper import draw
+from app.charts.stride_chart import StrideChart
 from app.gates_in_words import verdict_word
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, legend, note, table
-from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed, marked
 from app.reports.patient_report.small_charts import StrideValues, stride_strip
@@ -51,17 +52,16 @@ def consistency_page(facts: Facts) -> list[Block]:
 
 
 def _panel(facts: Facts, side: Side, kind: str) -> Picture:
-    own = panels.line_of(facts, side, kind, width=1.9, dash="" if side is Side.LEFT else "6 1.6")
-    chart = Chart(
+    own = panels.curve_of(facts, side, kind)
+    chart = StrideChart(
         title=panels.title_with_side(facts, kind, side),
         axis=panels.axis_of(facts, kind),
-        lines=(replace(own, strides_deg=facts.strides_deg(side, kind)),),
+        curves=(replace(own, strides_deg=facts.strides_deg(side, kind)),),
         band=panels.band_of(facts, kind, [side]),
-        plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
         alt=tr("Single strides and their mean.") + " " + panels.curve_alt(facts, kind, [side]),
     )
-    return draw(chart)
+    return draw(chart, PLOT_WIDTH)
 
 
 def _strip(facts: Facts) -> Picture:

@@ -4,9 +4,10 @@ import math
 
 from app.charts.cycles import is_mean_enough
 from app.charts.drawing import MM
+from app.charts.on_paper import draw
+from app.charts.stride_chart import StrideChart
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, figure_with_words, heading, note, paragraph
-from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.first_page import why_no_band
 from app.reports.patient_report.numbers_in_words import fixed, signed
@@ -36,12 +37,11 @@ def curves_page(facts: Facts, condition: str) -> list[Block]:
 
 def _figure(facts: Facts, kind: str) -> Block:
     sides = [side for side in Side if facts.is_measured(joint_of(kind, side))]
-    chart = Chart(
+    chart = StrideChart(
         title=panels.title_of(facts, kind),
         axis=panels.axis_of(facts, kind),
-        lines=tuple(panels.line_of(facts, side, kind, width=1.9, peaks=panels.PEAK_COLUMNS[kind]) for side in sides),
+        curves=tuple(panels.curve_of(facts, side, kind, peaks=panels.PEAK_COLUMNS[kind]) for side in sides),
         band=panels.band_of(facts, kind, sides),
-        plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
         ticks=panels.other_foot(facts),
         alt=panels.curve_alt(facts, kind, sides),
@@ -52,7 +52,9 @@ def _figure(facts: Facts, kind: str) -> Block:
         events = panels.event_swatches(has_other_foot=bool(chart.ticks), has_peaks=not facts.has_no_zero(kind))
         legend = [*panels.leg_swatches(facts), *band, *events]
     title = tr("Knee") if kind == "knee" else tr("Ankle")
-    return figure_with_words(draw(chart), legend, title, [*_read_out(facts, kind), *panels.not_drawn(facts, kind)])
+    return figure_with_words(
+        draw(chart, PLOT_WIDTH), legend, title, [*_read_out(facts, kind), *panels.not_drawn(facts, kind)]
+    )
 
 
 def _read_out(facts: Facts, kind: str) -> list[str]:

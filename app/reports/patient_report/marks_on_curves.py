@@ -18,12 +18,12 @@ WINDOWS = {"knee_range_deg": (ALL, ALL), "ankle_range_deg": (ALL, ALL)}  # where
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion that differs most, where a sentence may tell it: one mark on each leg."""
+    """Of each kind of joint the excursion that differs most, where a sentence may tell it, on the leg it begins with."""
     found: list[Deviation] = []
     for kind in KINDS:
         row = next((row for row in what_differs(facts) if _is_told_of(row, kind)), None)
         if row is not None:
-            found += [_on_leg(facts, row, kind, side) for side in facts.first_and_second]
+            found.append(_on_leg(facts, row, kind))
     return found
 
 
@@ -32,23 +32,20 @@ def _is_told_of(row: LegsRow, kind: str) -> bool:
     return is_excursion and QUANTITIES[row.column] is not QuantityClass.HEIGHT and row.difference.is_worth_a_sentence
 
 
-def _on_leg(facts: Facts, row: LegsRow, kind: str, side: Side) -> Deviation:
-    """The extremes of one leg's mean curve; the size is the mean of the strides, as everywhere."""
-    joint, curve = joint_of(kind, side), facts.mean_curve_deg(side, kind)
-    high, low = WINDOWS[row.column]
-    size = fixed(row.values[side].mean, row.decimals) + row.unit
+def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
+    """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
     first, second = facts.first_and_second
-    more = ""
-    if side is first:
-        pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
-        apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
-        more = pattern.format(size=apart, other=second[0].upper())
+    joint, curve = joint_of(kind, first), facts.mean_curve_deg(first, kind)
+    high, low = WINDOWS[row.column]
+    size = fixed(row.values[first].mean, row.decimals) + row.unit
+    pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
+    apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
     return Deviation(
         extreme_of(joint, curve, *low, is_maximum=False),
         extreme_of(joint, curve, *high, is_maximum=True),
-        words=f"{side[0].upper()} {size}",
-        more=more,
-        is_larger_than_error=side is first,
+        words=f"{first[0].upper()} {size}",
+        more=pattern.format(size=apart, other=second[0].upper()),
+        is_larger_than_error=True,
         size=size,
     )
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.charts.cycles import is_mean_enough, is_spread_enough
+from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import (
     BAND_MEAN,
     COLOURS,
@@ -15,21 +15,19 @@ from app.charts.drawing import (
     INNER_EDGE,
     OUTER,
     OUTER_EDGE,
-    WHITE,
     Picture,
     box,
     line,
     marker,
-    mixed,
     picture,
     text,
 )
-from app.reports.patient_report.cycle_chart import Axis, Line, Mark, Span
+from app.charts.on_paper import PLAIN, STRIDE
+from app.charts.stride_chart import NO_STRIDES, Axis, PeakMark, Span, StrideCurve, usual_range_deg
 from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wording import side_name, tr
 from core.body import Side
-from core.samples import FloatArray
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import WINDOWS
 
@@ -42,10 +40,11 @@ PEAK_COLUMNS = {
 
 def axis_of(facts: Facts, kind: str, *, is_about_mean: bool = False) -> Axis:
     """The same in every report; without a zero, about the mean of the stride."""
-    if kind == "knee":
-        low, high = (-40, 50) if is_about_mean or facts.has_no_zero(kind) else (-10, 80)
+    is_knee, is_about_mean = kind == "knee", is_about_mean or facts.has_no_zero(kind)
+    low, high = usual_range_deg(is_knee=is_knee, is_about_mean=is_about_mean)
+    if is_knee:
         return Axis(low, high, 20, 10, tr("bent"), tr("straight"))
-    return Axis(-30, 30, 10, 10, tr("toes up"), tr("toes down"))
+    return Axis(low, high, 10, 10, tr("toes up"), tr("toes down"))
 
 
 def title_of(facts: Facts, kind: str) -> str:
@@ -77,53 +76,36 @@ def small_title(facts: Facts, kind: str, *, is_about_mean: bool = False) -> str:
     return short[kind] if is_about_mean or facts.has_no_zero(kind) else title[:1].lower() + title[1:]
 
 
-def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> tuple[FloatArray, FloatArray] | None:
+def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
     """Mean and SD of band [1]; None where there is none for any of these legs, or nothing to compare."""
     group = facts.curves_group
     if group is None or facts.has_no_zero(kind) or facts.sides_with_band.isdisjoint(sides):
         return None
     if not any(np.isfinite(facts.mean_curve_deg(side, kind)).any() for side in sides if side in facts.sides_with_band):
         return None
-    return group.mean_and_sd_deg(kind)
+    return Band(*group.mean_and_sd_deg(kind))
 
 
-def line_of(
-    facts: Facts, side: Side, kind: str, *, width: float, peaks: Sequence[str] = (), dash: str | None = None
-) -> Line:
-    """One leg of one walk in its own colour, with marks at the peaks of these columns of strides.csv."""
+def curve_of(facts: Facts, side: Side, kind: str, *, peaks: Sequence[str] = (), is_fine: bool = False) -> StrideCurve:
+    """One leg of one walk, with marks at the peaks of these columns of strides.csv."""
     letter = side[0].upper()
     off = facts.value(side, "stance_percent")
     is_known = is_mean_enough(off.n)
     label = tr("{side} toe\u2011off {percent} %").format(side=letter, percent=fixed(off.mean, 1))
-    return Line(
+    return StrideCurve(
         letter=letter,
         side=side,
-        colour=COLOURS[side],
-        width=width,
-        dash=DASHES[side] if dash is None else dash,
-        casing=1.7,
         angle_deg=facts.mean_curve_deg(side, kind),
         toe_off_percent=off.mean if is_known else math.nan,
         toe_off_sd=off.sd if is_spread_enough(off.n) else math.nan,
         toe_off_label=label,
         peaks=_marks(facts, side, peaks) if not facts.has_no_zero(kind) else (),
-        strides_deg=np.empty((0, 101)) if is_known else facts.strides_deg(side, kind),
+        strides_deg=NO_STRIDES if is_known else facts.strides_deg(side, kind),
+        is_fine=is_fine,
     )
 
 
-def condition_look(k: int, count: int, side: Side) -> tuple[str, float]:
-    """Colour and width of condition or visit `k` of `count`: earlier is pale and thin, later plain, dark and thick."""
-    pale, plain, dark = (
-        mixed(COLOURS[side], WHITE, 0.42),
-        COLOURS[side],
-        mixed(COLOURS[side], INK, 0.45),
-    )
-    if count == 2:
-        return ((pale, 1.0), (plain, 1.9))[k]
-    return ((pale, 0.95), (plain, 1.4), (dark, 2.1))[k]
-
-
-def swatch(side: Side, colour: str | None = None, width: float = 1.9) -> Picture:
+def swatch(side: Side, colour: str | None = None, width: float = PLAIN) -> Picture:
     y = SWATCH_HEIGHT / 2
     return picture(
         [line(0, y, SWATCH_WIDTH, y, colour or COLOURS[side], width, DASHES[side])], SWATCH_WIDTH, SWATCH_HEIGHT
@@ -141,7 +123,7 @@ def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Pictur
 
 def stride_swatch() -> Picture:
     """Thin lines, as single strides are drawn."""
-    parts = [line(0, y, SWATCH_WIDTH, y, COLOURS[Side.LEFT], 0.32) for y in (2.5, 4.5, 6.5)]
+    parts = [line(0, y, SWATCH_WIDTH, y, COLOURS[Side.LEFT], STRIDE) for y in (2.5, 4.5, 6.5)]
     return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
 
 
@@ -263,10 +245,10 @@ def spans_of(kind: str) -> dict[str, Span]:
     return {column: Span(names[column], one.first, one.last, one.is_maximum) for column, one in windows.items()}
 
 
-def _marks(facts: Facts, side: Side, columns: Sequence[str]) -> tuple[Mark, ...]:
+def _marks(facts: Facts, side: Side, columns: Sequence[str]) -> tuple[PeakMark, ...]:
     marks = []
     for column in columns:
         value, at = facts.value(side, column), facts.peak_percent(side, column)
         if is_mean_enough(value.n) and math.isfinite(at.mean):
-            marks.append(Mark(at.mean, value.mean, value.sd if is_spread_enough(value.n) else math.nan))
+            marks.append(PeakMark(at.mean, value.mean, value.sd if is_spread_enough(value.n) else math.nan))
     return tuple(marks)

@@ -4,11 +4,12 @@ import math
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.charts.drawing import MM, Picture
+from app.charts.on_paper import draw
+from app.charts.stride_chart import StrideChart
 from app.gates_in_words import verdict_word
 from app.reports.comparison import compare_legs
 from app.reports.patient_report import panels, quality
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, if_room, legend, note, table
-from app.reports.patient_report.cycle_chart import Chart, draw
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     NOTHING,
@@ -123,19 +124,18 @@ def _where_found(facts: Facts) -> list[Block]:
 
 def _windows(facts: Facts, kind: str) -> Picture:
     sides, spans = [side for side in Side if facts.is_measured(joint_of(kind, side))], panels.spans_of(kind)
-    lines = (panels.line_of(facts, side, kind, width=1.4, peaks=list(spans)) for side in sides)
+    curves = (panels.curve_of(facts, side, kind, peaks=list(spans), is_fine=True) for side in sides)
     each = [f"{panels.peak_name(column)} {span.first}–{span.last} %" for column, span in spans.items()]
-    chart = Chart(
+    chart = StrideChart(
         title=capitalised(panels.small_title(facts, kind)),
         axis=panels.axis_of(facts, kind),
-        lines=tuple(lines),
+        curves=tuple(curves),
         band=None,
-        plot_width=PLOT_WIDTH,
         is_simulated=facts.is_simulated,
         spans=tuple(spans.values()),
         alt=" ".join([panels.curve_alt(facts, kind, sides), tr("Windows: {windows}.").format(windows=", ".join(each))]),
     )
-    return draw(chart)
+    return draw(chart, PLOT_WIDTH)
 
 
 def _side_columns(facts: Facts, side: Side) -> list[Column]:

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
-from app.plots.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
+from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
 from app.theme import Look
 from app.widgets.card import Card

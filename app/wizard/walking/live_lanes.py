@@ -12,7 +12,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN
+from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
 from app.theme import Look
 from app.tokens import CHIP_RADIUS

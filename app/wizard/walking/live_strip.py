@@ -14,8 +14,8 @@ from PySide6.QtCore import QEvent, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QShowEvent
 from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
 
+from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
-from app.plots.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.theme import Look
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM

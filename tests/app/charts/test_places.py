@@ -7,7 +7,7 @@ import pytest
 
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.places import Box, Ground, Place, line_of, place_mark
+from app.charts.places import Box, Ground, MarkPlace, line_of, place_mark
 from core.samples import FloatArray
 
 FRAME = Frame(40, 24, 428, 150, -10, 80)
@@ -33,7 +33,7 @@ def length_covered(ground: Ground, box: Box) -> float:
     return total
 
 
-def is_inside(place: Place) -> bool:
+def is_inside(place: MarkPlace) -> bool:
     words = place.words
     return words is not None and (
         FRAME.left <= words.left < words.right <= FRAME.right and FRAME.top <= words.top < words.bottom <= FRAME.bottom

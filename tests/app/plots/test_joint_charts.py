@@ -7,8 +7,8 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.angle_chart import AngleChart, Curve
-from app.plots.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.joint_charts import NO_VALUE, JointCharts
 from app.theme import Look, load_fonts
 from core.body import Joint, Side

@@ -13,9 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from app.charts import on_paper
 from app.charts.drawing import Picture
-from app.reports.patient_report import comparison_page, consistency_page, curves_page, cycle_chart, panels, peaks_page
-from app.reports.patient_report.cycle_chart import Chart
+from app.charts.stride_chart import StrideChart
+from app.reports.patient_report import comparison_page, consistency_page, curves_page, panels, peaks_page
 from app.reports.patient_report.document import report_data
 from app.reports.patient_report.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
 from app.reports.patient_report.request import ReportRequest, Visit
@@ -126,7 +127,7 @@ def test_every_curve_and_mark_is_in_a_file(
     assert len(charts) == 2 + 2 + 4
     for chart in charts:
         kind = "knee" if "nee" in chart.title else "ankle"
-        for line in chart.lines:
+        for line in chart.curves:
             strides = of_used(results / "walk_1" / "strides.csv", line.side)
             peaks = of_used(results / "peaks.csv", line.side)
             joint = f"{line.side}_{kind}"
@@ -143,13 +144,13 @@ def test_every_curve_and_mark_is_in_a_file(
                 np.testing.assert_allclose(stride_deg, np.interp(at_s, time_s, angle_deg), atol=0.2)
 
 
-def drawn(request: ReportRequest, monkeypatch: pytest.MonkeyPatch) -> list[Chart]:
+def drawn(request: ReportRequest, monkeypatch: pytest.MonkeyPatch) -> list[StrideChart]:
     """Give every panel of curves, as it was handed to be drawn."""
-    charts: list[Chart] = []
+    charts: list[StrideChart] = []
 
-    def draw(chart: Chart) -> Picture:
+    def draw(chart: StrideChart, plot_width: float) -> Picture:
         charts.append(chart)
-        return cycle_chart.draw(chart)
+        return on_paper.draw(chart, plot_width)
 
     for page in (curves_page, peaks_page, comparison_page, consistency_page):
         monkeypatch.setattr(page, "draw", draw)
@@ -167,11 +168,11 @@ def test_every_number_and_curve_of_a_comparison_is_in_a_file(
     assert len(numbers) > 200
     assert [(where, number) for where, number in numbers if number not in files] == []
     cycles = table(tmp_path / "compared_cycles.csv")
-    compared = [chart for chart in drawn(request_of_alignments, monkeypatch) if len(chart.lines) == 3]
+    compared = [chart for chart in drawn(request_of_alignments, monkeypatch) if len(chart.curves) == 3]
     assert len(compared) == 4
     for chart in compared:
         kind = "knee" if "nee" in chart.title else "ankle"
-        for line in chart.lines:
+        for line in chart.curves:
             expected = column(cycles, f"{line.letter}_{line.side}_{kind}_mean_deg")
             np.testing.assert_allclose(line.angle_deg, expected, atol=DIGITS)
 

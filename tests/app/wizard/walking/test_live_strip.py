@@ -5,7 +5,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.plots.axes import ANKLE_DEG, KNEE_DEG
+from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.theme import Look, load_fonts
 from app.wizard.walking.live_strip import LiveStrip, _Trace
 from app.wizard.walking.readout import LiveTrace

@@ -29,6 +29,11 @@ def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
     return f"{value:.{decimals}f}°".replace("-", "\N{MINUS SIGN}")
 
 
+def angle_in_words(value: float) -> str:
+    """A label of an axis, in whole degrees."""
+    return f"{value:.0f}".replace("-", "\N{MINUS SIGN}")
+
+
 def joint_of(side: Side, is_knee: bool) -> Joint:
     return knee_of(side) if is_knee else ankle_of(side)
 

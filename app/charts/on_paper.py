@@ -1,11 +1,11 @@
-"""How does a joint move over the stride? Curves on axes that are the same in every report: one picture to learn."""
+"""Painting on paper: a chart of the stride as SVG, 4:3, one unit a point."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.charts.cycles import PERCENT
+from app.charts.axes import angle_in_words
+from app.charts.cycles import PERCENT, Band
 from app.charts.drawing import (
     BADGE,
     BAND_MEAN,
@@ -26,130 +26,82 @@ from app.charts.drawing import (
     curve,
     line,
     marker,
+    mixed,
     picture,
     text,
 )
-from app.reports.patient_report.numbers_in_words import fixed
+from app.charts.frame import Frame
+from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
 from app.wording import tr
 from core.body import Side
-from core.gait.cycles import POINTS
 from core.samples import FloatArray
 
 LEFT_MARGIN, RIGHT_MARGIN, TOP, TOP_LABELS, FOOT = 27.0, 9.0, 13.0, 14.0, 30.0
 SPAN_HEIGHT, SPAN_ROW = 9.0, 11.0
 MIN_BADGE_DISTANCE = 14.0
+PLAIN, FINE = 1.9, 1.4
+LONG_DASHES = "6 1.6"  # of the right leg's mean over its single strides
+STRIDE, ONLY_STRIDES = 0.32, 0.8
 
 
-@dataclass(frozen=True, slots=True)
-class Axis:
-    """Degrees from bottom to top, a label every so many, and words for the two directions."""
+class _Paper(Frame):
+    """What lies beyond the axis is drawn at its edge."""
 
-    low: float
-    high: float
-    label_every: float
-    tick_every: float
-    up: str
-    down: str
+    def y(self, angle_deg: FloatArray | float) -> FloatArray:
+        return super().y(np.clip(np.asarray(angle_deg, dtype=np.float64), self.low_deg, self.high_deg))
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
-    """A peak: where in the stride, percent, its mean and SD, degrees."""
-
-    percent: float
-    mean_deg: float
-    sd_deg: float
+def frame_of(chart: StrideChart, plot_width: float) -> Frame:
+    """Where the chart's plot lies on its picture, points."""
+    top = TOP + (2 * SPAN_ROW if chart.spans else TOP_LABELS)
+    return _Paper(LEFT_MARGIN, top, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
 
 
-@dataclass(frozen=True, slots=True)
-class Line:
-    """One leg in one condition; `angle_deg` (101,), NaN where it is not known."""
-
-    letter: str
-    side: Side
-    colour: str
-    width: float
-    dash: str
-    casing: float
-    angle_deg: FloatArray
-    toe_off_percent: float
-    toe_off_sd: float = float("nan")
-    toe_off_label: str = ""
-    peaks: tuple[Mark, ...] = ()
-    strides_deg: FloatArray = field(default_factory=lambda: np.empty((0, POINTS)))
+def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
+    """Colour and width of condition or visit `k` of `count`: earlier is pale and thin, later plain, dark and thick."""
+    pale, plain, dark = mixed(COLOURS[side], WHITE, 0.42), COLOURS[side], mixed(COLOURS[side], INK, 0.45)
+    if count == 2:
+        return ((pale, 1.0), (plain, PLAIN))[k]
+    return ((pale, 0.95), (plain, FINE), (dark, 2.1))[k]
 
 
-@dataclass(frozen=True, slots=True)
-class Span:
-    """Where in the stride, percent, the highest or the lowest angle is looked for."""
-
-    name: str
-    first: float
-    last: float
-    is_maximum: bool
+def _look(one: StrideCurve) -> tuple[str, float]:
+    if one.order is not None:
+        return compared_look(*one.order, one.side)
+    return COLOURS[one.side], FINE if one.is_fine else PLAIN
 
 
-@dataclass(frozen=True, slots=True)
-class Chart:
-    """One panel; `band` mean and SD (101,) each, degrees; `ticks` percent and side of the other foot's events.
-
-    `spans` stand above the frame, where toe-off is named otherwise.
-    """
-
-    title: str
-    axis: Axis
-    lines: tuple[Line, ...]
-    band: tuple[FloatArray, FloatArray] | None
-    plot_width: float
-    is_simulated: bool
-    ticks: tuple[tuple[float, Side], ...] = ()
-    spans: tuple[Span, ...] = ()
-    alt: str = ""
+def _dash(one: StrideCurve) -> str:
+    return LONG_DASHES if DASHES[one.side] and one.is_known and len(one.strides_deg) else DASHES[one.side]
 
 
-class _Frame:
-    """Where percent and degrees lie on the paper."""
-
-    def __init__(self, chart: Chart) -> None:
-        self.left, self.top = LEFT_MARGIN, TOP + (2 * SPAN_ROW if chart.spans else TOP_LABELS)
-        self.width, self.height = chart.plot_width, 0.75 * chart.plot_width
-        self.right, self.bottom = self.left + self.width, self.top + self.height
-        self._axis = chart.axis
-
-    def x(self, percent: FloatArray | float) -> FloatArray:
-        return np.asarray(self.left + self.width * np.asarray(percent) / 100)
-
-    def y(self, degrees: FloatArray | float) -> FloatArray:
-        """What lies beyond the axis is drawn at its edge."""
-        clipped = np.clip(np.asarray(degrees, dtype=np.float64), self._axis.low, self._axis.high)
-        return np.asarray(self.bottom - self.height * (clipped - self._axis.low) / (self._axis.high - self._axis.low))
-
-
-def draw(chart: Chart) -> Picture:
+def draw(chart: StrideChart, plot_width: float) -> Picture:
     """Draw one panel: band, grid, curves and what names them."""
-    frame = _Frame(chart)
+    frame = frame_of(chart, plot_width)
     parts = [text(0, 8, chart.title, 7.6, weight=600)]
     if chart.band is not None:
-        parts += _band(frame, *chart.band)
+        parts += _band(frame, chart.band)
     parts += _axes(frame, chart.axis)
-    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.lines)
-    for one in chart.lines:
-        thin = 0.32 if np.isfinite(one.angle_deg).any() else 0.8
-        parts += [curve(frame.x(PERCENT), frame.y(stride), one.colour, thin) for stride in one.strides_deg]
-    for one in chart.lines:
+    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.curves)
+    for one in chart.curves:
+        thin = STRIDE if one.is_known else ONLY_STRIDES
+        parts += [curve(frame.x(PERCENT), frame.y(stride), _look(one)[0], thin) for stride in one.strides_deg]
+    for one in chart.curves:
         x, y = frame.x(PERCENT), frame.y(one.angle_deg)
-        parts += [curve(x, y, WHITE, one.width + one.casing), curve(x, y, one.colour, one.width, one.dash)]
+        colour, width = _look(one)
+        casing = 0.9 if one.order is not None else 1.7
+        parts += [curve(x, y, WHITE, width + casing), curve(x, y, colour, width, _dash(one))]
         parts += _beyond(frame, chart.axis, one)
-    for one in chart.lines:
+    for one in chart.curves:
         parts += _peaks(frame, one)
     parts += _ticks(frame, chart.ticks)
     parts += _words(frame, chart)
-    parts += _badges(frame, chart.lines)
+    parts += _badges(frame, chart.curves)
     return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + FOOT, chart.alt)
 
 
-def _band(frame: _Frame, mean: FloatArray, sd: FloatArray) -> list[str]:
-    x = frame.x(PERCENT)
+def _band(frame: Frame, band: Band) -> list[str]:
+    x, mean, sd = frame.x(PERCENT), band.mean_deg, band.sd_deg
     return [
         area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), OUTER, OUTER_EDGE, 0.35),
         area(x, frame.y(mean - sd), frame.y(mean + sd), INNER, INNER_EDGE, 0.35),
@@ -157,7 +109,7 @@ def _band(frame: _Frame, mean: FloatArray, sd: FloatArray) -> list[str]:
     ]
 
 
-def _axes(frame: _Frame, axis: Axis) -> list[str]:
+def _axes(frame: Frame, axis: Axis) -> list[str]:
     parts = []
     for percent in range(0, 101, 10):
         x = float(frame.x(percent))
@@ -175,8 +127,7 @@ def _axes(frame: _Frame, axis: Axis) -> list[str]:
             parts.append(line(frame.left, y, frame.right, y, colour, width))
         parts.append(line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, INK, 0.6))
         if is_labelled:
-            label = fixed(float(degrees), 0)
-            parts.append(text(frame.left - 6, y + 2.5, label, 7, anchor="end"))
+            parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
     middle = (frame.left + frame.right) / 2
     said = tr("Stride, % (0 and 100 = initial contact of the same foot)")
     parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
@@ -184,7 +135,7 @@ def _axes(frame: _Frame, axis: Axis) -> list[str]:
     return parts
 
 
-def _spans(frame: _Frame, chart: Chart) -> list[str]:
+def _spans(frame: Frame, chart: StrideChart) -> list[str]:
     """A row of boxes for the highest, one for the lowest, and a dotted line down to each peak that was found."""
     parts = []
     for row, said in ((0, tr("max")), (1, tr("min"))):
@@ -195,20 +146,20 @@ def _spans(frame: _Frame, chart: Chart) -> list[str]:
                 left, right = float(frame.x(span.first)), float(frame.x(span.last))
                 parts.append(box(left, y, right - left, SPAN_HEIGHT, OUTER, OUTER_EDGE, 0.5))
                 parts.append(text((left + right) / 2, y + 6.8, span.name, 6.6, anchor="middle"))
-    for one in chart.lines:
+    for one in chart.curves:
         for peak in one.peaks:
             x, y, top = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg)), frame.top + 12.5  # below the words
             parts += [line(x, top, x, y, GREY, 0.5, "0.8 1.6")] if y > top else []
     return parts
 
 
-def _toe_offs(frame: _Frame, lines: Sequence[Line]) -> list[str]:
-    known = sorted((one for one in lines if np.isfinite(one.toe_off_percent)), key=lambda one: one.toe_off_percent)
+def _toe_offs(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
+    known = toe_offs_in_order(curves, 1)
     parts = []
-    is_many = len(known) > 2 or any(len(one.toe_off_label) == 1 for one in known)
+    is_many = any(one.order is not None for one in known)
     for k, one in enumerate(known):
         x = float(frame.x(one.toe_off_percent))
-        parts.append(line(x, frame.top, x, frame.bottom, one.colour, 0.55 if is_many else 0.9, one.dash))
+        parts.append(line(x, frame.top, x, frame.bottom, _look(one)[0], 0.55 if is_many else 0.9, _dash(one)))
         if np.isfinite(one.toe_off_sd):
             reach = frame.width * one.toe_off_sd / 100
             parts.append(line(x - reach, frame.top, x + reach, frame.top, INK, 1.4))
@@ -226,7 +177,7 @@ def _toe_offs(frame: _Frame, lines: Sequence[Line]) -> list[str]:
     return parts
 
 
-def _peaks(frame: _Frame, one: Line) -> list[str]:
+def _peaks(frame: Frame, one: StrideCurve) -> list[str]:
     parts = []
     for peak in one.peaks:
         x, y = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg))
@@ -238,7 +189,7 @@ def _peaks(frame: _Frame, one: Line) -> list[str]:
     return parts
 
 
-def _beyond(frame: _Frame, axis: Axis, one: Line) -> list[str]:
+def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
     """A small arrow in the middle of each stretch that leaves the axes."""
     parts = []
     for is_out, y, step in (
@@ -249,11 +200,11 @@ def _beyond(frame: _Frame, axis: Axis, one: Line) -> list[str]:
         for first, last in zip(edges[::2], edges[1::2], strict=True):
             x = float(frame.x((first + last - 1) / 2))
             tip = f"{x:.2f},{y + step:.2f} {x - 2.6:.2f},{y:.2f} {x + 2.6:.2f},{y:.2f}"
-            parts.append(f'<polygon points="{tip}" fill="{one.colour}"/>')
+            parts.append(f'<polygon points="{tip}" fill="{_look(one)[0]}"/>')
     return parts
 
 
-def _ticks(frame: _Frame, ticks: Sequence[tuple[float, Side]]) -> list[str]:
+def _ticks(frame: Frame, ticks: Sequence[tuple[float, Side]]) -> list[str]:
     parts = []
     for percent, side in ticks:
         low = frame.bottom if side is Side.LEFT else frame.bottom - 8
@@ -263,7 +214,7 @@ def _ticks(frame: _Frame, ticks: Sequence[tuple[float, Side]]) -> list[str]:
     return parts
 
 
-def _words(frame: _Frame, chart: Chart) -> list[str]:
+def _words(frame: Frame, chart: StrideChart) -> list[str]:
     parts = [
         text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=GREY),
         text(frame.right - 4, frame.bottom - 4.5, f"↓ {chart.axis.down}", 6.6, anchor="end", fill=GREY),
@@ -273,9 +224,9 @@ def _words(frame: _Frame, chart: Chart) -> list[str]:
     return parts
 
 
-def _badges(frame: _Frame, lines: Sequence[Line]) -> list[str]:
+def _badges(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
     """Two letters on every line, where it lies farthest from the others and from the letters there already."""
-    drawn = [one for one in lines if np.isfinite(one.angle_deg).any()]
+    drawn = [one for one in curves if one.is_known]
     x = frame.x(PERCENT)
     heights = [frame.y(one.angle_deg) for one in drawn]
     taken = [(float(frame.x(p.percent)), float(frame.y(p.mean_deg))) for one in drawn for p in one.peaks]
@@ -286,7 +237,7 @@ def _badges(frame: _Frame, lines: Sequence[Line]) -> list[str]:
             at = _best_place(half, x, y, others, taken, frame)
             if at is not None:
                 taken.append((float(x[at]), float(y[at])))
-                parts.append(badge(float(x[at]), float(y[at]), one.letter, one.side, one.colour))
+                parts.append(badge(float(x[at]), float(y[at]), one.letter, one.side, _look(one)[0]))
     return parts
 
 
@@ -296,7 +247,7 @@ def _best_place(
     y: FloatArray,
     others: Sequence[FloatArray],
     taken: Sequence[tuple[float, float]],
-    frame: _Frame,
+    frame: Frame,
 ) -> int | None:
     best, best_score = None, -np.inf
     for k in half:

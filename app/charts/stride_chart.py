@@ -1,0 +1,147 @@
+"""What a chart of the stride shows, in data units; the screen's painter and paper's draw it each in its own way."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from app.charts.axes import ABOUT_MEAN_DEG, ANKLE_DEG, KNEE_DEG
+from app.charts.cycles import Band, SideCycle, is_mean_enough, is_spread_enough
+from app.charts.marks import Deviation, Gap
+from app.wording import tr
+from core.body import Side
+from core.gait.cycles import POINTS
+from core.samples import FloatArray
+
+NOT_KNOWN = np.full(POINTS, np.nan)
+NO_STRIDES = np.empty((0, POINTS))
+SCREEN_TICK_DEG = 20
+
+
+@dataclass(frozen=True, slots=True)
+class Axis:
+    """Degrees from bottom to top, a label every so many, and words for the two directions."""
+
+    low: float
+    high: float
+    label_every: float
+    tick_every: float
+    up: str = ""
+    down: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class PeakMark:
+    """A peak: where in the stride, percent, its mean and SD, degrees."""
+
+    percent: float
+    mean_deg: float
+    sd_deg: float
+
+
+@dataclass(frozen=True, slots=True)
+class Span:
+    """Where in the stride, percent, the highest or the lowest angle is looked for."""
+
+    name: str
+    first: float
+    last: float
+    is_maximum: bool
+
+
+@dataclass(frozen=True, slots=True)
+class StrideCurve:
+    """One leg in one walk, condition or visit: its mean `angle_deg` (101,), NaN where it is not known or not shown.
+
+    `order` is its place among how many are compared, the earliest first. `sd_deg` (101,) is shown where it is given,
+    `strides_deg` (k, 101) are single strides; of a withheld curve they are evidence, not to be read. `is_few`: of too
+    few strides for a mean. `is_fine`: thin, since much stands on it.
+    """
+
+    letter: str
+    side: Side
+    angle_deg: FloatArray
+    toe_off_percent: float = float("nan")
+    toe_off_sd: float = float("nan")
+    toe_off_label: str = ""
+    order: tuple[int, int] | None = None
+    sd_deg: FloatArray | None = None
+    strides_deg: FloatArray = field(default_factory=lambda: NO_STRIDES)
+    peaks: tuple[PeakMark, ...] = ()
+    is_withheld: bool = False
+    is_few: bool = False
+    is_fine: bool = False
+
+    @property
+    def is_known(self) -> bool:
+        return bool(np.isfinite(self.angle_deg).any())
+
+
+@dataclass(frozen=True, slots=True)
+class StrideChart:
+    """One joint over 0 to 100 % of the stride.
+
+    `ticks` are percent and side of the other foot's events; `spans` stand above the frame, where toe-off is named
+    otherwise. `chosen` is one stride (101,) over all others. `alt` are the chart's words, for who cannot see it.
+    """
+
+    axis: Axis
+    curves: tuple[StrideCurve, ...]
+    band: Band | None
+    is_simulated: bool
+    title: str = ""
+    alt: str = ""
+    ticks: tuple[tuple[float, Side], ...] = ()
+    spans: tuple[Span, ...] = ()
+    chosen: tuple[Side, FloatArray] | None = None
+    deviations: tuple[Deviation, ...] = ()
+    gaps: tuple[Gap, ...] = ()
+
+    @property
+    def is_comparison(self) -> bool:
+        return any(curve.order is not None for curve in self.curves)
+
+
+def usual_range_deg(*, is_knee: bool, is_about_mean: bool) -> tuple[float, float]:
+    """What an axis reaches in every chart, so that two patients are compared at a glance."""
+    usual = KNEE_DEG if is_knee else ANKLE_DEG
+    return ABOUT_MEAN_DEG[usual] if is_about_mean else usual
+
+
+def toe_offs_in_order(curves: Sequence[StrideCurve], decimals: int) -> list[StrideCurve]:
+    """Those whose toe-off is known, the earlier first; in their own order where both read the same."""
+    known = [curve for curve in curves if np.isfinite(curve.toe_off_percent)]
+    return sorted(known, key=lambda curve: round(curve.toe_off_percent, decimals))
+
+
+def curves_of_walk(
+    cycles: Mapping[Side, SideCycle], withheld: frozenset[Side], *, has_strides: bool
+) -> tuple[StrideCurve, ...]:
+    """Each side of one walk, its mean unless that is withheld; strides where they are wanted, or withheld and few."""
+    curves = []
+    for side, cycle in cycles.items():
+        is_withheld, n = side in withheld, cycle.mean.n
+        is_shown = not is_withheld and n > 0
+        are_strides_shown = has_strides or (is_withheld and not is_mean_enough(len(cycle.strides_deg)))
+        curves.append(
+            StrideCurve(
+                letter=side[0].upper(),
+                side=side,
+                angle_deg=cycle.mean.mean if is_shown else NOT_KNOWN,
+                toe_off_percent=cycle.toe_off_percent if is_shown else float("nan"),
+                sd_deg=cycle.mean.sd if is_shown and is_spread_enough(n) and not has_strides else None,
+                strides_deg=cycle.strides_deg if are_strides_shown else NO_STRIDES,
+                is_withheld=is_withheld,
+            )
+        )
+    return tuple(curves)
+
+
+def toe_off_labels(curves: Sequence[StrideCurve]) -> dict[Side, str]:
+    """Name each toe-off: the word at the earlier line, which has the room at its left."""
+    labels = tr("toe-off {side} {percent:.0f} %"), "{side} {percent:.0f} %"
+    in_order = toe_offs_in_order(curves, 0)
+    return {
+        curve.side: label.format(side=curve.letter, percent=curve.toe_off_percent)
+        for label, curve in zip(labels, in_order, strict=False)
+    }
