@@ -26,17 +26,13 @@ from app.charts.axes import (
     sign_in_words,
     title_in_words,
 )
-<<<<<<< HEAD
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
-=======
 from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
 from app.charts.frame import Frame
 from app.charts.marks import BAND_SDS, MOST_MARKS, Deviation, Gap, Point
 from app.charts.on_screen import gap_boxes, paint_deviation, paint_gap_bars, paint_gaps, place_deviation
 from app.charts.places import Ground, MarkPlace, line_of
 from app.icons import Icon
-from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, reason_in_words
->>>>>>> bfbdb04 (Charts: the report draws from a description in data units)
+from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
 from app.theme import Look
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS

@@ -18,7 +18,7 @@ WINDOWS = {"knee_range_deg": (ALL, ALL), "ankle_range_deg": (ALL, ALL)}  # where
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion that differs most, where a sentence may tell it, on the leg it begins with."""
+    """Of each kind of joint the excursion that differs most, where a sentence may tell it, on the first leg."""
     found: list[Deviation] = []
     for kind in KINDS:
         row = next((row for row in what_differs(facts) if _is_told_of(row, kind)), None)
