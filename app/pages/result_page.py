@@ -30,6 +30,7 @@ from app.reports.patient_report.request import Visit
 from app.reports.reference_bands import age_and_height, sides_with_band
 from app.review.mean_legs import mean_legs
 from app.theme import Look
+from app.widgets import grid
 from app.widgets.button import Button, Kind
 from app.widgets.choice import Choice
 from app.widgets.door import Door
@@ -92,6 +93,7 @@ class Room:
     has_two_charts: bool = False
     has_strides_beside: bool = False
     is_spacious: bool = False
+    is_on_grid: bool = False
 
 
 class Behind(Enum):
@@ -244,6 +246,7 @@ class ResultPage(Themed):
             has_two_charts=width >= TWO_CHARTS_FROM,
             has_strides_beside=width >= COMPACT_BELOW[0],
             is_spacious=not is_compact and width >= SPACIOUS_FROM,
+            is_on_grid=width >= grid.NARROW_BELOW,
         )
         if room != self._room:
             self._room = room
@@ -630,10 +633,9 @@ class ResultPage(Themed):
         self.whole.setVisible(not is_whole)
 
     def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._page.setContentsMargins(
-            px(16), px(12 if self._room.is_compact else 16), px(16), px(8 if self._room.is_compact else 12)
-        )
+        px, is_compact = self._look.theme.px, self._room.is_compact
+        side = px(24 if self._room.is_on_grid else 16)  # as the bar beneath it
+        self._page.setContentsMargins(side, px(12 if is_compact else 16), side, px(8 if is_compact else 12))
         self._page.setSpacing(px(12))
         self._controls.setSpacing(px(12))
         self._columns.setSpacing(px(12))

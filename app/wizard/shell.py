@@ -119,6 +119,7 @@ class WizardShell(Themed):
             page.hide()
             page.deleteLater()
         self._by_index.clear()
+        self.header.fold.setChecked(False)  # what one session looked at is no wish of the next
 
     def set_strip_mode(self, mode: StripMode) -> None:
         if mode is not self._strip_mode:

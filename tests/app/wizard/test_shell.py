@@ -239,6 +239,15 @@ def test_the_folded_strip_opens_at_a_press(shell: WizardShell) -> None:
     assert not shell.strip.isVisible()
 
 
+def test_an_opened_strip_is_folded_again_with_the_next_session(shell: WizardShell) -> None:
+    shell.set_strip_mode(StripMode.FOLDED)
+    shell.header.fold.setChecked(True)
+    assert shell.strip.isVisible()
+    shell.clear_pages()
+    shell.set_strip_mode(StripMode.FOLDED)
+    assert not shell.strip.isVisible()
+
+
 def test_the_folded_strip_opens_by_itself_when_a_sensor_turns_bad_and_only_then(
     shell: WizardShell, qtbot: QtBot
 ) -> None:
