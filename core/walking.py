@@ -10,8 +10,10 @@ from core.body import Joint, Segment, Side, Site, ankle_of, knee_of
 from core.gait.clocks import LegClocks, LegSteps, leg_clocks
 from core.gait.cycles import (
     ANKLE_WINDOWS,
+    EXCURSIONS,
     KNEE_WINDOWS,
     cycles_of,
+    excursion_of_cycles,
     find_peak,
     range_of_cycles,
 )
@@ -165,7 +167,7 @@ def _later(events: FootEvents, by_s: float) -> FootEvents:
 
 
 def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> dict[str, FloatArray]:
-    """Peaks, ranges and the angle at initial contact of each stride (k,), radians or percent."""
+    """Peaks, excursions, ranges and the angle at initial contact of each stride (k,), radians or percent."""
     parameters: dict[str, FloatArray] = {}
     for joint, windows in ((j, KNEE_WINDOWS if j.is_knee else ANKLE_WINDOWS) for j in cycles):
         kind, curves = "knee" if joint.is_knee else "ankle", cycles[joint]
@@ -176,4 +178,7 @@ def _joint_parameters(strides: Strides, cycles: Mapping[Joint, FloatArray]) -> d
             if window.name == "knee_swing_peak":
                 parameters["knee_swing_peak_percent"] = peak.percent
         parameters[f"{kind}_range_rad"] = range_of_cycles(curves)
+        for excursion in EXCURSIONS:
+            if excursion.name.startswith(kind):
+                parameters[f"{excursion.name}_rad"] = excursion_of_cycles(curves, excursion)
     return parameters

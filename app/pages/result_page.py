@@ -642,8 +642,8 @@ class ResultPage(Themed):
         self._head.setSpacing(px(24))
         self._bottom.setSpacing(px(12))
         self._tables.setSpacing(px(12))
-        for side in (self._curves, self._against, self._choices):
-            layout = side.layout()
+        for part in (self._curves, self._against, self._choices):
+            layout = part.layout()
             assert layout is not None
             layout.setSpacing(px(12))
         self._foot.setHorizontalSpacing(px(16))

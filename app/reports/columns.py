@@ -11,14 +11,20 @@ from typing import NamedTuple
 
 from app.reports.csv_report import write_table
 from core.body import Joint, Side
-from core.verdicts.quantities import PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
+from core.gait.cycles import PeakWindow
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, PARAMETERS, QUANTITIES, WINDOWS, QuantityClass
 
 COLUMNS = "columns.csv"
 HEADER = ("file", "column", "unit", "sign", "definition", "needs")
 UNITS = {"_m_s": "m/s", "percent": "%", "_deg": "deg", "_s": "s", "_m": "m"}  # by the end of a name, longer ends first
 FLEXION = {"knee": "flexion positive", "ankle": "dorsiflexion positive"}
 HEIGHT = "zero sign"
-NEEDS = {QuantityClass.PEAK_TIME: "sign", QuantityClass.HEIGHT: HEIGHT, QuantityClass.BETWEEN: "both_clocks"}
+NEEDS = {
+    QuantityClass.PEAK_TIME: "sign",
+    QuantityClass.EXCURSION: "sign",
+    QuantityClass.HEIGHT: HEIGHT,
+    QuantityClass.BETWEEN: "both_clocks",
+}
 AS_PARAMETER, AS_ROW = "parameter", "as the parameter"
 
 
@@ -44,7 +50,14 @@ def _of_stride(name: str) -> Column:
         window = WINDOWS[name]
         what = "largest" if window.is_maximum else "smallest"
         return Column(f"{what} angle from {window.first} to {window.last} % of the stride", needs, sign)
+    if name in EXCURSIONS_BY_COLUMN:
+        excursion = EXCURSIONS_BY_COLUMN[name]
+        return Column(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
     return Column(OF_STRIDE[name], needs, sign)
+
+
+def _extreme(window: PeakWindow | None, which: str) -> str:
+    return f"{which} angle from {window.first} to {window.last} %" if window else "angle at initial contact"
 
 
 OF_STRIDE = {
@@ -168,7 +181,8 @@ KNOWN: Mapping[str, Mapping[str, Column]] = {
             f"{window.name}_percent": Column(f"when the extremum from {window.first} to {window.last} % comes", "sign")
             for window in WINDOWS.values()
         },
-        **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks") for kind in FLEXION},
+        **{name: _of_stride(name) for name in EXCURSIONS_BY_COLUMN},
+        **{f"{kind}_status": _word(f"{STATUS}when the {kind} peaks, and its excursions") for kind in FLEXION},
     },
     "sides.csv": {
         **OF_PART,

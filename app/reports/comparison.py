@@ -34,6 +34,7 @@ from core.verdicts.measurement_error import (
 )
 from core.verdicts.model import Assessment, Verdict, Verdicts, pooled, together
 from core.verdicts.quantities import (
+    EXCURSIONS_BY_COLUMN,
     QUANTITIES,
     WINDOWS,
     QuantityClass,
@@ -189,7 +190,11 @@ class Part:
     def is_no_peak(self, side: Side, column: str) -> bool:
         """Whether the angle is known and only passes through where this peak is looked for."""
         joint = Measure.of(column).joint(side)
-        if joint is None or column not in WINDOWS or not self.assessment(side, column).is_told:
+        if (
+            joint is None
+            or column not in {*WINDOWS, *EXCURSIONS_BY_COLUMN}
+            or not self.assessment(side, column).is_told
+        ):
             return False
         return self.cycle(joint).n >= MIN_STRIDES_FOR_MEAN and not math.isfinite(self.value(side, column).mean)
 

@@ -1,6 +1,6 @@
 """By how much do conditions, visits or legs differ, and is that more than the measurement error? The tables of it.
 
-`rows_of` tells every figure of strides.csv, those of both legs, and how far the mean curves lie apart; screen and
+`rows_of` tells every figure of a stride, those of both legs, and how far the mean curves lie apart; screen and
 report show some of them.
 """
 
@@ -22,7 +22,7 @@ from core.results import Analysis
 from core.samples import Session
 from core.verdicts.measurement_error import Difference, Judgement
 from core.verdicts.model import Verdict, together
-from core.verdicts.quantities import OF_BOTH, PARAMETERS, QUANTITIES, QuantityClass, assessment_of_both, joint_of
+from core.verdicts.quantities import OF_BOTH, QUANTITIES, QuantityClass, assessment_of_both, joint_of
 
 DIFFERENCES = "differences.csv"
 COMPARED_CYCLES = "compared_cycles.csv"
@@ -106,7 +106,7 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
     against = comparison.against
     for part in comparison.others:
         for side in Side:
-            for column in PARAMETERS:
+            for column in QUANTITIES:
                 found = comparison.compare(Measure.of(column), side, part)
                 if found.reservation is Reservation.NOT_MEASURED:
                     continue
@@ -168,7 +168,7 @@ def write_sides(parts: Sequence[Part], sides: tuple[Side, Side], path: Path) -> 
     lines = []
     for part in parts:
         left_out = [str(part.left_out_by_hand(side)) for side in sides]
-        for column in PARAMETERS:
+        for column in QUANTITIES:
             one, other = (part.value(side, column) for side in sides)
             if not all(_is_measured(part, side, column) for side in sides):
                 continue

@@ -16,7 +16,7 @@ from core.body import Joint, Side, ankle_of, knee_of
 from core.gait.cycles import POINTS
 from core.results import RecordingAnalysis
 from core.verdicts.model import Assessment, together
-from core.verdicts.quantities import PARAMETERS, WINDOWS, mean_curve, peak_percent, values_of
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, PARAMETERS, WINDOWS, mean_curve, peak_percent, values_of
 
 EVENTS = ("initial_contact", "full_contact", "heel_rise", "toe_off")
 TIMES = ("start_s", "full_contact_s", "heel_rise_s", "toe_off_s", "end_s")
@@ -40,18 +40,20 @@ def write_gait(recording: RecordingAnalysis, folder: Path) -> None:
 
 
 def peak_table(recordings: Sequence[RecordingAnalysis]) -> tuple[list[str], list[list[str]]]:
-    """Give heading and rows of `peaks.csv`: when each stride of any recording peaks, % of the stride."""
+    """Give heading and rows of `peaks.csv`: when each stride of any recording peaks, and its excursions."""
     rows = []
     for recording in recordings:
         for side in Side:
             if side in recording.gait:
                 strides = recording.gait[side].strides
                 columns = [strides.start_s, *(peak_percent(recording, side, column) for column in WINDOWS)]
+                columns += [values_of(recording, side, column) for column in EXCURSIONS_BY_COLUMN]
                 status = [_peak_status(recording, joint) for joint in (knee_of(side), ankle_of(side))]
                 for k, reason in enumerate(strides.reason):
                     cells = [_cell(float(column[k])) for column in columns]
                     rows.append([recording.folder, str(side), *cells, "false" if reason else "true", *status])
-    return ["recording", "side", "start_s", *PEAK_TIMES, "used", "knee_status", "ankle_status"], rows
+    figures = [*PEAK_TIMES, *EXCURSIONS_BY_COLUMN]
+    return ["recording", "side", "start_s", *figures, "used", "knee_status", "ankle_status"], rows
 
 
 def _peak_status(recording: RecordingAnalysis, joint: Joint) -> str:

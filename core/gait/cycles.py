@@ -43,6 +43,31 @@ ANKLE_WINDOWS = (
 
 
 @dataclass(frozen=True, slots=True)
+class Excursion:
+    """How far a joint moves between two extremes of a stride; None: from, or to, initial contact.
+
+    Excursions need no zero and repeat better than peaks (Ferber et al. 2002, J Orthop Res 20:1139, runners).
+    """
+
+    name: str
+    high: PeakWindow | None
+    low: PeakWindow | None
+
+
+_LOADING, _STANCE, _SWING = KNEE_WINDOWS
+_HEEL, _OVER_FOOT, _OFF, _CLEARING = ANKLE_WINDOWS
+EXCURSIONS = (
+    Excursion("knee_while_loading", _LOADING, None),
+    Excursion("knee_straightening", _LOADING, _STANCE),
+    Excursion("knee_stance_to_swing", _SWING, _STANCE),
+    Excursion("ankle_heel_rocker", None, _HEEL),
+    Excursion("ankle_rocker", _OVER_FOOT, _HEEL),
+    Excursion("ankle_push_off", _OVER_FOOT, _OFF),
+    Excursion("ankle_toes_lifted", _CLEARING, _OFF),
+)
+
+
+@dataclass(frozen=True, slots=True)
 class Peak:
     """One extremum of each stride (k,), and where, percent; NaN where there is none."""
 
@@ -129,6 +154,28 @@ def find_peak(cycles: FloatArray, window: PeakWindow) -> Peak:
         return nothing
     value = np.where(is_known, part[np.arange(n), at], np.nan)
     return Peak(value, np.where(is_known, window.first + at.astype(np.float64), np.nan))
+
+
+def excursion_of_cycles(cycles: FloatArray, excursion: Excursion) -> FloatArray:
+    """The highest of one window less the lowest of the other (k,), of each stride (k, 101).
+
+    NaN throughout where the angle only passes through one of them.
+
+    Parameters
+    ----------
+    cycles : (k, 101)
+        One row per stride, NaN throughout where it is not known.
+
+    Returns
+    -------
+    (k,)
+        In the unit of the cycles.
+    """
+    contact = cycles[:, 0] if len(cycles) else np.empty(0)
+    high, low = (
+        find_peak(cycles, window).value if window is not None else contact for window in (excursion.high, excursion.low)
+    )
+    return high - low
 
 
 def range_of_cycles(cycles: FloatArray) -> FloatArray:

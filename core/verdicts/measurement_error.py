@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from core.gait.cycles import EXCURSIONS
 from core.norms import MIN_STRIDES_FOR_MEAN, MIN_STRIDES_FOR_SD
 from core.samples import FloatArray
 from core.verdicts.model import Assessment
@@ -81,6 +82,12 @@ KINDS: Mapping[str, QuantityKind] = {  # by the columns of strides.csv and of `b
     "ankle_push_off_plantarflexion_deg": QuantityKind.ANKLE_HEIGHT,
     "ankle_swing_dorsiflexion_deg": QuantityKind.ANKLE_HEIGHT,
     "ankle_range_deg": QuantityKind.ANKLE_SHAPE,
+    **{
+        f"{excursion.name}_deg": QuantityKind.KNEE_SHAPE
+        if excursion.name.startswith("knee")
+        else QuantityKind.ANKLE_SHAPE
+        for excursion in EXCURSIONS
+    },
 }
 
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 
 from core.body import Joint, Side, ankle_of, knee_of
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
+from core.gait.cycles import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, POINTS, MeanCycle, find_peak, mean_cycle
 from core.gait.spatiotemporal import BothFeet, MeanAndSd, both_feet, mean_and_sd
 from core.gait.strides import strides_of
 from core.results import RecordingAnalysis, SideGait
@@ -17,17 +17,18 @@ from core.verdicts.model import Assessment, Verdict, Verdicts, together
 
 
 class QuantityClass(StrEnum):
-    """What a figure needs to be known. `PEAK_TIME` is a shape that a mirrored curve would not have."""
+    """What a figure needs to be known. A mirrored curve would not have the same `PEAK_TIME` or `EXCURSION`."""
 
     SHAPE = "shape"
     PEAK_TIME = "peak_time"
+    EXCURSION = "excursion"
     HEIGHT = "height"
     TIMING = "timing"
     DISTANCE = "distance"
     BETWEEN = "between"
 
 
-QUANTITIES: Mapping[str, QuantityClass] = {  # the columns of strides.csv, angles in degrees there
+_OF_STRIDES: Mapping[str, QuantityClass] = {  # the columns of strides.csv, angles in degrees there
     "stride_time_s": QuantityClass.TIMING,
     "step_time_s": QuantityClass.BETWEEN,
     "stance_percent": QuantityClass.TIMING,
@@ -48,7 +49,12 @@ QUANTITIES: Mapping[str, QuantityClass] = {  # the columns of strides.csv, angle
     "ankle_swing_dorsiflexion_deg": QuantityClass.HEIGHT,
     "ankle_range_deg": QuantityClass.SHAPE,
 }
-PARAMETERS = tuple(QUANTITIES)
+EXCURSIONS_BY_COLUMN = {f"{excursion.name}_deg": excursion for excursion in EXCURSIONS}  # those of peaks.csv
+QUANTITIES: Mapping[str, QuantityClass] = {
+    **_OF_STRIDES,
+    **dict.fromkeys(EXCURSIONS_BY_COLUMN, QuantityClass.EXCURSION),
+}
+PARAMETERS = tuple(_OF_STRIDES)
 OF_BOTH = ("cadence_steps_min", "double_support_percent", "speed_m_s")
 WINDOWS = {f"{window.name}_deg": window for window in (*KNEE_WINDOWS, *ANKLE_WINDOWS)}
 
@@ -74,7 +80,7 @@ def assessment_of(verdicts: Verdicts, side: Side, name: str) -> Assessment:
         found = verdicts.joint(joint)
         if wanted is QuantityClass.SHAPE:
             return found.shape
-        return together((found.shape, found.sign) if wanted is QuantityClass.PEAK_TIME else (found.height, found.sign))
+        return together((found.height if wanted is QuantityClass.HEIGHT else found.shape, found.sign))
     if wanted is QuantityClass.BETWEEN:
         return together((verdicts.between, verdicts.leg(side).timing))
     leg = verdicts.leg(side)

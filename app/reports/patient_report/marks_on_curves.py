@@ -11,10 +11,9 @@ from app.wording import tr
 from core.body import Joint, Side
 from core.norms import KNEE_OVERREAD
 from core.samples import FloatArray
-from core.verdicts.quantities import QUANTITIES, QuantityClass
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, QUANTITIES, QuantityClass
 
-ALL = 0.0, 100.0
-WINDOWS = {"knee_range_deg": (ALL, ALL), "ankle_range_deg": (ALL, ALL)}  # where an excursion has its highest and lowest
+CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
@@ -28,15 +27,15 @@ def deviations_of(facts: Facts) -> list[Deviation]:
 
 
 def _is_told_of(row: LegsRow, kind: str) -> bool:
-    is_excursion = row.column in WINDOWS and row.column.startswith(kind)
-    return is_excursion and QUANTITIES[row.column] is not QuantityClass.HEIGHT and row.difference.is_worth_a_sentence
+    has_extremes = QUANTITIES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
+    return has_extremes and row.column.startswith(kind) and row.difference.is_worth_a_sentence
 
 
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
     """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
     first, second = facts.first_and_second
     joint, curve = joint_of(kind, first), facts.mean_curve_deg(first, kind)
-    high, low = WINDOWS[row.column]
+    high, low = _windows(row.column)
     size = fixed(row.values[first].mean, row.decimals) + row.unit
     pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
     apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
@@ -48,6 +47,17 @@ def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
         is_larger_than_error=True,
         size=size,
     )
+
+
+def _windows(column: str) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Where an excursion has its highest and its lowest angle; a range has them anywhere."""
+    if column not in EXCURSIONS_BY_COLUMN:
+        return ALL, ALL
+    excursion = EXCURSIONS_BY_COLUMN[column]
+    high, low = (
+        (window.first, window.last) if window is not None else CONTACT for window in (excursion.high, excursion.low)
+    )
+    return high, low
 
 
 def gaps_of(facts: Facts) -> list[Gap]:

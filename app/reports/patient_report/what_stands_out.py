@@ -26,13 +26,15 @@ BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the
 MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
 MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
 BETWEEN_LEGS = (
+    "knee_stance_to_swing_deg",
+    "knee_while_loading_deg",
+    "knee_straightening_deg",
     "knee_range_deg",
-    "knee_loading_peak_deg",
-    "knee_stance_minimum_deg",
-    "knee_swing_peak_deg",
+    "ankle_push_off_deg",
+    "ankle_rocker_deg",
+    "ankle_heel_rocker_deg",
+    "ankle_toes_lifted_deg",
     "ankle_range_deg",
-    "ankle_stance_dorsiflexion_deg",
-    "ankle_push_off_plantarflexion_deg",
     "stance_percent",
     "step_time_s",
 )  # not the stride's length: in walking straight on both feet travel equally far
@@ -51,11 +53,14 @@ class Rank(IntEnum):
 _RANKS = {
     QuantityClass.SHAPE: Rank.SHAPE,
     QuantityClass.PEAK_TIME: Rank.SHAPE,
+    QuantityClass.EXCURSION: Rank.SHAPE,
     QuantityClass.TIMING: Rank.TIMING,
     QuantityClass.BETWEEN: Rank.BETWEEN,
     QuantityClass.DISTANCE: Rank.DISTANCE,
     QuantityClass.HEIGHT: Rank.HEIGHT,
 }
+FAMILIES = {"knee_range_deg": "knee_stance_to_swing_deg", "ankle_range_deg": "ankle_push_off_deg"}
+FIRST_OF_ALIKE = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "stance_percent", "speed_m_s")
 Topic = tuple[Joint | Side | None, Rank | None, bool]
 """A joint, or a leg and a kind of figure, with the direction: of each, one finding is told."""
 
@@ -64,7 +69,8 @@ Topic = tuple[Joint | Side | None, Rank | None, bool]
 class Candidate:
     """A finding that may be told; `ratio` is how many times it is as large as what it has to exceed.
 
-    `said` is its sentence, `evidence` a second one that says what it exceeds, where the first does not.
+    `said` is its sentence, `evidence` a second one that says what it exceeds, where the first does not. `column` is
+    the measure's, empty where it is a band's.
     """
 
     rank: Rank
@@ -72,6 +78,13 @@ class Candidate:
     topics: tuple[Topic, ...]
     said: str
     evidence: str = ""
+    column: str = ""
+
+    @property
+    def weight(self) -> tuple[Rank, float, int]:
+        """What is told first is least; ratios that are alike leave it to the measure."""
+        among = FIRST_OF_ALIKE.index(self.column) if self.column in FIRST_OF_ALIKE else len(FIRST_OF_ALIKE)
+        return self.rank, -round(self.ratio, 1), among
 
 
 def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
@@ -99,11 +112,17 @@ def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[st
     ]
     told: list[Candidate] = []
     known: set[Topic] = set()
-    for candidate in sorted(candidates, key=lambda one: (one.rank, -one.ratio)):
+    for candidate in sorted(_without_family(candidates), key=lambda one: one.weight):
         if known.isdisjoint(candidate.topics):
             told.append(candidate)
         known.update(candidate.topics)
     return told[:MAX_FINDINGS]
+
+
+def _without_family(candidates: list[Candidate]) -> list[Candidate]:
+    """A range and the excursion that makes most of it are one movement: the excursion is told."""
+    movements = {topic for one in candidates if one.column in FAMILIES.values() for topic in one.topics}
+    return [one for one in candidates if not (one.column in FAMILIES and movements.intersection(one.topics))]
 
 
 def nothing_found(facts: Facts, comparison: Comparison | None) -> list[str]:
@@ -142,7 +161,8 @@ def _changes(facts: Facts, comparison: Comparison | None) -> Iterator[Candidate]
         if row.is_told and row.difference.is_worth_a_sentence and not is_height:
             topic = _topic(row.side, row.measure.column, row.difference.difference > 0)
             rank = _RANKS[QUANTITIES[row.measure.column]]
-            yield Candidate(rank, row.difference.ratio, (topic,), _changed(facts, comparison, row))
+            said = _changed(facts, comparison, row)
+            yield Candidate(rank, row.difference.ratio, (topic,), said, column=row.measure.column)
 
 
 def _between_legs(facts: Facts) -> Iterator[Candidate]:
@@ -159,7 +179,7 @@ def _between_legs(facts: Facts) -> Iterator[Candidate]:
         unit, decimals = unit_and_decimals(column)
         evidence = tr("Measurement error between the legs: {error}.").format(error=fixed(found.error, decimals) + unit)
         said = _leg_beside_leg(facts, column, found)
-        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence)
+        yield Candidate(_RANKS[QUANTITIES[column]], found.ratio, topics, said, evidence, column)
 
 
 def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
@@ -173,6 +193,26 @@ def _leg_beside_leg(facts: Facts, column: str, found: Difference) -> str:
                 tr("The {joint} moves {size} less over the stride than the {second}: {value} against {other}.")
                 if is_less
                 else tr("The {joint} moves {size} more over the stride than the {second}: {value} against {other}.")
+            )
+        case "knee_stance_to_swing_deg":
+            pattern = (
+                tr("The {joint} bends {size} less from stance to swing than the {second}: {value} against {other}.")
+                if is_less
+                else tr(
+                    "The {joint} bends {size} more from stance to swing than the {second}: {value} against {other}."
+                )
+            )
+        case "knee_while_loading_deg":
+            pattern = (
+                tr("The {joint} bends {size} less while loading than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} bends {size} more while loading than the {second}: {value} against {other}.")
+            )
+        case "knee_straightening_deg":
+            pattern = (
+                tr("The {joint} straightens {size} less in stance than the {second}: {value} against {other}.")
+                if is_less
+                else tr("The {joint} straightens {size} more in stance than the {second}: {value} against {other}.")
             )
         case "stance_percent":
             pattern = (
@@ -341,6 +381,13 @@ def measure_in_words(column: str) -> str:
         "stance_percent": tr("stance, share of the stride"),
         "step_time_s": tr("step time"),
         "stride_length_m": tr("stride length"),
+        "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
+        "knee_while_loading_deg": tr("knee bend while loading"),
+        "knee_straightening_deg": tr("knee straightening in stance"),
+        "ankle_push_off_deg": tr("ankle push\u2011off"),
+        "ankle_rocker_deg": tr("ankle rocker"),
+        "ankle_heel_rocker_deg": tr("ankle, heel rocker"),
+        "ankle_toes_lifted_deg": tr("ankle, toes lifted in swing"),
         "knee_range_deg": tr("knee range over the stride"),
         "ankle_range_deg": tr("ankle range over the stride"),
     }
