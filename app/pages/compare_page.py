@@ -61,7 +61,8 @@ from core.verdicts.measurement_error import ComparisonKind, Difference
 CURVES, PLOT, TABLE = "curves", "plot", "table"
 CARD, WIDE_CARD = 312, 460
 WIDEST = 16_777_215  # Qt's own
-BRIEF = ("knee_swing_peak_deg", "knee_range_deg", "ankle_stance_dorsiflexion_deg", "stance_percent")
+BRIEF = ("knee_stance_to_swing_deg", "knee_while_loading_deg", "ankle_push_off_deg", "stance_percent")
+IN_DEGREES = ("°", "%")  # what the axis of the differences can hold
 MOST_SAID = 3  # sentences about differences; the table has all of them
 
 ERROR = later("Grey: measurement error. It holds {sources}.")
@@ -430,7 +431,7 @@ class ComparePage(Themed):
                 ),
             )
             for row in self.side_rows
-            if self._is_spacious or row.measure.column in BRIEF
+            if self._is_drawn(row)
         ]
         self.plot.show_groups(groups, self.title.text(), self.conclusion.text())
         heads = [one, other, f"{one} {MINUS} {other}", tr("symmetry, %")]
@@ -441,12 +442,16 @@ class ComparePage(Themed):
     def _groups(self, found: Comparison) -> list[DifferenceGroup]:
         groups: dict[str, dict[Side, list[Compared]]] = {}
         for row in found.rows:
-            if self._is_spacious or row.measure.column in BRIEF:
+            if self._is_drawn(row):
                 groups.setdefault(tr(row.measure.name), {}).setdefault(row.side, []).append(row)
         return [
             DifferenceGroup(title, tuple(plot_row(side, rows) for side, rows in sides.items()))
             for title, sides in groups.items()
         ]
+
+    def _is_drawn(self, row: Compared | SideRow) -> bool:
+        """Whether a row has a place among the differences that are drawn; the table has all."""
+        return row.measure.unit in IN_DEGREES and (self._is_spacious or row.measure.column in BRIEF)
 
     def _band(self, part: Part) -> tuple[ReferenceCurves | None, frozenset[Side]]:
         """The curves that a part may stand beside, and which of its legs."""

@@ -12,6 +12,7 @@ from app.icons import Icon
 from app.plots.compared_chart import Line
 from app.plots.difference_plot import DifferenceRow, Dot
 from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
+from app.reports.patient_report.numbers_in_words import fixed, signed
 from app.reports.walk_figures import reason_in_words
 from app.widgets.chip import LETTERS
 from app.widgets.figures_table import CARE_MARK, FIGURE
@@ -37,9 +38,7 @@ def part_in_words(part: Part) -> str:
 
 def change_in_words(value: float, measure: Measure) -> str:
     """A difference with its sign; the unit is in the measure's name or the title."""
-    said = f"{value:+.1f}"
-    unit = measure.unit if measure.unit == "°" else ""
-    return ("0.0" if float(said) == 0 else said.replace("-", MINUS)) + unit
+    return signed(value, measure.decimals) + (measure.unit if measure.unit == "°" else "")
 
 
 def plot_row(side: Side, rows: Sequence[Compared]) -> DifferenceRow:
@@ -67,9 +66,12 @@ def table_rows(found: Comparison, heads: Sequence[str]) -> list[TableRow]:
     lines = []
     for (_, side), compared in rows.items():
         measure = compared[0].measure
-        values = [_value(part.value(side, measure.column), _verdict(part, side, measure)) for part in found.parts]
+        values = [
+            _value(part.value(side, measure.column), _verdict(part, side, measure), measure.decimals)
+            for part in found.parts
+        ]
         changes = [_changed(row) for row in compared]
-        lines.append(_table_row(tr(measure.name), side, heads, (*values, *changes)))
+        lines.append(_table_row(tr(measure.name), None if measure.is_of_walk else side, heads, (*values, *changes)))
     return lines
 
 
@@ -98,7 +100,8 @@ def withheld_in_words(part: Part, joint: Joint) -> str:
 def side_table_row(row: SideRow, heads: Sequence[str]) -> TableRow:
     """One measure of both legs, their difference and symmetry."""
     symmetry = f"{row.symmetry_percent:+.1f}".replace("-", MINUS) if math.isfinite(row.symmetry_percent) else DASH
-    values = _value(row.first, row.verdicts[0]), _value(row.second, row.verdicts[1])
+    each = zip((row.first, row.second), row.verdicts, strict=True)
+    values = [_value(value, verdict, row.measure.decimals) for value, verdict in each]
     return _table_row(tr(row.measure.name), None, heads, (*values, _changed(row), _figure(symmetry)))
 
 
@@ -128,15 +131,14 @@ def _verdict(part: Part, side: Side, measure: Measure) -> Verdict:
     return part.assessment(side, measure.column).verdict if is_measured else Verdict.NOT_MEASURED
 
 
-def _value(value: MeanAndSd, verdict: Verdict = Verdict.READ) -> TextCell:
+def _value(value: MeanAndSd, verdict: Verdict, decimals: int) -> TextCell:
     if verdict is Verdict.WITHHELD:
         return _figure(verdict_word(verdict), is_grey=True)
     if not value.n:
         return _figure(DASH, is_grey=True)
-    spread = f"± {value.sd:.1f}" if is_spread_enough(value.n) else ""
+    spread = f"± {fixed(value.sd, decimals)}" if is_spread_enough(value.n) else ""
     spread = f"{spread} {CARE_MARK}".lstrip() if verdict is Verdict.CARE else spread
-    mean = f"{value.mean:.1f}"
-    return _figure("0.0" if float(mean) == 0 else mean.replace("-", MINUS), spread, is_grey=not is_mean_enough(value.n))
+    return _figure(fixed(value.mean, decimals), spread, is_grey=not is_mean_enough(value.n))
 
 
 def _changed(row: Compared | SideRow) -> TextCell:
@@ -165,11 +167,13 @@ def side_weight(row: SideRow) -> float:
 
 def sentence(row: Compared) -> str:
     """A difference that lies beyond the measurement error."""
-    pattern = tr("{side} {measure} {change} from {first} to {last}: larger than its error ({error}).")
+    pattern = tr("{measure} {change} from {first} to {last}: larger than its error ({error}).")
+    if not row.measure.is_of_walk:
+        pattern = tr("{side} {measure} {change} from {first} to {last}: larger than its error ({error}).")
     measure = tr(row.measure.name)
     return pattern.format(
         side=capitalised(side_name(row.side)),
-        measure=measure[0].lower() + measure[1:],
+        measure=measure if row.measure.is_of_walk else measure[0].lower() + measure[1:],
         change=change_in_words(row.difference.difference, row.measure),
         first=row.against.letter,
         last=row.part.letter,
@@ -190,4 +194,6 @@ def side_sentence(row: SideRow, first: Side, second: Side) -> str:
 
 
 def _error(value: float, measure: Measure) -> str:
-    return f"{value:.1f}" + ("°" if measure.unit == "°" else "\N{NO-BREAK SPACE}%")
+    return fixed(value, measure.decimals) + (
+        measure.unit if measure.unit == "°" else f"\N{NO-BREAK SPACE}{measure.unit}"
+    )

@@ -62,12 +62,17 @@ LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 @dataclass(frozen=True, slots=True)
 class Measure:
-    """One figure that is compared; `column` is that of strides.csv, `kind` knee, ankle or empty."""
+    """One figure that is compared; `column` is a quantity of strides, `kind` knee, ankle or empty.
+
+    `is_of_walk`: both legs have the same, so it is told once, from the first leg that was measured.
+    """
 
     column: str
     name: str
     kind: str
     unit: str = "°"
+    decimals: int = 1
+    is_of_walk: bool = False
 
     @classmethod
     def of(cls, column: str) -> "Measure":
@@ -86,13 +91,17 @@ class Measure:
 
 
 MEASURES = (
-    Measure("knee_loading_peak_deg", later("Knee loading peak"), "knee"),
+    Measure("knee_stance_to_swing_deg", later("Knee, stance to swing"), "knee"),
+    Measure("knee_while_loading_deg", later("Knee while loading"), "knee"),
     Measure("knee_swing_peak_deg", later("Knee swing peak"), "knee"),
     Measure("knee_range_deg", later("Knee range"), "knee"),
-    Measure("ankle_stance_dorsiflexion_deg", later("Ankle stance peak"), "ankle"),
-    Measure("ankle_push_off_plantarflexion_deg", later("Ankle push-off"), "ankle"),
+    Measure("ankle_push_off_deg", later("Ankle push-off"), "ankle"),
+    Measure("ankle_rocker_deg", later("Ankle rocker"), "ankle"),
     Measure("ankle_range_deg", later("Ankle range"), "ankle"),
     Measure("stance_percent", later("Stance time, % of stride"), "", "%"),
+    Measure("stride_length_m", later("Stride length, m"), "", "m", 2),
+    Measure("speed_m_s", later("Walking speed, m/s"), "", "m/s", 2, is_of_walk=True),
+    Measure("stride_time_s", later("Stride time, s"), "", "s", 2, is_of_walk=True),
 )
 
 
@@ -290,7 +299,10 @@ class Comparison:
     def rows(self) -> tuple[Compared, ...]:
         """Every measure of each side of each part but the one told against."""
         return tuple(
-            self.compare(measure, side, part) for measure in MEASURES for side in self.sides for part in self.others
+            self.compare(measure, side, part)
+            for measure in MEASURES
+            for side in (self.sides[:1] if measure.is_of_walk else self.sides)
+            for part in self.others
         )
 
     def is_same_attachment(self, part: Part) -> bool:
@@ -367,7 +379,7 @@ def compare_sides(part: Part, sides: tuple[Side, Side]) -> tuple[SideRow, ...]:
     first, second = sides
     rows = []
     for measure in MEASURES:
-        if not all(part.is_measured(side, measure) for side in sides):
+        if measure.is_of_walk or not all(part.is_measured(side, measure) for side in sides):
             continue
         one, other = part.value(first, measure.column), part.value(second, measure.column)
         is_biased = not measure.kind and any(map(part.is_toe_off_biased, sides))

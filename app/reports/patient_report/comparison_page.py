@@ -45,6 +45,7 @@ from app.wording import capitalised, joined, tr
 from core.body import Side
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
 PLOT_WIDTH = 67 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
@@ -213,7 +214,8 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
     cells: list[Cell | str] = [_measure(measure.column)]
     for part in comparison.parts:
         value, verdict = part.value(side, measure.column), part.assessment(side, measure.column).verdict
-        shown = tr("no peak") if part.is_no_peak(side, measure.column) else marked(spread(value, 1), verdict)
+        figures = marked(spread(value, measure.decimals), verdict)
+        shown = tr("no peak") if part.is_no_peak(side, measure.column) else figures
         if verdict is Verdict.WITHHELD:
             shown = verdict_word(verdict)
         cells.append(Cell(shown, is_grey=not is_spread_enough(value.n)))
@@ -221,15 +223,24 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
         compared = comparison.compare(measure, side, part)
         found, is_told = compared.difference, compared.is_told
         words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
-        error = [fixed(found.error, 1) if is_told else NOTHING] if comparison.kind is Kind.VISITS else []
-        cells += [signed(found.difference, 1) if is_told else NOTHING, *error, words]
+        decimals = measure.decimals
+        error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Kind.VISITS else []
+        cells += [signed(found.difference, decimals) if is_told else NOTHING, *error, words]
     return cells
 
 
 def _measure(column: str) -> str:
-    if column == "stance_percent":
-        return tr("Stance, % of stride")
+    of_leg = {
+        "stance_percent": tr("Stance, % of stride"),
+        "stride_length_m": tr("Stride length, m"),
+        "speed_m_s": tr("Speed, m/s"),
+        "stride_time_s": tr("Stride time, s"),
+    }
+    if column in of_leg:
+        return of_leg[column]
     kind = tr("Knee") if column.startswith("knee") else tr("Ankle")
+    if column in EXCURSIONS_BY_COLUMN:
+        return f"{kind}: {panels.excursion_name(column)}"
     name = tr("range over the stride") if column.endswith("_range_deg") else panels.peak_name(column)
     return f"{kind}: {name}"
 

@@ -230,6 +230,18 @@ def peak_name(column: str) -> str:
     }[column]
 
 
+def excursion_name(column: str) -> str:
+    return {
+        "knee_while_loading_deg": tr("bend while loading"),
+        "knee_straightening_deg": tr("straightening in stance"),
+        "knee_stance_to_swing_deg": tr("stance to swing"),
+        "ankle_heel_rocker_deg": tr("heel rocker"),
+        "ankle_rocker_deg": tr("ankle rocker"),
+        "ankle_push_off_deg": tr("push\u2011off"),
+        "ankle_toes_lifted_deg": tr("toes lifted"),
+    }[column]
+
+
 def spans_of(kind: str) -> dict[str, Span]:
     """Where each peak of a joint is looked for, by its column of strides.csv."""
     names = {

@@ -337,13 +337,14 @@ def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     unit, decimals = unit_and_decimals(row.measure.column)
     is_visits = comparison is not None and comparison.kind is Kind.VISITS
     pattern = (
-        tr("{side}, {measure}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
+        tr("{what}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
         if is_visits
-        else tr("{side}, {measure}: {value} at {this}, {other} at {first}; difference {difference}, error {error}.")
+        else tr("{what}: {value} at {this}, {other} at {first}; difference {difference}, error {error}.")
     )
+    measure = measure_in_words(row.measure.column)
+    of_leg = tr("{side}, {measure}").format(side=role(facts, row.side), measure=measure)
     return pattern.format(
-        side=capitalised(role(facts, row.side)),
-        measure=measure_in_words(row.measure.column),
+        what=capitalised(measure if row.measure.is_of_walk else of_leg),
         value=fixed(row.value.mean, decimals) + unit,
         other=fixed(row.other.mean, decimals) + unit,
         this=typed(row.part.name, CONDITION_LENGTH),
@@ -372,6 +373,8 @@ def unit_and_decimals(column: str) -> tuple[str, int]:
     """A column's unit as it follows a number, and its decimals."""
     if column.endswith("_deg"):
         return "°", 1
+    if column.endswith("_m_s"):
+        return "\u00a0m/s", 2
     return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
 
 
@@ -381,6 +384,8 @@ def measure_in_words(column: str) -> str:
         "stance_percent": tr("stance, share of the stride"),
         "step_time_s": tr("step time"),
         "stride_length_m": tr("stride length"),
+        "speed_m_s": tr("walking speed"),
+        "stride_time_s": tr("stride time"),
         "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
         "knee_while_loading_deg": tr("knee bend while loading"),
         "knee_straightening_deg": tr("knee straightening in stance"),

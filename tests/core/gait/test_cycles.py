@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from core.gait.cycles import PeakWindow, cycles_of, find_peak, mean_cycle, range_of_cycles
+from core.gait.cycles import (
+    EXCURSIONS,
+    POINTS,
+    PeakWindow,
+    cycles_of,
+    excursion_of_cycles,
+    find_peak,
+    mean_cycle,
+    range_of_cycles,
+)
 from core.gait.symmetry import curve_difference, gait_variable_score, symmetry_index_percent
 
 TIME_S = np.arange(0.0, 5.0, 0.01)
@@ -91,3 +100,19 @@ def test_one_missing_sample_anywhere_makes_its_stride_missing_throughout(lost: i
     cycles = cycles_of(TIME_S, broken, start_s, start_s + 1.1)
     assert np.isnan(cycles[0]).all()
     assert np.isfinite(cycles[1]).all() == (lost < 161)
+
+
+def test_an_excursion_is_the_height_of_neither_end_and_none_without_a_peak() -> None:
+    percent = np.arange(POINTS)
+    knee = 10.0 * np.exp(-(((percent - 15) / 6) ** 2)) + 60.0 * np.exp(-(((percent - 73) / 9) ** 2))
+    knee = np.tile(knee, (4, 1))
+    found = {one.name: excursion_of_cycles(knee, one) for one in EXCURSIONS if one.name.startswith("knee")}
+    assert found["knee_stance_to_swing"] == pytest.approx(60.0, abs=0.3)
+    assert found["knee_while_loading"] == pytest.approx(10.0, abs=0.3)
+    raised = {one.name: excursion_of_cycles(knee + 12.0, one) for one in EXCURSIONS if one.name.startswith("knee")}
+    for name, values in found.items():
+        np.testing.assert_allclose(raised[name], values, atol=1e-12)
+    without_loading = np.tile(60.0 * np.exp(-(((percent - 73) / 9) ** 2)) + 0.1 * percent, (4, 1))
+    loading = next(one for one in EXCURSIONS if one.name == "knee_while_loading")
+    assert np.isnan(excursion_of_cycles(without_loading, loading)).all()
+    assert excursion_of_cycles(np.empty((0, POINTS)), loading).shape == (0,)

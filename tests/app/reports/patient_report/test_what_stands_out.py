@@ -5,13 +5,23 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.reports.comparison import MEASURES
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
+from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.request import ReportRequest, Visit
-from app.reports.patient_report.what_stands_out import MAX_FINDINGS, findings, what_stands_out
+from app.reports.patient_report.what_stands_out import (
+    BETWEEN_LEGS,
+    MAX_FINDINGS,
+    findings,
+    measure_in_words,
+    unit_and_decimals,
+    what_stands_out,
+)
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
 from core.verdicts.gates import judged
+from core.verdicts.quantities import QUANTITIES, QuantityClass
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
 
 NO_DIFFERENCE = "No difference is larger than its error."
@@ -53,9 +63,8 @@ def raised(analysis: Analysis, joint: Joint, by_deg: float) -> Analysis:
     """One joint's curve lying higher as a whole, as a zero taken in another posture makes it."""
     walk = walk_of(analysis)
     found, kind = walk.gait[joint.side], "knee" if joint.is_knee else "ankle"
-    is_height = {
-        name: name.startswith(kind) and "range" not in name and "percent" not in name for name in found.parameters
-    }
+    heights = {name for name, of in QUANTITIES.items() if of is QuantityClass.HEIGHT and name.startswith(kind)}
+    is_height = {name: name.replace("_rad", "_deg") in heights for name in found.parameters}
     parameters = {
         name: values + np.deg2rad(by_deg) if is_height[name] else values for name, values in found.parameters.items()
     }
@@ -234,3 +243,34 @@ def test_no_sentence_judges(request_of_demonstration: ReportRequest) -> None:
     words = " ".join([*said(request_of_demonstration), *said(request_of_demonstration, analysis)]).lower()
     for word in ("better", "worse", "normal", "significant", "improved", "mostly"):
         assert word not in words
+
+
+def test_every_quantity_has_its_unit_and_what_is_compared_has_a_name() -> None:
+    units = {column: unit_and_decimals(column)[0].strip() for column in QUANTITIES}
+    assert units["speed_m_s"] == "m/s"
+    assert units["stride_length_m"] == "m"
+    assert units["knee_stance_to_swing_deg"] == "°"
+    assert set(units.values()) == {"°", "%", "s", "m", "m/s"}
+    for column in {*BETWEEN_LEGS, *(measure.column for measure in MEASURES)}:
+        assert measure_in_words(column)
+
+
+def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    both = with_more(
+        with_more(analysis, Side.LEFT, "knee_range_rad", -25.0), Side.LEFT, "knee_stance_to_swing_rad", -20.0
+    )
+    said = " ".join(lines(request_of_demonstration, both))
+    assert "bends" in said
+    assert "from stance to swing" in said
+    assert "moves" not in said
+    alone = " ".join(lines(request_of_demonstration, with_more(analysis, Side.LEFT, "knee_range_rad", -25.0)))
+    assert "The left knee moves" in alone
+    loading = with_more(analysis, Side.LEFT, "knee_while_loading_rad", -20.0)
+    assert "while loading than the right" in " ".join(lines(request_of_demonstration, loading))
+    ankle = with_more(analysis, Side.LEFT, "ankle_push_off_rad", -25.0)
+    assert "ankle" not in " ".join(lines(request_of_demonstration, ankle))  # its error is borrowed
+
+
+def lines(request: ReportRequest, analysis: Analysis) -> list[str]:
+    return findings(Facts(Visit(request.visit.session, analysis), walk_of(analysis)), None)
