@@ -30,8 +30,8 @@ def degrees_in_words(value: float | np.floating, decimals: int = 1) -> str:
 
 
 def angle_in_words(value: float) -> str:
-    """A label of an axis, in whole degrees."""
-    return f"{value:.0f}".replace("-", "\N{MINUS SIGN}")
+    """A label of an axis, in whole degrees; never minus zero."""
+    return f"{round(value)}".replace("-", "\N{MINUS SIGN}")
 
 
 def joint_of(side: Side, is_knee: bool) -> Joint:

@@ -32,3 +32,9 @@ class Frame:
     def y(self, angle_deg: FloatArray | float) -> FloatArray:
         height_deg = np.asarray(angle_deg, dtype=np.float64) - self.low_deg
         return np.asarray(self.bottom - self.height * height_deg / (self.high_deg - self.low_deg))
+
+    def percent_at(self, x: float) -> float:
+        return 100 * (x - self.left) / self.width
+
+    def angle_at(self, y: float) -> float:
+        return self.low_deg + (self.high_deg - self.low_deg) * (self.bottom - y) / self.height

@@ -1,32 +1,310 @@
-"""Painting on the screen: the parts of a chart in the theme's colours."""
+"""Painting on the screen: a chart of the stride in the theme's colours, its axes, curves, letters and marks."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 import numpy as np
+import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPolygonF
+from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen, QPolygonF
 
+from app.charts.axes import AXIS_WIDTH, angle_in_words, degrees_in_words
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
 from app.charts.marks import Deviation, Gap, Point
-from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, MarkPlace, place_mark
+from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, MarkPlace, ground_of, place_mark
+from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
 from app.icons import Icon, paint_icon
 from app.tokens import Theme
+from app.wording import later, tr
 from core.body import Side
 from core.samples import FloatArray
 
+LABEL_HEIGHT = 24  # toe-off stands above the plot
+TICKS_HEIGHT = 24
+RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
+TICK, TICK_PERCENT = 4, 20
+SIMULATED = later("SIMULATED")
+MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 2.0, 1.0, 1.5
+STRIDE_ALPHA = 0.7
+SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
+FIRST_PX, LAST_PX, FIRST_ALPHA = 1.25, 2.75, 0.65  # of curves that are compared
+COMPARED_TOE_OFF_PX, COMPARED_DASH_PX = 0.75, (9.0, 5.0)
+DOT, LETTER_PX, LETTERS_APART = 10, 12, 4  # DOT: radius of a letter's circle
+LEADER_PERCENT = 16  # from where the curves are read to their letters
 BAR_PX, HAIRLINE_PX, DOT_RADIUS, DOT_EDGE_PX = 2.5, 1.0, 5.0, 2.0
 LINE_HEIGHT, WORDS_SIZE, TRIANGLE, TRIANGLE_APART = 16, 12, 16, 4
 GAP_BAR, GAP_ROW, LETTER_APART = 4, 6, 4
 AT_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 AT_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+AT_CENTRE = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
 
 
-def polygon(x: FloatArray, y: FloatArray) -> QPolygonF:
-    return QPolygonF([QPointF(*at) for at in zip(x.tolist(), y.tolist(), strict=True)])
+def frame_of(theme: Theme, width: float, height: float, chart: StrideChart) -> Frame:
+    """The room inside the axes of a chart of this size, px."""
+    left, top = theme.px(AXIS_WIDTH), theme.px(LABEL_HEIGHT)
+    inside = width - left - theme.px(RIGHT_MARGIN), height - top - theme.px(TICKS_HEIGHT)
+    return Frame(left, top, *inside, chart.axis.low, chart.axis.high)
 
 
-def place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> MarkPlace:
+def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: StrideChart) -> None:
+    """Draw a chart whose plot is `frame`, in a widget of this width."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    if (band := chart.band) is not None:
+        with _clipped(painter, frame):
+            for sds, colour in ((2, theme.colours.band_2sd), (1, theme.colours.band_1sd)):
+                _fill(painter, frame, band.mean_deg, sds * band.sd_deg, QColor(colour))
+    _paint_axes(painter, theme, frame, chart)
+    with _clipped(painter, frame):
+        _paint_gaps(painter, theme, frame, chart)
+        if chart.is_comparison:
+            for curve in chart.curves:
+                _paint_toe_off(painter, frame, curve, _pen(theme, curve, COMPARED_TOE_OFF_PX))
+        for curve in chart.curves:
+            if curve.sd_deg is not None:
+                _fill(painter, frame, curve.angle_deg, curve.sd_deg, theme.band(curve.side))
+        for curve in chart.curves:
+            _paint_strides(painter, theme, frame, curve)
+        for curve in chart.curves:
+            if curve.is_known:
+                _paint_mean(painter, theme, frame, curve)
+        if chart.chosen is not None:
+            _paint_chosen(painter, theme, frame, *chart.chosen)
+    if chart.is_comparison:
+        _paint_letters(painter, theme, frame, chart)
+    else:
+        _paint_toe_offs(painter, theme, frame, width, chart)
+    if chart.is_simulated:
+        painter.setFont(theme.font(12, QFont.Weight.DemiBold))
+        painter.setPen(QColor(theme.colours.ink))
+        painter.drawText(QRectF(0, 0, width, frame.top), AT_LEFT, tr(SIMULATED))
+    _paint_gap_bars(painter, theme, frame, chart.gaps)
+    for deviation, place in zip(chart.deviations, places_of(theme, frame, chart), strict=True):
+        _paint_deviation(painter, theme, frame, deviation, place)
+
+
+def places_of(theme: Theme, frame: Frame, chart: StrideChart) -> list[MarkPlace]:
+    """Where each deviation finds room, px."""
+    ground = ground_of(frame, chart, _gap_boxes(theme, frame, chart.gaps))
+    return [_place_deviation(theme, ground, deviation) for deviation in chart.deviations]
+
+
+def paint_cursor(
+    painter: QPainter, theme: Theme, frame: Frame, curves: Sequence[StrideCurve], readings: Mapping[Side, float]
+) -> None:
+    """A line at each leg's place, percent, with the angle there; solid at the left leg's, dashed at the right's."""
+    font, row = theme.font(12, QFont.Weight.DemiBold), theme.px(LINE_HEIGHT)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setFont(font)
+    for number, curve in enumerate(curve for curve in curves if not curve.is_withheld):
+        percent = readings.get(curve.side)
+        if percent is None or not curve.is_known:
+            continue
+        angle_deg = float(np.interp(percent, PERCENT, curve.angle_deg))
+        at = _at(frame, percent, angle_deg)
+        pen = theme.pen(theme.colours.ink, 1.5)
+        pen.setStyle(Qt.PenStyle.SolidLine if curve.side is Side.LEFT else Qt.PenStyle.DashLine)
+        painter.setPen(pen)
+        painter.drawLine(QPointF(at.x(), frame.top), QPointF(at.x(), frame.bottom))
+        painter.setPen(theme.pen(theme.curve(curve.side), 2))
+        painter.setBrush(theme.curve(curve.side) if curve.side is Side.LEFT else QColor(theme.colours.surface))
+        painter.drawEllipse(at, theme.px(DOT_RADIUS), theme.px(DOT_RADIUS))
+        words = f"{curve.letter} {degrees_in_words(angle_deg)}"
+        width = QFontMetrics(font).horizontalAdvance(words)
+        left = at.x() + theme.px(6) if at.x() + theme.px(6) + width < frame.right else at.x() - theme.px(6) - width
+        box = QRectF(left, frame.bottom - (number + 1) * row - theme.px(2), width + 1, row)
+        painter.fillRect(box, QColor(theme.colours.surface))
+        painter.setPen(theme.text(curve.side))
+        painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, words)
+
+
+def paint_letter(
+    painter: QPainter, theme: Theme, letter: str, centre: QPointF, colour: QColor, is_filled: bool
+) -> None:
+    """Draw a letter in its circle, filled or hollow."""
+    c, radius = theme.colours, DOT * theme.scale
+    painter.setPen(theme.pen(colour, 1.5))
+    painter.setBrush(colour if is_filled else QColor(c.surface))
+    painter.drawEllipse(centre, radius, radius)
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QColor(c.ground if theme.is_dark else c.surface) if is_filled else colour)
+    painter.setFont(theme.font(LETTER_PX, QFont.Weight.DemiBold))
+    room = QRectF(centre.x() - radius, centre.y() - radius, 2 * radius, 2 * radius)
+    painter.drawText(room, Qt.AlignmentFlag.AlignCenter, letter)
+
+
+@contextmanager
+def _clipped(painter: QPainter, frame: Frame) -> Iterator[None]:
+    painter.save()
+    painter.setClipRect(QRectF(frame.left, frame.top, frame.width, frame.height))
+    yield
+    painter.restore()
+
+
+def _at(frame: Frame, percent: float, angle_deg: float) -> QPointF:
+    return QPointF(float(frame.x(percent)), float(frame.y(angle_deg)))
+
+
+def _polygon(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> QPolygonF:
+    return pg.functions.arrayToQPolygonF(frame.x(percent), frame.y(angle_deg))
+
+
+def _fill(painter: QPainter, frame: Frame, mean: FloatArray, reach: FloatArray, colour: QColor) -> None:
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(colour)
+    there_and_back = np.concatenate([PERCENT, PERCENT[::-1]])
+    painter.drawPolygon(_polygon(frame, there_and_back, np.concatenate([mean - reach, (mean + reach)[::-1]])))
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def _paint_axes(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
+    axis, tick = chart.axis, theme.px(TICK)
+    painter.setFont(theme.font(12))
+    line, ink = _flat(theme.pen(theme.colours.control, 1)), QColor(theme.colours.ink2)
+    painter.setPen(line)
+    painter.drawLine(_at(frame, 0, 0), _at(frame, 100, 0))
+    painter.drawLine(QPointF(frame.left, frame.bottom), QPointF(frame.left, frame.top))
+    painter.drawLine(QPointF(frame.left, frame.bottom), QPointF(frame.right, frame.bottom))
+    first = np.ceil(axis.low / axis.label_every) * axis.label_every
+    for angle in np.arange(first, axis.high + 1, axis.label_every):
+        y = float(frame.y(angle))
+        painter.setPen(line)
+        painter.drawLine(QPointF(frame.left - tick, y), QPointF(frame.left, y))
+        painter.setPen(ink)
+        room = QRectF(0, y - frame.height, frame.left - 2 * tick, 2 * frame.height)
+        painter.drawText(room, AT_RIGHT, angle_in_words(angle))
+    for percent in range(0, 101, TICK_PERCENT):
+        x = float(frame.x(percent))
+        painter.setPen(line)
+        painter.drawLine(QPointF(x, frame.bottom), QPointF(x, frame.bottom + tick))
+        painter.setPen(ink)
+        room = QRectF(x - frame.width, frame.bottom + tick, 2 * frame.width, theme.px(TICKS_HEIGHT) - tick)
+        painter.drawText(room, AT_CENTRE, f"{percent}" if percent < 100 else "100 %")
+
+
+def _paint_strides(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
+    """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean stands out."""
+    is_few = len(curve.strides_deg) <= SMOOTH_UP_TO
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
+    colour = theme.curve(curve.side) if is_few else theme.soft(curve.side)
+    if curve.is_withheld:
+        colour = QColor(theme.colours.control)  # evidence, not to be read
+    colour.setAlphaF(STRIDE_ALPHA if is_few else 1.0)
+    painter.setPen(QPen(colour, STRIDE_PX * theme.scale if is_few else 0))
+    for stride_deg in curve.strides_deg:
+        painter.drawPolyline(_polygon(frame, PERCENT, stride_deg))
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+
+
+def _width_px(curve: StrideCurve) -> float:
+    return MEAN_PX if curve.order is None else FIRST_PX + _lateness(curve) * (LAST_PX - FIRST_PX)
+
+
+def _lateness(curve: StrideCurve) -> float:
+    """0 of the earliest curve of a comparison, 1 of the last and of one alone."""
+    k, count = curve.order or (0, 1)
+    return k / (count - 1) if count > 1 else 1.0
+
+
+def _pen(theme: Theme, curve: StrideCurve, width: float | None = None) -> QPen:
+    """Left solid, right dashed; of curves that are compared thin and pale to begin with, thick at the end."""
+    full = _width_px(curve)
+    pen = theme.side_pen(curve.side, full)
+    if curve.order is not None:
+        if curve.side is Side.RIGHT:
+            pen.setDashPattern([length / full for length in COMPARED_DASH_PX])  # of one length, however thick
+        colour = theme.text(curve.side) if not theme.is_dark else theme.curve(curve.side)
+        if curve.is_few:
+            colour = QColor(theme.colours.control)
+        colour.setAlphaF(FIRST_ALPHA + _lateness(curve) * (1 - FIRST_ALPHA))
+        pen.setColor(colour)
+    if width is not None:
+        pen.setWidthF(width * theme.scale)
+    return pen
+
+
+def _flat(pen: QPen) -> QPen:
+    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
+    return pen
+
+
+def _paint_mean(painter: QPainter, theme: Theme, frame: Frame, curve: StrideCurve) -> None:
+    """On a casing that lifts it off the band."""
+    line = _polygon(frame, PERCENT, curve.angle_deg)
+    painter.setPen(_flat(theme.pen(theme.colours.surface, _width_px(curve) + CASING_PX)))
+    painter.drawPolyline(line)
+    painter.setPen(_pen(theme, curve))
+    painter.drawPolyline(line)
+
+
+def _paint_chosen(painter: QPainter, theme: Theme, frame: Frame, side: Side, stride_deg: FloatArray) -> None:
+    """The stride in force in ink, whether it is used or not; solid or dashed, as its side is."""
+    line = _polygon(frame, PERCENT, stride_deg)
+    painter.setPen(theme.pen(theme.colours.surface, MEAN_PX + CASING_PX))
+    painter.drawPolyline(line)
+    pen = theme.side_pen(side, MEAN_PX)
+    pen.setColor(QColor(theme.colours.ink))
+    painter.setPen(pen)
+    painter.drawPolyline(line)
+
+
+def _paint_toe_off(painter: QPainter, frame: Frame, curve: StrideCurve, pen: QPen) -> None:
+    if np.isfinite(curve.toe_off_percent):
+        x = float(frame.x(curve.toe_off_percent))
+        painter.setPen(pen)
+        painter.drawLine(QPointF(x, frame.top), QPointF(x, frame.bottom))
+
+
+def _paint_toe_offs(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: StrideChart) -> None:
+    """Each side's toe-off with its words above the plot, the earlier at the left of its line."""
+    painter.setFont(theme.font(12, QFont.Weight.DemiBold))
+    metrics = QFontMetrics(theme.font(12, QFont.Weight.DemiBold))
+    least = metrics.horizontalAdvance(tr(SIMULATED)) + theme.px(8) if chart.is_simulated else 0.0
+    labels = toe_off_labels(chart.curves)
+    for i, curve in enumerate(toe_offs_in_order(chart.curves, 0)):
+        _paint_toe_off(painter, frame, curve, theme.side_pen(curve.side, TOE_OFF_PX))
+        painter.setPen(theme.text(curve.side))
+        x, label = float(frame.x(curve.toe_off_percent)), labels[curve.side]
+        needed = metrics.horizontalAdvance(label) + 1
+        left = x - needed - theme.px(4) if i == 0 else x + theme.px(4)
+        left = min(max(left, least), width - needed)
+        painter.drawText(QRectF(left, 0, needed, frame.top), AT_LEFT, label)
+
+
+def _paint_letters(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
+    """Each curve's letter beside it, the last one's filled."""
+    for curve, centre, on_curve in _letters(theme, frame, [curve for curve in chart.curves if curve.is_known]):
+        painter.setPen(theme.pen(theme.colours.ink2, 0.75))
+        way = 1 if centre.x() > on_curve.x() else -1
+        elbow = QPointF(centre.x() - way * theme.px(DOT + 8), centre.y())
+        painter.drawLine(on_curve, elbow)
+        painter.drawLine(elbow, centre)
+        is_last = curve.letter == chart.curves[-1].letter
+        paint_letter(painter, theme, curve.letter, centre, theme.text(curve.side), is_last)
+
+
+def _letters(theme: Theme, frame: Frame, curves: Sequence[StrideCurve]) -> list[tuple[StrideCurve, QPointF, QPointF]]:
+    """The centre of each curve's letter, and the point of the curve where it is read: where they lie furthest apart.
+
+    The circles stand above one another in the order of the curves, beside them, inside the plot.
+    """
+    if not curves:
+        return []
+    means = np.array([curve.angle_deg for curve in curves])
+    at = int(np.argmax(np.ptp(means[:, 5:96], axis=0))) + 5 if len(curves) > 1 else int(np.argmax(means[0]))
+    order = np.argsort(-means[:, at], kind="stable")
+    spacing = min(theme.px(2 * DOT + LETTERS_APART), (frame.height - theme.px(2 * DOT)) / len(order))
+    percent = at + LEADER_PERCENT if at + LEADER_PERCENT < 95 else at - LEADER_PERCENT
+    height = spacing * (len(order) - 1)
+    top = float(frame.y(float(means[:, at].mean()))) - height / 2
+    top = min(max(top, frame.top + theme.px(DOT + 1)), frame.bottom - theme.px(DOT + 1) - height)
+    return [
+        (curves[k], QPointF(float(frame.x(percent)), top + row * spacing), _at(frame, at, float(means[k, at])))
+        for row, k in enumerate(order)
+    ]
+
+
+def _place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> MarkPlace:
     """Where a difference finds room, in px."""
     frame = ground.frame
     ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
@@ -38,13 +316,13 @@ def place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> MarkP
     return place_mark(ground, ends, sizes, USUAL_EMPTY_PERCENT[deviation.is_knee])
 
 
-def paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: MarkPlace) -> None:
+def _paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: MarkPlace) -> None:
     """Dots on both points, hairlines to the bar between their heights, and the words beside it."""
     colour = theme.colours.ink if deviation.is_larger_than_error else theme.colours.control
     for point in deviation.points:
-        x, y = float(frame.x(point.percent)), float(frame.y(point.angle_deg))
+        at = _at(frame, point.percent, point.angle_deg)
         painter.setPen(theme.pen(colour, HAIRLINE_PX))
-        painter.drawLine(QPointF(x, y), QPointF(place.bar_x, y))
+        painter.drawLine(at, QPointF(place.bar_x, at.y()))
     painter.setPen(theme.pen(colour, BAR_PX))
     painter.drawLine(QPointF(place.bar_x, place.top), QPointF(place.bar_x, place.bottom))
     for point in deviation.points:
@@ -52,20 +330,20 @@ def paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: De
     _paint_words(painter, theme, deviation, place)
 
 
-def paint_gaps(
-    painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence[Gap], curves: Mapping[Side, FloatArray]
-) -> None:
-    """Fill what lies between each curve (101,) and the limit that it leaves."""
+def _paint_gaps(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
+    """Fill what lies between each curve and the limit that it leaves."""
+    curves = {curve.side: curve.angle_deg for curve in chart.curves}
     painter.setPen(Qt.PenStyle.NoPen)
-    for gap in gaps:
+    for gap in chart.gaps:
         at = slice(gap.first_percent, gap.last_percent + 1)
-        x, curve, limit = frame.x(PERCENT[at]), frame.y(curves[gap.joint.side][at]), frame.y(gap.limit_deg[at])
+        there_and_back = np.concatenate([PERCENT[at], PERCENT[at][::-1]])
+        outline = np.concatenate([curves[gap.joint.side][at], gap.limit_deg[at][::-1]])
         painter.setBrush(theme.soft(gap.joint.side))
-        painter.drawPolygon(polygon(np.concatenate([x, x[::-1]]), np.concatenate([curve, limit[::-1]])))
+        painter.drawPolygon(_polygon(frame, there_and_back, outline))
     painter.setBrush(Qt.BrushStyle.NoBrush)
 
 
-def paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> None:
+def _paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> None:
     """Mark the gaps on the axis by bars, the right leg's above the left one's; the longest has its letter."""
     for gap in gaps:
         painter.fillRect(_rect(_gap_bar(theme, frame, gap)), theme.curve(gap.joint.side))
@@ -75,7 +353,7 @@ def paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence
         painter.drawText(_rect(box), AT_LEFT, gap.joint.side[0].upper())
 
 
-def gap_boxes(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[Box]:
+def _gap_boxes(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[Box]:
     """What the gaps' bars and letters take, px."""
     return [_gap_bar(theme, frame, gap) for gap in gaps] + [box for _, box in _gap_letters(theme, frame, gaps)]
 
@@ -111,7 +389,7 @@ def _rect(box: Box) -> QRectF:
 
 def _paint_dot(painter: QPainter, theme: Theme, frame: Frame, point: Point) -> None:
     """Left filled, right outlined."""
-    side, centre = point.joint.side, QPointF(float(frame.x(point.percent)), float(frame.y(point.angle_deg)))
+    side, centre = point.joint.side, _at(frame, point.percent, point.angle_deg)
     colour, surface = theme.curve(side), QColor(theme.colours.surface)
     is_left = side is Side.LEFT
     painter.setPen(theme.pen(surface if is_left else colour, DOT_EDGE_PX))

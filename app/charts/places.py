@@ -5,7 +5,10 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
+from app.charts.marks import BAND_SDS
+from app.charts.stride_chart import StrideChart, toe_offs_in_order
 from core.samples import FloatArray
 
 USUAL_EMPTY_PERCENT = {True: 50.0, False: 43.0}  # of a knee and an ankle: between the stance's curve and the swing's
@@ -81,6 +84,19 @@ class MarkPlace:
     @property
     def are_words_at_right(self) -> bool:
         return self.words is not None and self.words.left > self.bar_x
+
+
+def ground_of(frame: Frame, chart: StrideChart, taken: Sequence[Box] = ()) -> Ground:
+    """What a chart draws before its marks."""
+    curves = [line_of(frame, PERCENT, curve.angle_deg) for curve in chart.curves if curve.is_known]
+    edges = []
+    if (band := chart.band) is not None:
+        reach = BAND_SDS * band.sd_deg
+        edges = [
+            line_of(frame, PERCENT, edge) for edge in (band.mean_deg - reach, band.mean_deg, band.mean_deg + reach)
+        ]
+    uprights = [float(frame.x(curve.toe_off_percent)) for curve in toe_offs_in_order(chart.curves, 0)]
+    return Ground(frame, curves, edges, uprights, list(taken))
 
 
 def line_of(frame: Frame, percent: FloatArray, angle_deg: FloatArray) -> FloatArray:

@@ -6,7 +6,7 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.charts.axes import ANKLE_DEG, KNEE_DEG, joint_of
+from app.charts.axes import joint_of
 from app.charts.cycles import Band, SideCycle
 from app.icons import Icon
 from app.pages.compared_words import (
@@ -114,7 +114,7 @@ class ComparePage(Themed):
         self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
         for is_knee in (True, False):
             for side in Side:
-                chart = ComparedChart(look, side, KNEE_DEG if is_knee else ANKLE_DEG)
+                chart = ComparedChart(look, side, is_knee=is_knee)
                 self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
         self.side_charts = CycleCharts(look, reference_curves())
         self.title = Text(look, size=16, weight=SEMIBOLD)
@@ -377,8 +377,7 @@ class ComparePage(Themed):
             is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
             is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
             lines = [line_of(part, joint, is_about_mean=is_about_mean) for part in worn]
-            is_beside_band = curves is not None and side in sides and not is_about_mean
-            kind = "knee" if is_knee else "ankle"
+            is_beside_band, kind = curves is not None and side in sides, "knee" if is_knee else "ankle"
             frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
             notes = [tr(OTHER_ZERO)] if is_about_mean else []
             notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]

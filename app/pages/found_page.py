@@ -17,10 +17,10 @@ from PySide6.QtWidgets import (
 )
 
 from app.body_words import segment_name
+from app.charts.on_screen import SIMULATED
 from app.icons import SEVERITY_ICONS, Icon
 from app.pages.sentence_page import SentencePage
 from app.plots.cost_map import CostMap
-from app.plots.cycle_chart import SIMULATED
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.reports.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of

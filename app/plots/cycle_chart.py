@@ -3,20 +3,15 @@
 The chart paints itself: nobody zooms a stride, and so every label finds its place.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-import pyqtgraph as pg
 from PySide6.QtCore import QPointF, QRectF, QSize, Qt, Signal
-from PySide6.QtGui import QColor, QFontMetrics, QMouseEvent, QPainter, QPaintEvent, QPen, QPixmap, QPolygonF
+from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPixmap
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy
 
 from app.charts.axes import (
-    ABOUT_MEAN_DEG,
-    ANKLE_DEG,
-    AXIS_WIDTH,
-    KNEE_DEG,
     degrees_in_words,
     joint_of,
     nothing_in_words,
@@ -26,11 +21,19 @@ from app.charts.axes import (
     sign_in_words,
     title_in_words,
 )
-from app.charts.cycles import PERCENT, Band, SideCycle, is_mean_enough, is_spread_enough
+from app.charts.cycles import Band, SideCycle
 from app.charts.frame import Frame
-from app.charts.marks import BAND_SDS, MOST_MARKS, Deviation, Gap, Point
-from app.charts.on_screen import gap_boxes, paint_deviation, paint_gap_bars, paint_gaps, place_deviation
-from app.charts.places import Ground, MarkPlace, line_of
+from app.charts.marks import MOST_MARKS, Deviation, Gap, Point
+from app.charts.on_screen import frame_of, paint, paint_cursor, places_of
+from app.charts.places import MarkPlace
+from app.charts.stride_chart import (
+    SCREEN_TICK_DEG,
+    Axis,
+    StrideChart,
+    StrideCurve,
+    curves_of_walk,
+    usual_range_deg,
+)
 from app.icons import Icon
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
 from app.theme import Look
@@ -48,21 +51,11 @@ from core.samples import FloatArray
 from core.verdicts.model import JointVerdicts, Verdict
 
 LEAST_SIZE = (284, 156)
-LABEL_HEIGHT = 24  # toe-off stands above the plot
-TICKS_HEIGHT = 24
-RIGHT_MARGIN = 20  # half of "100 %" stands beside the plot
-TICK = 4
-TICK_DEG = 20
-TICK_PERCENT = 20
-MEAN_PX, CASING_PX, STRIDE_PX, TOE_OFF_PX = 2.5, 4.5, 1.0, 1.5
-STRIDE_ALPHA = 0.7
 DOUBTS = {
     NO_ZERO: later("{sides}: no zero. Range and shape hold, height does not."),
     NO_HEIGHT: later("{sides}: the height cannot be read. Range and shape hold."),
     MAY_BE_MIRRORED: later("{sides}: sign unsure. The curve may be upside down."),
 }
-SMOOTH_UP_TO = 40  # strides; smooth lines take ten times as long
-SIMULATED = later("SIMULATED")
 
 
 class CycleCharts(Themed):
@@ -73,7 +66,7 @@ class CycleCharts(Themed):
     def __init__(self, look: Look, reference: ReferenceCurves) -> None:
         super().__init__()
         self._look = look
-        knee, ankle = CycleChart(look, KNEE_DEG), CycleChart(look, ANKLE_DEG)
+        knee, ankle = CycleChart(look, is_knee=True), CycleChart(look, is_knee=False)
         self.knee = CycleFrame(look, knee, is_knee=True)
         self.ankle = CycleFrame(look, ankle, is_knee=False)
         self._box = QBoxLayout(QBoxLayout.Direction.TopToBottom, self)
@@ -252,8 +245,7 @@ class CycleFrame(Card):
     def _show_chart(self) -> None:
         """Leave it away where nothing of it could be seen: the panels then take its place."""
         chart = self.chart
-        is_empty = bool(chart.cycles) and not any(chart.is_drawn(side) for side in chart.cycles)
-        chart.setVisible(not is_empty)
+        chart.setVisible(not (chart.cycles and chart.is_empty))
 
     def in_words(self) -> str:
         """Say each side's mean curve, for who cannot see it."""
@@ -312,10 +304,10 @@ class CycleChart(Themed):
 
     picked = Signal(float, float)  # percent of the stride, degrees
 
-    def __init__(self, look: Look, fixed_deg: tuple[float, float]) -> None:
+    def __init__(self, look: Look, *, is_knee: bool) -> None:
         super().__init__()
-        self._look, self._fixed = look, fixed_deg
-        self.range_deg = fixed_deg
+        self._look, self._is_knee = look, is_knee
+        self.range_deg = usual_range_deg(is_knee=is_knee, is_about_mean=False)
         self.cycles: Mapping[Side, SideCycle] = {}
         self.band: Band | None = None
         self.is_simulated = False
@@ -335,7 +327,7 @@ class CycleChart(Themed):
 
     @property
     def _usual_deg(self) -> tuple[float, float]:
-        return ABOUT_MEAN_DEG.get(self._fixed, self._fixed) if self.is_about_mean else self._fixed
+        return usual_range_deg(is_knee=self._is_knee, is_about_mean=self.is_about_mean)
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -359,60 +351,48 @@ class CycleChart(Themed):
         self.range_deg = range_for(self._usual_deg, means)
         self.redraw()
 
-    def is_drawn(self, side: Side) -> bool:
-        """Whether a side is to be seen: of what is withheld, single strides where they are wanted or few."""
-        return side not in self.withheld or self._has_strides_of(side)
+    @property
+    def described(self) -> StrideChart:
+        """What is drawn; no band where curves are drawn about their own mean."""
+        return StrideChart(
+            axis=Axis(*self.range_deg, SCREEN_TICK_DEG, SCREEN_TICK_DEG),
+            curves=self._curves(),
+            band=self.band if self.has_band and not self.is_about_mean else None,
+            is_simulated=self.is_simulated,
+            chosen=self.stride,
+            deviations=self.deviations,
+            gaps=self.gaps,
+        )
 
-    def _has_strides_of(self, side: Side) -> bool:
-        return self.has_strides or (side in self.withheld and not is_mean_enough(len(self.cycles[side].strides_deg)))
+    def _curves(self) -> tuple[StrideCurve, ...]:
+        return curves_of_walk(self.cycles, self.withheld, has_strides=self.has_strides)
 
-    def _means(self) -> Iterator[tuple[Side, SideCycle]]:
-        """Those whose mean may be seen."""
-        return ((side, cycle) for side, cycle in self.cycles.items() if side not in self.withheld)
+    @property
+    def is_empty(self) -> bool:
+        """Whether all sides are withheld and none has its strides shown."""
+        return all(curve.is_withheld and not len(curve.strides_deg) for curve in self._curves())
 
     @property
     def sides_with_mean(self) -> frozenset[Side]:
-        return frozenset(side for side, cycle in self._means() if cycle.mean.n)
-
-    def places(self) -> list[MarkPlace]:
-        """Where each difference that is marked finds room, px of the widget."""
-        frame = self.frame
-        curves = [line_of(frame, PERCENT, cycle.mean.mean) for _, cycle in self._means() if cycle.mean.n]
-        edges = []
-        if self._band_drawn is not None:
-            reach = BAND_SDS * self._band_drawn.sd_deg
-            edges = [self._band_drawn.mean_deg - reach, self._band_drawn.mean_deg, self._band_drawn.mean_deg + reach]
-        ground = Ground(
-            frame,
-            curves,
-            [line_of(frame, PERCENT, edge) for edge in edges],
-            [float(frame.x(percent)) for _, percent in self._toe_offs()],
-            gap_boxes(self._look.theme, frame, self.gaps),
-        )
-        return [place_deviation(self._look.theme, ground, deviation) for deviation in self.deviations]
-
-    @property
-    def _band_drawn(self) -> Band | None:
-        return self.band if self.has_band and not self.is_about_mean else None
+        return frozenset(curve.side for curve in self._curves() if curve.is_known)
 
     @property
     def frame(self) -> Frame:
-        area, (lowest, highest) = self.plot_area(), self.range_deg
-        return Frame(area.left(), area.top(), area.width(), area.height(), lowest, highest)
+        """The room inside the axes, in px of the widget."""
+        return frame_of(self._look.theme, self.width(), self.height(), self.described)
+
+    def at(self, percent: float, angle_deg: float) -> QPointF:
+        """The place of a point of the chart in px of the widget."""
+        return QPointF(float(self.frame.x(percent)), float(self.frame.y(angle_deg)))
+
+    def places(self) -> list[MarkPlace]:
+        """Where each difference that is marked finds room, px of the widget."""
+        return places_of(self._look.theme, self.frame, self.described)
 
     def redraw(self) -> None:
         """Paint anew, since what is shown has changed."""
         self._picture = None
         self.update()
-
-    def toe_off_labels(self) -> dict[Side, str]:
-        """Name each toe-off: the word at the earlier line, which has the room at its left."""
-        found = self._toe_offs()
-        labels = [tr("toe-off {side} {percent:.0f} %"), "{side} {percent:.0f} %"]
-        return {
-            side: label.format(side=LETTERS[side], percent=percent)
-            for label, (side, percent) in zip(labels, found, strict=False)
-        }
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         ratio = self.devicePixelRatioF()
@@ -420,200 +400,19 @@ class CycleChart(Themed):
             self._picture = QPixmap(self.size() * ratio)
             self._picture.setDevicePixelRatio(ratio)
             self._picture.fill(QColor(self._look.theme.colours.surface))
-            self._paint(QPainter(self._picture))
+            paint(QPainter(self._picture), self._look.theme, self.frame, self.width(), self.described)
         painter = QPainter(self)
         painter.drawPixmap(0, 0, self._picture)
-        self._paint_cursor(painter)
+        paint_cursor(painter, self._look.theme, self.frame, self.described.curves, self.readings)
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
-        area, (lowest, highest) = self.plot_area(), self.range_deg
-        at = event.position()
-        if event.button() is not Qt.MouseButton.LeftButton or not area.contains(at):
+        frame, at = self.frame, event.position()
+        is_inside = QRectF(frame.left, frame.top, frame.width, frame.height).contains(at)
+        if event.button() is not Qt.MouseButton.LeftButton or not is_inside:
             super().mousePressEvent(event)
             return
-        share = (area.bottom() - at.y()) / area.height()
-        self.picked.emit(100 * (at.x() - area.left()) / area.width(), lowest + (highest - lowest) * share)
-
-    def plot_area(self) -> QRectF:
-        """The room inside the axes, 4:3 where the page gives that much, in px of the widget."""
-        px = self._look.theme.px
-        left, top = px(AXIS_WIDTH), px(LABEL_HEIGHT)
-        return QRectF(left, top, self.width() - left - px(RIGHT_MARGIN), self.height() - top - px(TICKS_HEIGHT))
-
-    def at(self, percent: float, angle_deg: float) -> QPointF:
-        """The place of a point of the chart in px of the widget."""
-        area, (lowest, highest) = self.plot_area(), self.range_deg
-        x = area.left() + area.width() * percent / 100
-        return QPointF(x, area.bottom() - area.height() * (angle_deg - lowest) / (highest - lowest))
-
-    def _paint(self, painter: QPainter) -> None:
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.save()
-        painter.setClipRect(self.plot_area())
-        if (band := self._band_drawn) is not None:
-            for sds, colour in ((2, self._look.theme.colours.band_2sd), (1, self._look.theme.colours.band_1sd)):
-                self._fill(painter, band.mean_deg, sds * band.sd_deg, QColor(colour))
-        painter.restore()
-        self._paint_axes(painter)
-        painter.save()
-        painter.setClipRect(self.plot_area())
-        theme, frame = self._look.theme, self.frame
-        paint_gaps(painter, theme, frame, self.gaps, {side: cycle.mean.mean for side, cycle in self._means()})
-        for side, cycle in self._means():
-            if is_spread_enough(cycle.mean.n) and not self.has_strides:
-                self._fill(painter, cycle.mean.mean, cycle.mean.sd, self._look.theme.band(side))
-        for side, cycle in self.cycles.items():
-            if self._has_strides_of(side):
-                self._paint_strides(painter, side, cycle)
-        for side, cycle in self._means():
-            if cycle.mean.n:
-                self._paint_mean(painter, side, cycle)
-        if self.stride is not None:
-            self._paint_stride(painter, *self.stride)
-        painter.restore()
-        self._paint_labels(painter)
-        paint_gap_bars(painter, theme, frame, self.gaps)
-        for deviation, place in zip(self.deviations, self.places(), strict=True):
-            paint_deviation(painter, theme, frame, deviation, place)
-
-    def _paint_cursor(self, painter: QPainter) -> None:
-        """A line at each leg's place with what the curve has there; solid at the left leg's, dashed at the right's."""
-        theme, area = self._look.theme, self.plot_area()
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-        painter.setFont(theme.font(12, SEMIBOLD))
-        metrics, rows = QFontMetrics(theme.font(12, SEMIBOLD)), theme.px(16)
-        for number, (side, cycle) in enumerate(self._means()):
-            percent = self.readings.get(side)
-            if percent is None or not cycle.mean.n:
-                continue
-            angle = float(np.interp(percent, PERCENT, cycle.mean.mean))
-            at = self.at(percent, angle)
-            pen = theme.pen(theme.colours.ink, 1.5)
-            pen.setStyle(Qt.PenStyle.SolidLine if side is Side.LEFT else Qt.PenStyle.DashLine)
-            painter.setPen(pen)
-            painter.drawLine(QPointF(at.x(), area.top()), QPointF(at.x(), area.bottom()))
-            painter.setPen(theme.pen(theme.curve(side), 2))
-            painter.setBrush(theme.curve(side) if side is Side.LEFT else QColor(theme.colours.surface))
-            painter.drawEllipse(at, theme.px(5), theme.px(5))
-            words = f"{LETTERS[side]} {degrees_in_words(angle)}"
-            width = metrics.horizontalAdvance(words)
-            left = at.x() + theme.px(6) if at.x() + theme.px(6) + width < area.right() else at.x() - theme.px(6) - width
-            box = QRectF(left, area.bottom() - (number + 1) * rows - theme.px(2), width + 1, rows)
-            painter.fillRect(box, QColor(theme.colours.surface))
-            painter.setPen(theme.text(side))
-            painter.drawText(box, Qt.AlignmentFlag.AlignVCenter, words)
-
-    def _paint_axes(self, painter: QPainter) -> None:
-        theme = self._look.theme
-        area, (lowest, highest) = self.plot_area(), self.range_deg
-        tick = theme.px(TICK)
-        painter.setFont(theme.font(12))
-        line, ink = _crisp(theme.pen(theme.colours.control, 1)), QColor(theme.colours.ink2)
-        painter.setPen(line)
-        painter.drawLine(self.at(0, 0), self.at(100, 0))
-        painter.drawLine(area.bottomLeft(), area.topLeft())
-        painter.drawLine(area.bottomLeft(), area.bottomRight())
-        first = int(np.ceil(lowest / TICK_DEG)) * TICK_DEG
-        for angle in range(first, int(highest) + 1, TICK_DEG):
-            y = self.at(0, angle).y()
-            painter.setPen(line)
-            painter.drawLine(QPointF(area.left() - tick, y), QPointF(area.left(), y))
-            painter.setPen(ink)
-            room = QRectF(0, y - area.height(), area.left() - 2 * tick, 2 * area.height())
-            words = f"{angle}".replace("-", "\N{MINUS SIGN}")
-            painter.drawText(room, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter, words)
-        for percent in range(0, 101, TICK_PERCENT):
-            x = self.at(percent, 0).x()
-            painter.setPen(line)
-            painter.drawLine(QPointF(x, area.bottom()), QPointF(x, area.bottom() + tick))
-            painter.setPen(ink)
-            room = QRectF(x - area.width(), area.bottom() + tick, 2 * area.width(), theme.px(TICKS_HEIGHT) - tick)
-            words = f"{percent}" if percent < 100 else "100 %"
-            painter.drawText(room, Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter, words)
-
-    def _paint_strides(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
-        """Fine lines; of many, hairlines in the pale colour, a cloud from which the mean stands out."""
-        theme, is_few = self._look.theme, len(cycle.strides_deg) <= SMOOTH_UP_TO
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_few)
-        colour = theme.curve(side) if is_few else theme.soft(side)
-        if side in self.withheld:
-            colour = QColor(theme.colours.control)  # evidence, not to be read
-        colour.setAlphaF(STRIDE_ALPHA if is_few else 1.0)
-        painter.setPen(QPen(colour, STRIDE_PX * theme.scale if is_few else 0))
-        for stride_deg in cycle.strides_deg:
-            painter.drawPolyline(self._polygon(PERCENT, stride_deg))
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing)
-
-    def _paint_stride(self, painter: QPainter, side: Side, stride_deg: FloatArray) -> None:
-        """The stride in force in ink, whether it is used or not; solid or dashed, as its side is."""
-        theme, curve = self._look.theme, self._polygon(PERCENT, stride_deg)
-        painter.setPen(theme.pen(theme.colours.surface, CASING_PX))
-        painter.drawPolyline(curve)
-        pen = theme.side_pen(side, MEAN_PX)
-        pen.setColor(QColor(theme.colours.ink))
-        painter.setPen(pen)
-        painter.drawPolyline(curve)
-
-    def _paint_mean(self, painter: QPainter, side: Side, cycle: SideCycle) -> None:
-        """Left solid, right dashed, on a casing that lifts it off the band."""
-        theme = self._look.theme
-        curve = self._polygon(PERCENT, cycle.mean.mean)
-        casing = theme.pen(theme.colours.surface, CASING_PX)
-        casing.setCapStyle(Qt.PenCapStyle.FlatCap)
-        painter.setPen(casing)
-        painter.drawPolyline(curve)
-        painter.setPen(theme.side_pen(side, MEAN_PX))
-        painter.drawPolyline(curve)
-
-    def _paint_labels(self, painter: QPainter) -> None:
-        """Write above the plot what is simulated and where each side's toe-off is, with its line."""
-        theme, area = self._look.theme, self.plot_area()
-        painter.setFont(theme.font(12, SEMIBOLD))
-        metrics = QFontMetrics(theme.font(12, SEMIBOLD))
-        labels, lines, least = self.toe_off_labels(), self._toe_offs(), 0.0
-        if self.is_simulated:
-            least = metrics.horizontalAdvance(tr(SIMULATED)) + theme.px(8)
-            painter.setPen(QColor(theme.colours.ink))
-            room = QRectF(0, 0, self.width(), area.top())
-            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, tr(SIMULATED))
-        for i, (side, percent) in enumerate(lines):
-            x = self.at(percent, 0).x()
-            painter.setPen(theme.side_pen(side, TOE_OFF_PX))
-            painter.drawLine(QPointF(x, area.top()), QPointF(x, area.bottom()))
-            painter.setPen(theme.text(side))
-            width = metrics.horizontalAdvance(labels[side]) + 1
-            left = x - width - theme.px(4) if i == 0 else x + theme.px(4)
-            left = min(max(left, least), self.width() - width)
-            room = QRectF(left, 0, width, area.top())
-            painter.drawText(room, Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter, labels[side])
-
-    def _toe_offs(self) -> list[tuple[Side, float]]:
-        """Each side's toe-off, percent, the earlier first."""
-        known = [
-            (side, cycle.toe_off_percent)
-            for side, cycle in self._means()
-            if cycle.mean.n and np.isfinite(cycle.toe_off_percent)
-        ]
-        return sorted(known, key=lambda found: round(found[1]))  # left first where both read the same
-
-    def _fill(self, painter: QPainter, mean: FloatArray, reach: FloatArray, colour: QColor) -> None:
-        painter.setPen(Qt.PenStyle.NoPen)
-        painter.setBrush(colour)
-        there_and_back = np.concatenate([PERCENT, PERCENT[::-1]])
-        painter.drawPolygon(self._polygon(there_and_back, np.concatenate([mean - reach, (mean + reach)[::-1]])))
-        painter.setBrush(Qt.BrushStyle.NoBrush)
-
-    def _polygon(self, percent: FloatArray, angle_deg: FloatArray) -> QPolygonF:
-        area, (lowest, highest) = self.plot_area(), self.range_deg
-        x = area.left() + area.width() * percent / 100
-        y = area.bottom() - area.height() * (angle_deg - lowest) / (highest - lowest)
-        return pg.functions.arrayToQPolygonF(x, y)
+        self.picked.emit(frame.percent_at(at.x()), frame.angle_at(at.y()))
 
     def _on_look_changed(self) -> None:
         self.updateGeometry()
         self.redraw()
-
-
-def _crisp(pen: QPen) -> QPen:
-    pen.setCapStyle(Qt.PenCapStyle.FlatCap)
-    return pen

@@ -8,8 +8,8 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
+from app.charts.on_screen import DOT, paint_letter
 from app.icons import Icon, paint_icon
-from app.plots.compared_chart import DOT, paint_letter
 from app.theme import Look
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import CENTRE, PaintedText
@@ -144,7 +144,7 @@ class DifferencePlot(Themed):
             furthest = max(row.dots, key=lambda dot: abs(dot.value))
             painter.drawLine(QPointF(self.x_of(0), middle), QPointF(self.x_of(furthest.value), middle))
         for dot in row.dots:
-            paint_letter(painter, self._look, dot.letter, QPointF(self.x_of(dot.value), middle), colour, dot.exceeds)
+            paint_letter(painter, theme, dot.letter, QPointF(self.x_of(dot.value), middle), colour, dot.exceeds)
         if row.exceeds:
             side = px(MARK)
             paint_icon(painter, Icon.WARNING, QRectF(self.width() - side, middle - side / 2, side, side), c.ink)

@@ -434,5 +434,5 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
     frame = page.compare.frames[Side.LEFT, True]
     assert [float(np.mean(line.mean.mean)) for line in frame.chart.lines] == [pytest.approx(0.0, abs=1e-9)] * 2
     assert "0° is the mean of the stride." in frame.note
-    assert frame.chart.band is None
+    assert frame.chart.described.band is None
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, True].note

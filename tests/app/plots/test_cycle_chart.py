@@ -11,6 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.charts.cycles import SideCycle
 from app.charts.marks import Deviation, Gap, Point
+from app.charts.stride_chart import toe_off_labels
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
 from app.theme import Look, load_fonts
@@ -136,7 +137,7 @@ def test_of_a_withheld_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look:
     assert said.startswith("Withheld. The two sensors do not move as neighbours (margin 1.05, 1.30 wanted).")
     assert "record free motion" not in said  # what to do stands beneath, once for all
     assert said in charts.knee.in_words()
-    assert list(chart.toe_off_labels()) == [Side.RIGHT]
+    assert list(toe_off_labels(chart.described.curves)) == [Side.RIGHT]
     charts.show_cycles(cycles, {}, is_simulated=False)
     assert not charts.knee.withheld[Side.LEFT].isVisible()
     assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
@@ -218,11 +219,13 @@ def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: Look) -> 
 
 def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts, look: Look) -> None:
     chart = show(charts, left=cycle(12, toe_off_percent=58.7), right=cycle(12, toe_off_percent=63.2))
-    assert chart.toe_off_labels() == {Side.LEFT: "toe-off L 59 %", Side.RIGHT: "R 63 %"}
+    assert toe_off_labels(chart.described.curves) == {Side.LEFT: "toe-off L 59 %", Side.RIGHT: "R 63 %"}
     assert any(is_like(colour_at(chart, percent, 75), look.theme.curve(Side.LEFT)) for percent in (58.6, 58.7, 58.8))
     chart = show(charts, left=cycle(12, toe_off_percent=66), right=cycle(12, toe_off_percent=61))
-    assert chart.toe_off_labels() == {Side.RIGHT: "toe-off R 61 %", Side.LEFT: "L 66 %"}
-    assert list(show(charts, left=cycle(12, toe_off_percent=60.4), right=cycle(12)).toe_off_labels()) == [*Side]
+    assert toe_off_labels(chart.described.curves) == {Side.RIGHT: "toe-off R 61 %", Side.LEFT: "L 66 %"}
+    assert list(
+        toe_off_labels(show(charts, left=cycle(12, toe_off_percent=60.4), right=cycle(12)).described.curves)
+    ) == [*Side]
 
 
 def test_what_the_height_of_a_curve_cannot_say_is_said(charts: CycleCharts) -> None:
@@ -258,9 +261,7 @@ def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look
         charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)
         for frame in charts.frames:
             picture, chart = frame.chart.grab().toImage(), frame.chart
-            corner = [
-                picture.pixelColor(x, y).lightness() for x in range(60) for y in range(int(chart.plot_area().top()) - 6)
-            ]
+            corner = [picture.pixelColor(x, y).lightness() for x in range(60) for y in range(int(chart.frame.top) - 6)]
             inked.append(min(corner) < 100)
     assert inked == [False, False, True, True]
 
