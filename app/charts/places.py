@@ -16,7 +16,7 @@ CANDIDATES_PERCENT = np.arange(2.0, 99.0)
 WORDS_APART = 10.0  # between bar and words
 CLEAR = 3.0  # around words
 LEADER = 0.5  # half of a leader's width
-POINT_APART = 12.0  # between the bar and the points it stands for
+POINT_APART = 12.0  # between the bar and one at least of the points it stands for, that it may be seen
 # What a length of covered curve costs, an upright line, a crossing; a mark over a mark cannot be read.
 PER_CURVE, PER_SOFT_CURVE, PER_UPRIGHT, PER_CROSSING = 5.0, 0.25, 15.0, 8.0
 UNREADABLE = 1000.0
@@ -134,7 +134,7 @@ def place_mark(
             break
     ground.taken.append(Box(place.bar_x - CLEAR, top, place.bar_x + CLEAR, bottom))
     ground.taken += [place.words] if place.words is not None else []
-    ground.leaders += [_leader(place.bar_x, x, y) for x, y in ends]
+    ground.leaders += [_leader(place.bar_x, x, y) for x, y in ends] + [Box(x, y, x, y).grown(CLEAR) for x, y in ends]
     return place
 
 
@@ -160,9 +160,10 @@ def _cost_of_bar(ground: Ground, bar_x: float, ends: Sequence[tuple[float, float
     for curve in ground.curves:
         y = curve[np.argmin(np.abs(curve[:, 0] - bar_x)), 1] if len(curve) else np.nan
         cost += PER_CROSSING * bool(top + CLEAR < y < bottom - CLEAR)
+    cost += TOO_NEAR * all(abs(x - bar_x) < POINT_APART for x, _ in ends)
     for x, y in ends:
         leader = _leader(bar_x, x, y)
-        cost += TOO_NEAR * (abs(x - bar_x) < POINT_APART) + UNREADABLE * any(map(leader.overlaps, ground.taken))
+        cost += UNREADABLE * any(map(leader.overlaps, ground.taken))
         for curve in ground.curves:
             is_near_point = np.abs(curve[:, 0] - x) < POINT_APART
             is_under = (leader.left < curve[:, 0]) & (curve[:, 0] < leader.right) & ~is_near_point

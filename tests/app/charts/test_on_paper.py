@@ -1,0 +1,85 @@
+"""A deviation on paper: a bracket over its whole height, its size, and the number of its sentence."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from app.charts.cycles import PERCENT
+from app.charts.marks import Deviation, extreme_of
+from app.charts.on_paper import BRACKET_WIDTH, draw, frame_of, places_of
+from app.charts.stride_chart import Axis, StrideChart, StrideCurve
+from core.body import Joint, Side
+from core.samples import FloatArray
+
+WIDTH = 150.0
+KNEE: FloatArray = 10 * np.exp(-(((PERCENT - 14) / 8) ** 2)) + 55 * np.exp(-(((PERCENT - 73) / 12) ** 2))
+SWING = Deviation(
+    extreme_of(Joint.LEFT_KNEE, KNEE, 25, 60, is_maximum=False),
+    extreme_of(Joint.LEFT_KNEE, KNEE, 55, 90, is_maximum=True),
+    "L bends 55° from stance to swing",
+    size="55°",
+    number=1,
+)
+CHART = StrideChart(
+    Axis(-10, 80, 20, 10, "bent", "straight"),
+    (StrideCurve("L", Side.LEFT, KNEE, 60.0, toe_off_label="L toe-off 60.0 %"),),
+    band=None,
+    is_simulated=False,
+    alt="Knee.",
+)
+MARKED = replace(CHART, deviations=(SWING,))
+
+
+def uprights(svg: str) -> list[tuple[float, float, float]]:
+    """Place, top and bottom of each upright line of a bracket's width."""
+    pattern = (
+        r'<line x1="([\d.]+)" y1="([\d.]+)" x2="\1" y2="([\d.]+)" '
+        rf'stroke="#000000" stroke-width="{BRACKET_WIDTH}"/>'
+    )
+    return [(float(x), float(top), float(bottom)) for x, top, bottom in re.findall(pattern, svg)]
+
+
+def test_a_bracket_reaches_from_one_extreme_to_the_other_and_has_its_size_and_number() -> None:
+    drawn, frame = draw(MARKED, WIDTH), frame_of(MARKED, WIDTH)
+    ((_, top, bottom),) = uprights(drawn.svg)
+    assert top == pytest.approx(float(frame.y(SWING.second.angle_deg)), abs=0.01)
+    assert bottom == pytest.approx(float(frame.y(SWING.first.angle_deg)), abs=0.01)
+    assert drawn.svg.count(">55°</text>") == 1
+    assert drawn.svg.count(">1</text>") == 1
+    assert drawn.alt == "Knee. L bends 55° from stance to swing."
+
+
+def test_the_leg_without_a_sentence_has_its_bracket_without_a_number() -> None:
+    drawn = draw(replace(CHART, deviations=(replace(SWING, number=None),)), WIDTH)
+    assert len(uprights(drawn.svg)) == 1
+    assert ">1</text>" not in drawn.svg
+
+
+def test_without_a_deviation_nothing_is_marked() -> None:
+    drawn = draw(CHART, WIDTH)
+    assert uprights(drawn.svg) == []
+    assert drawn.alt == "Knee."
+
+
+def test_letters_keep_away_from_brackets() -> None:
+    (place,) = places_of(frame_of(MARKED, WIDTH), MARKED)
+    centres = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="4.5"', draw(MARKED, WIDTH).svg)
+    assert len(centres) == 2
+    for x, y in centres:
+        is_beside = place.top - 9 < float(y) < place.bottom + 9
+        assert not is_beside or abs(float(x) - place.bar_x) > 9
+
+
+def test_a_curve_that_is_compared_is_drawn_by_its_order() -> None:
+    def widths(*orders: tuple[int, int]) -> list[float]:
+        curves = tuple(StrideCurve("ABC"[k], Side.LEFT, KNEE + 5 * k, order=order) for k, order in enumerate(orders))
+        svg = draw(replace(CHART, curves=curves), WIDTH).svg
+        return [
+            float(width)
+            for width in re.findall(r'stroke-linejoin="round" stroke="#(?!FFFFFF)\w+" stroke-width="([\d.]+)"', svg)
+        ]
+
+    assert widths((0, 2), (1, 2)) == [1.0, 1.9]
+    assert widths((0, 3), (1, 3), (2, 3)) == [0.95, 1.4, 2.1]

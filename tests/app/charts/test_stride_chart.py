@@ -1,0 +1,61 @@
+"""The description of a chart: what of a walk is shown, and what is held back."""
+
+import numpy as np
+import pytest
+
+from app.charts.axes import angle_in_words
+from app.charts.cycles import PERCENT, SideCycle
+from app.charts.stride_chart import StrideCurve, curves_of_walk, toe_off_labels, toe_offs_in_order, usual_range_deg
+from core.body import Side
+from core.gait.cycles import mean_cycle
+
+
+def cycle(n: int, toe_off_percent: float = 60.0) -> SideCycle:
+    strides_deg = np.arange(n)[:, None] + 40 * np.sin(PERCENT / 20)
+    return SideCycle(mean_cycle(strides_deg), strides_deg, toe_off_percent)
+
+
+def only(n: int, *, is_withheld: bool = False, has_strides: bool = False) -> StrideCurve:
+    withheld = frozenset({Side.LEFT} if is_withheld else ())
+    (curve,) = curves_of_walk({Side.LEFT: cycle(n)}, withheld, has_strides=has_strides)
+    return curve
+
+
+def test_spread_is_shown_of_ten_strides_and_not_under_single_strides() -> None:
+    assert only(10).sd_deg is not None
+    assert only(9).sd_deg is None
+    shown = only(10, has_strides=True)
+    assert shown.sd_deg is None
+    assert len(shown.strides_deg) == 10
+
+
+def test_of_a_withheld_curve_neither_mean_nor_toe_off_nor_spread_is_described() -> None:
+    withheld = only(12, is_withheld=True)
+    assert not withheld.is_known
+    assert np.isnan(withheld.toe_off_percent)
+    assert withheld.sd_deg is None
+    assert len(withheld.strides_deg) == 0
+    assert len(only(12, is_withheld=True, has_strides=True).strides_deg) == 12
+    assert len(only(2, is_withheld=True).strides_deg) == 2  # too few for a mean: they are all there is
+    assert only(12).is_known
+
+
+def test_the_earlier_toe_off_stands_first_as_far_as_it_is_written() -> None:
+    curves = curves_of_walk({Side.LEFT: cycle(3, 60.4), Side.RIGHT: cycle(3, 60.2)}, frozenset(), has_strides=False)
+    assert [curve.side for curve in toe_offs_in_order(curves, 0)] == [Side.LEFT, Side.RIGHT]
+    assert [curve.side for curve in toe_offs_in_order(curves, 1)] == [Side.RIGHT, Side.LEFT]
+    assert toe_off_labels(curves) == {Side.LEFT: "toe-off L 60 %", Side.RIGHT: "R 60 %"}
+    nowhere = curves_of_walk({Side.LEFT: cycle(3, float("nan"))}, frozenset(), has_strides=False)
+    assert toe_offs_in_order(nowhere, 0) == []
+
+
+def test_axes_are_the_usual_ones_and_their_labels_never_minus_zero() -> None:
+    assert usual_range_deg(is_knee=True, is_about_mean=False) == (-10, 80)
+    assert usual_range_deg(is_knee=True, is_about_mean=True) == (-40, 50)
+    assert usual_range_deg(is_knee=False, is_about_mean=True) == (-30, 30)
+    assert [angle_in_words(value) for value in (-20.0, -0.0, 20.0)] == ["\N{MINUS SIGN}20", "0", "20"]
+
+
+@pytest.mark.parametrize("order", [(0, 2), (1, 2)])
+def test_a_curve_that_is_not_known_says_so(order: tuple[int, int]) -> None:
+    assert not StrideCurve("A", Side.LEFT, np.full(101, np.nan), order=order).is_known
