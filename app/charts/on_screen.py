@@ -11,10 +11,8 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QPen, QPolygonF
 from app.charts.axes import AXIS_WIDTH, angle_in_words, degrees_in_words
 from app.charts.cycles import PERCENT
 from app.charts.frame import Frame
-from app.charts.marks import Deviation, Gap, Point
-from app.charts.places import USUAL_EMPTY_PERCENT, Box, Ground, MarkPlace, ground_of, place_mark
+from app.charts.marks_on_screen import paint_deviation, paint_gap_bars, paint_gaps, places_of
 from app.charts.stride_chart import StrideChart, StrideCurve, toe_off_labels, toe_offs_in_order
-from app.icons import Icon, paint_icon
 from app.tokens import Theme
 from app.wording import later, tr
 from core.body import Side
@@ -32,9 +30,7 @@ FIRST_PX, LAST_PX, FIRST_ALPHA = 1.25, 2.75, 0.65  # of curves that are compared
 COMPARED_TOE_OFF_PX, COMPARED_DASH_PX = 0.75, (9.0, 5.0)
 DOT, LETTER_PX, LETTERS_APART = 10, 12, 4  # DOT: radius of a letter's circle
 LEADER_PERCENT = 16  # from where the curves are read to their letters
-BAR_PX, HAIRLINE_PX, DOT_RADIUS, DOT_EDGE_PX = 2.5, 1.0, 5.0, 2.0
-LINE_HEIGHT, WORDS_SIZE, TRIANGLE, TRIANGLE_APART = 16, 12, 16, 4
-GAP_BAR, GAP_ROW, LETTER_APART = 4, 6, 4
+CURSOR_DOT, CURSOR_ROW = 5, 16
 AT_RIGHT = Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
 AT_LEFT = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
 AT_CENTRE = Qt.AlignmentFlag.AlignHCenter | Qt.AlignmentFlag.AlignVCenter
@@ -56,7 +52,7 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
                 _fill(painter, frame, band.mean_deg, sds * band.sd_deg, QColor(colour))
     _paint_axes(painter, theme, frame, chart)
     with _clipped(painter, frame):
-        _paint_gaps(painter, theme, frame, chart)
+        paint_gaps(painter, theme, frame, chart)
         if chart.is_comparison:
             for curve in chart.curves:
                 _paint_toe_off(painter, frame, curve, _pen(theme, curve, COMPARED_TOE_OFF_PX))
@@ -78,22 +74,16 @@ def paint(painter: QPainter, theme: Theme, frame: Frame, width: float, chart: St
         painter.setFont(theme.font(12, QFont.Weight.DemiBold))
         painter.setPen(QColor(theme.colours.ink))
         painter.drawText(QRectF(0, 0, width, frame.top), AT_LEFT, tr(SIMULATED))
-    _paint_gap_bars(painter, theme, frame, chart.gaps)
+    paint_gap_bars(painter, theme, frame, chart.gaps)
     for deviation, place in zip(chart.deviations, places_of(theme, frame, chart), strict=True):
-        _paint_deviation(painter, theme, frame, deviation, place)
-
-
-def places_of(theme: Theme, frame: Frame, chart: StrideChart) -> list[MarkPlace]:
-    """Where each deviation finds room, px."""
-    ground = ground_of(frame, chart, _gap_boxes(theme, frame, chart.gaps))
-    return [_place_deviation(theme, ground, deviation) for deviation in chart.deviations]
+        paint_deviation(painter, theme, frame, deviation, place)
 
 
 def paint_cursor(
     painter: QPainter, theme: Theme, frame: Frame, curves: Sequence[StrideCurve], readings: Mapping[Side, float]
 ) -> None:
     """A line at each leg's place, percent, with the angle there; solid at the left leg's, dashed at the right's."""
-    font, row = theme.font(12, QFont.Weight.DemiBold), theme.px(LINE_HEIGHT)
+    font, row = theme.font(12, QFont.Weight.DemiBold), theme.px(CURSOR_ROW)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     painter.setFont(font)
     for number, curve in enumerate(curve for curve in curves if not curve.is_withheld):
@@ -108,7 +98,7 @@ def paint_cursor(
         painter.drawLine(QPointF(at.x(), frame.top), QPointF(at.x(), frame.bottom))
         painter.setPen(theme.pen(theme.curve(curve.side), 2))
         painter.setBrush(theme.curve(curve.side) if curve.side is Side.LEFT else QColor(theme.colours.surface))
-        painter.drawEllipse(at, theme.px(DOT_RADIUS), theme.px(DOT_RADIUS))
+        painter.drawEllipse(at, theme.px(CURSOR_DOT), theme.px(CURSOR_DOT))
         words = f"{curve.letter} {degrees_in_words(angle_deg)}"
         width = QFontMetrics(font).horizontalAdvance(words)
         left = at.x() + theme.px(6) if at.x() + theme.px(6) + width < frame.right else at.x() - theme.px(6) - width
@@ -302,122 +292,3 @@ def _letters(theme: Theme, frame: Frame, curves: Sequence[StrideCurve]) -> list[
         (curves[k], QPointF(float(frame.x(percent)), top + row * spacing), _at(frame, at, float(means[k, at])))
         for row, k in enumerate(order)
     ]
-
-
-def _place_deviation(theme: Theme, ground: Ground, deviation: Deviation) -> MarkPlace:
-    """Where a difference finds room, in px."""
-    frame = ground.frame
-    ends = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in deviation.points]
-    first = QFontMetrics(_font(theme, is_first=True)).horizontalAdvance(deviation.words) + 1
-    first += theme.px(TRIANGLE + TRIANGLE_APART) if deviation.is_larger_than_error else 0
-    second = QFontMetrics(_font(theme, is_first=False)).horizontalAdvance(deviation.more) + 1
-    line = theme.px(LINE_HEIGHT)
-    sizes = [(first, line), (max(first, second), 2 * line)] if deviation.more else [(first, line)]
-    return place_mark(ground, ends, sizes, USUAL_EMPTY_PERCENT[deviation.is_knee])
-
-
-def _paint_deviation(painter: QPainter, theme: Theme, frame: Frame, deviation: Deviation, place: MarkPlace) -> None:
-    """Dots on both points, hairlines to the bar between their heights, and the words beside it."""
-    colour = theme.colours.ink if deviation.is_larger_than_error else theme.colours.control
-    for point in deviation.points:
-        at = _at(frame, point.percent, point.angle_deg)
-        painter.setPen(theme.pen(colour, HAIRLINE_PX))
-        painter.drawLine(at, QPointF(place.bar_x, at.y()))
-    painter.setPen(theme.pen(colour, BAR_PX))
-    painter.drawLine(QPointF(place.bar_x, place.top), QPointF(place.bar_x, place.bottom))
-    for point in deviation.points:
-        _paint_dot(painter, theme, frame, point)
-    _paint_words(painter, theme, deviation, place)
-
-
-def _paint_gaps(painter: QPainter, theme: Theme, frame: Frame, chart: StrideChart) -> None:
-    """Fill what lies between each curve and the limit that it leaves."""
-    curves = {curve.side: curve.angle_deg for curve in chart.curves}
-    painter.setPen(Qt.PenStyle.NoPen)
-    for gap in chart.gaps:
-        at = slice(gap.first_percent, gap.last_percent + 1)
-        there_and_back = np.concatenate([PERCENT[at], PERCENT[at][::-1]])
-        outline = np.concatenate([curves[gap.joint.side][at], gap.limit_deg[at][::-1]])
-        painter.setBrush(theme.soft(gap.joint.side))
-        painter.drawPolygon(_polygon(frame, there_and_back, outline))
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-
-
-def _paint_gap_bars(painter: QPainter, theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> None:
-    """Mark the gaps on the axis by bars, the right leg's above the left one's; the longest has its letter."""
-    for gap in gaps:
-        painter.fillRect(_rect(_gap_bar(theme, frame, gap)), theme.curve(gap.joint.side))
-    painter.setFont(_font(theme, is_first=True))
-    for gap, box in _gap_letters(theme, frame, gaps):
-        painter.setPen(theme.text(gap.joint.side))
-        painter.drawText(_rect(box), AT_LEFT, gap.joint.side[0].upper())
-
-
-def _gap_boxes(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[Box]:
-    """What the gaps' bars and letters take, px."""
-    return [_gap_bar(theme, frame, gap) for gap in gaps] + [box for _, box in _gap_letters(theme, frame, gaps)]
-
-
-def _gap_bar(theme: Theme, frame: Frame, gap: Gap) -> Box:
-    bottom = frame.bottom - (theme.px(GAP_ROW) if gap.joint.side is Side.RIGHT else 0)
-    left, right = (float(frame.x(percent)) for percent in (gap.first_percent, gap.last_percent))
-    return Box(left, bottom - theme.px(GAP_BAR), right, bottom)
-
-
-def _gap_letters(theme: Theme, frame: Frame, gaps: Sequence[Gap]) -> list[tuple[Gap, Box]]:
-    """At the longest bar of each leg, right of it where there is room; higher where the other letter stands there."""
-    metrics, height, apart = QFontMetrics(_font(theme, is_first=True)), theme.px(LINE_HEIGHT), theme.px(LETTER_APART)
-    letters: list[tuple[Gap, Box]] = []
-    for side in Side:
-        of_side = [gap for gap in gaps if gap.joint.side is side]
-        if not of_side:
-            continue
-        longest = max(of_side, key=lambda gap: gap.last_percent - gap.first_percent)
-        bar, width = _gap_bar(theme, frame, longest), metrics.horizontalAdvance(side[0].upper()) + 1
-        left = bar.right + apart if bar.right + apart + width <= frame.right else bar.left - apart - width
-        box = Box(left, frame.bottom - height, left + width, frame.bottom)
-        obstacles = [other for _, other in letters] + [_gap_bar(theme, frame, gap) for gap in gaps]
-        while any(map(box.overlaps, obstacles)):
-            box = Box(box.left, box.top - apart, box.right, box.bottom - apart)
-        letters.append((longest, box))
-    return letters
-
-
-def _rect(box: Box) -> QRectF:
-    return QRectF(QPointF(box.left, box.top), QPointF(box.right, box.bottom))
-
-
-def _paint_dot(painter: QPainter, theme: Theme, frame: Frame, point: Point) -> None:
-    """Left filled, right outlined."""
-    side, centre = point.joint.side, _at(frame, point.percent, point.angle_deg)
-    colour, surface = theme.curve(side), QColor(theme.colours.surface)
-    is_left = side is Side.LEFT
-    painter.setPen(theme.pen(surface if is_left else colour, DOT_EDGE_PX))
-    painter.setBrush(colour if is_left else surface)
-    painter.drawEllipse(centre, DOT_RADIUS * theme.scale, DOT_RADIUS * theme.scale)
-    painter.setBrush(Qt.BrushStyle.NoBrush)
-
-
-def _paint_words(painter: QPainter, theme: Theme, deviation: Deviation, place: MarkPlace) -> None:
-    if place.words is None:
-        return
-    box, line, c = place.words, theme.px(LINE_HEIGHT), theme.colours
-    align = AT_LEFT if place.are_words_at_right else AT_RIGHT
-    left = box.left
-    if deviation.is_larger_than_error:
-        side = theme.px(TRIANGLE)
-        width = QFontMetrics(_font(theme, is_first=True)).horizontalAdvance(deviation.words) + 1
-        at = left if place.are_words_at_right else box.right - width - theme.px(TRIANGLE_APART) - side
-        paint_icon(painter, Icon.WARNING, QRectF(at, box.top + (line - side) / 2, side, side), c.ink)
-        left = at + side + theme.px(TRIANGLE_APART)
-    painter.setFont(_font(theme, is_first=True))
-    painter.setPen(QColor(c.ink))
-    painter.drawText(QRectF(left, box.top, box.right - left, line), align, deviation.words)
-    if place.lines > 1:
-        painter.setFont(_font(theme, is_first=False))
-        painter.setPen(QColor(c.ink2))
-        painter.drawText(QRectF(box.left, box.top + line, box.right - box.left, line), align, deviation.more)
-
-
-def _font(theme: Theme, *, is_first: bool) -> QFont:
-    return theme.font(WORDS_SIZE, QFont.Weight.DemiBold if is_first else QFont.Weight.Normal)

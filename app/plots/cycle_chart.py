@@ -24,7 +24,8 @@ from app.charts.axes import (
 from app.charts.cycles import Band, SideCycle
 from app.charts.frame import Frame
 from app.charts.marks import MOST_MARKS, Deviation, Gap, Point
-from app.charts.on_screen import frame_of, paint, paint_cursor, places_of
+from app.charts.marks_on_screen import places_of
+from app.charts.on_screen import frame_of, paint, paint_cursor
 from app.charts.places import MarkPlace
 from app.charts.stride_chart import (
     SCREEN_TICK_DEG,
