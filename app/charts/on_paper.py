@@ -4,6 +4,7 @@ Deviations are black brackets with the number of their sentence; gaps are the sc
 """
 
 from collections.abc import Sequence
+from textwrap import wrap
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from app.charts.drawing import (
     INK,
     INNER,
     INNER_EDGE,
+    MM,
     OUTER,
     OUTER_EDGE,
     WHITE,
@@ -37,9 +39,11 @@ from app.charts.frame import Frame
 from app.charts.marks import Deviation
 from app.charts.places import USUAL_EMPTY_PERCENT, Box, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
-from app.wording import tr
+from app.gates_in_words import verdict_word
+from app.wording import capitalised, tr
 from core.body import Side
 from core.samples import FloatArray
+from core.verdicts.model import Verdict
 
 LEFT_MARGIN, RIGHT_MARGIN, TOP, TOP_LABELS, FOOT = 27.0, 9.0, 13.0, 14.0, 30.0
 SPAN_HEIGHT, SPAN_ROW = 9.0, 11.0
@@ -50,6 +54,8 @@ STRIDE, ONLY_STRIDES = 0.32, 0.8
 
 
 BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
+NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and stands above the charts
+HATCH_APART, LINE_OF_WORDS = 6.0, 8.6
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
 
 
@@ -87,11 +93,17 @@ def _dash(one: StrideCurve) -> str:
 def draw(chart: StrideChart, plot_width: float) -> Picture:
     """Draw one panel: band, grid, curves and what names them."""
     frame = frame_of(chart, plot_width)
+    is_narrow = plot_width < NARROW
+    foot = NARROW_FOOT if is_narrow else FOOT
     parts = [text(0, 8, chart.title, 7.6, weight=600)]
+    if chart.withheld:
+        parts += _hatches(frame) + _axes(frame, chart.axis, is_narrow=is_narrow) + _why_withheld(frame, chart)
+        alt = " ".join(filter(None, [chart.alt, f"{_withheld_word()}. {chart.withheld}"]))
+        return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
     if chart.band is not None:
         parts += _band(frame, chart.band)
-    parts += _axes(frame, chart.axis)
-    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.curves)
+    parts += _axes(frame, chart.axis, is_narrow=is_narrow)
+    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.curves, is_narrow=is_narrow)
     for one in chart.curves:
         thin = STRIDE if one.is_known else ONLY_STRIDES
         parts += [curve(frame.x(PERCENT), frame.y(stride), _look(one)[0], thin) for stride in one.strides_deg]
@@ -110,7 +122,7 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
         parts += _bracket(frame, deviation, place)
     parts += _badges(frame, chart.curves, _points_of(frame, chart, places))
     alt = " ".join(filter(None, [chart.alt, *(deviation.in_words() for deviation in chart.deviations)]))
-    return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + FOOT, alt)
+    return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
 
 
 def places_of(frame: Frame, chart: StrideChart) -> list[MarkPlace]:
@@ -173,7 +185,32 @@ def _band(frame: Frame, band: Band) -> list[str]:
     ]
 
 
-def _axes(frame: Frame, axis: Axis) -> list[str]:
+def _withheld_word() -> str:
+    return capitalised(verdict_word(Verdict.WITHHELD))
+
+
+def _hatches(frame: Frame) -> list[str]:
+    """Hatching over the whole plot, so that nobody takes it for a curve."""
+    parts = []
+    for along in np.arange(-frame.height, frame.width, HATCH_APART):
+        first, last = max(along, 0.0), min(along + frame.height, frame.width)  # of the width, from bottom to top
+        ends = [(frame.left + x, frame.bottom - (x - along)) for x in (first, last)]
+        parts.append(line(*ends[0], *ends[1], GRID, 0.35))
+    return parts
+
+
+def _why_withheld(frame: Frame, chart: StrideChart) -> list[str]:
+    lines = wrap(chart.withheld, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
+    middle, height = (frame.top + frame.bottom) / 2, 16 + LINE_OF_WORDS * len(lines)
+    top, x = middle - height / 2, (frame.left + frame.right) / 2
+    parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, WHITE)]
+    parts.append(text(x, top + 10, _withheld_word(), 8.6, anchor="middle", weight=600))
+    for k, words in enumerate(lines):
+        parts.append(text(x, top + 12 + LINE_OF_WORDS * (k + 0.8), words, SIZE_OF_WORDS, anchor="middle"))
+    return parts + _simulated(frame, chart)
+
+
+def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
     parts = []
     for percent in range(0, 101, 10):
         x = float(frame.x(percent))
@@ -182,7 +219,8 @@ def _axes(frame: Frame, axis: Axis) -> list[str]:
             parts.append(line(x, frame.top, x, frame.bottom, GRID, 0.25))
         parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), INK, 0.6))
         if is_labelled:
-            parts.append(text(x, frame.bottom + 12, str(percent), 7, anchor="middle"))
+            said = f"{percent} %" if is_narrow and percent == 100 else str(percent)
+            parts.append(text(x, frame.bottom + 12, said, 7, anchor="middle"))
     for degrees in np.arange(axis.low, axis.high + 1, axis.tick_every):
         y = float(frame.y(degrees))
         is_labelled = degrees % axis.label_every == 0
@@ -192,9 +230,9 @@ def _axes(frame: Frame, axis: Axis) -> list[str]:
         parts.append(line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, INK, 0.6))
         if is_labelled:
             parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
-    middle = (frame.left + frame.right) / 2
-    said = tr("Stride, % (0 and 100 = initial contact of the same foot)")
-    parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
+    if not is_narrow:
+        middle, said = (frame.left + frame.right) / 2, tr("Stride, % (0 and 100 = initial contact of the same foot)")
+        parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
     parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", INK, 0.7))
     return parts
 
@@ -217,7 +255,7 @@ def _spans(frame: Frame, chart: StrideChart) -> list[str]:
     return parts
 
 
-def _toe_offs(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
+def _toe_offs(frame: Frame, curves: Sequence[StrideCurve], *, is_narrow: bool) -> list[str]:
     known = toe_offs_in_order(curves, 1)
     parts = []
     is_many = any(one.order is not None for one in known)
@@ -237,6 +275,8 @@ def _toe_offs(frame: Frame, curves: Sequence[StrideCurve]) -> list[str]:
         else:
             is_earlier = k == 0 and len(known) == 2
             at, anchor = (x - 3, "end") if is_earlier else (x + 3, "start")
+            if is_narrow and len(known) == 1:
+                at, anchor = x, "middle"  # beside the line there is no room
             parts.append(text(at, frame.top - 4.5, one.toe_off_label, 7, anchor=anchor))
     return parts
 
@@ -283,9 +323,12 @@ def _words(frame: Frame, chart: StrideChart) -> list[str]:
         text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=GREY),
         text(frame.right - 4, frame.bottom - 4.5, f"↓ {chart.axis.down}", 6.6, anchor="end", fill=GREY),
     ]
-    if chart.is_simulated:
-        parts.append(text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600))
-    return parts
+    return parts + _simulated(frame, chart)
+
+
+def _simulated(frame: Frame, chart: StrideChart) -> list[str]:
+    said = text(frame.right - 4, frame.top + 9.5, tr("SIMULATED"), 6.6, anchor="end", weight=600)
+    return [said] if chart.is_simulated else []
 
 
 def _badges(frame: Frame, curves: Sequence[StrideCurve], marks: Sequence[tuple[float, float]]) -> list[str]:

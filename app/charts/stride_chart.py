@@ -82,7 +82,8 @@ class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
     `ticks` are percent and side of the other foot's events; `spans` stand above the frame, where toe-off is named
-    otherwise. `chosen` is one stride (101,) over all others. `alt` are the chart's words, for who cannot see it.
+    otherwise. `chosen` is one stride (101,) over all others. `withheld` says why nothing of it may be read, and is
+    empty where something may. `alt` are the chart's words, for who cannot see it.
     """
 
     axis: Axis
@@ -94,6 +95,7 @@ class StrideChart:
     ticks: tuple[tuple[float, Side], ...] = ()
     spans: tuple[Span, ...] = ()
     chosen: tuple[Side, FloatArray] | None = None
+    withheld: str = ""
     deviations: tuple[Deviation, ...] = ()
     gaps: tuple[Gap, ...] = ()
 

@@ -83,3 +83,37 @@ def test_a_curve_that_is_compared_is_drawn_by_its_order() -> None:
 
     assert widths((0, 2), (1, 2)) == [1.0, 1.9]
     assert widths((0, 3), (1, 3), (2, 3)) == [0.95, 1.4, 2.1]
+
+
+def test_what_is_withheld_is_hatched_with_its_reason_and_has_no_curve() -> None:
+    why = "81° of range; walking has no more than 60°. Foot and shank sensor do not move as neighbours."
+    drawn = draw(replace(MARKED, withheld=why), WIDTH)
+    words = re.findall(r">([^<>]+)</text>", drawn.svg)
+    at = words.index("Withheld")
+    assert why in " ".join(words[at:])
+    assert "<path" not in drawn.svg
+    assert uprights(drawn.svg) == []
+    assert "SIMULATED" not in words
+    assert ">SIMULATED</text>" in draw(replace(MARKED, withheld=why, is_simulated=True), WIDTH).svg
+    assert drawn.alt == f"Knee. Withheld. {why}"
+    assert "Withheld" not in draw(MARKED, WIDTH).svg
+
+
+def test_hatching_stays_inside_the_plot() -> None:
+    withheld = replace(CHART, withheld="The sign is not known.")
+    frame = frame_of(withheld, WIDTH)
+    hatches = re.findall(
+        r'<line x1="([\d.]+)" y1="([\d.]+)" x2="([\d.]+)" y2="([\d.]+)"[^>]*width="0.35"', draw(withheld, WIDTH).svg
+    )
+    assert len(hatches) > 20
+    for x, y in [end for hatch in hatches for end in (hatch[:2], hatch[2:])]:
+        assert frame.left - 0.01 <= float(x) <= frame.right + 0.01
+        assert frame.top - 0.01 <= float(y) <= frame.bottom + 0.01
+
+
+def test_a_narrow_chart_leaves_the_words_of_its_axis_away() -> None:
+    narrow, wide = draw(CHART, WIDTH), draw(CHART, 200.0)
+    assert "initial contact" in wide.svg
+    assert "initial contact" not in narrow.svg
+    assert ">100 %</text>" in narrow.svg
+    assert ">100</text>" in wide.svg
