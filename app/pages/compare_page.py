@@ -12,7 +12,6 @@ from app.icons import Icon
 from app.pages.compared_words import (
     MINUS,
     change_in_words,
-    line_of,
     part_in_words,
     plot_row,
     sentence,
@@ -114,7 +113,7 @@ class ComparePage(Themed):
         self.frames: dict[tuple[Side, bool], ComparedFrame] = {}
         for is_knee in (True, False):
             for side in Side:
-                chart = ComparedChart(look, side, is_knee=is_knee)
+                chart = ComparedChart(look, is_knee=is_knee)
                 self.frames[side, is_knee] = ComparedFrame(look, chart, side, is_knee)
         self.side_charts = CycleCharts(look, reference_curves())
         self.title = Text(look, size=16, weight=SEMIBOLD)
@@ -376,12 +375,12 @@ class ComparePage(Themed):
             worn = [part for part in chosen if joint in part.joints]
             is_about_mean = not all(part.verdicts.joint(joint).height.is_told for part in worn if part.is_drawn(joint))
             is_about_mean |= len(worn) > 1 and not found.has_one_zero(joint)
-            lines = [line_of(part, joint, is_about_mean=is_about_mean) for part in worn]
+            drawn = [part.curve(joint, is_about_mean=is_about_mean) for part in worn]
             is_beside_band, kind = curves is not None and side in sides, "knee" if is_knee else "ankle"
             frame.chart.band = Band(*curves.mean_and_sd_deg(kind)) if curves is not None and is_beside_band else None
             notes = [tr(OTHER_ZERO)] if is_about_mean else []
             notes += [withheld_in_words(part, joint) for part in worn if not part.is_drawn(joint)]
-            frame.show_lines(lines, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
+            frame.show_curves(drawn, " ".join(notes), self._is_simulated, is_about_mean=is_about_mean)
             frame.setVisible(side in found.sides)
         letter = found.against.letter
         visits = self._of_visits

@@ -4,12 +4,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
 from app.icons import Icon
-from app.plots.compared_chart import Line
 from app.plots.difference_plot import DifferenceRow, Dot
 from app.reports.comparison import Compared, Comparison, Measure, Part, Reservation, SideRow
 from app.reports.patient_report.numbers_in_words import fixed, signed
@@ -82,13 +79,6 @@ def why_not_told(row: Compared | SideRow) -> str:
     withheld = isinstance(row, Compared) and row.reservation is Reservation.WITHHELD
     is_withheld = withheld or row.difference.judgement is Judgement.WITHHELD
     return verdict_word(Verdict.WITHHELD) if is_withheld else tr("no value")
-
-
-def line_of(part: Part, joint: Joint, *, is_about_mean: bool) -> Line:
-    """A part's mean cycle; without its height where that says nothing beside the others'."""
-    found = part.cycle(joint)
-    mean = replace(found, mean=found.mean - np.mean(found.mean)) if is_about_mean and found.n else found
-    return Line(part.letter, mean, part.stance_percent(joint.side))
 
 
 def withheld_in_words(part: Part, joint: Joint) -> str:

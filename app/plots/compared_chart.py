@@ -1,14 +1,13 @@
 """One joint of one leg in several walks: their mean cycles laid over one another, told apart by letter and width."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in_words, sign_in_words, title_in_words
-from app.charts.cycles import is_mean_enough
 from app.charts.stride_chart import StrideCurve
 from app.icons import Icon
 from app.plots.cycle_chart import CycleChart
@@ -19,45 +18,23 @@ from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
 from core.body import Side
-from core.gait.cycles import MeanCycle
-
-
-@dataclass(frozen=True, slots=True)
-class Line:
-    """The mean cycle (101,) of one walk, condition or visit, degrees, and when its foot leaves the floor."""
-
-    letter: str
-    mean: MeanCycle
-    toe_off_percent: float
 
 
 class ComparedChart(CycleChart):
     """The later, the thicker; the last letter is filled."""
 
-    def __init__(self, look: Look, side: Side, *, is_knee: bool) -> None:
-        super().__init__(look, is_knee=is_knee)
-        self._side = side
-        self.lines: tuple[Line, ...] = ()
+    curves: tuple[StrideCurve, ...] = ()
 
-    def show_lines(self, lines: Sequence[Line], is_simulated: bool, is_about_mean: bool = False) -> None:
-        """Draw every line that is known, and widen the axis where one leaves it."""
-        self.lines, self.is_simulated = tuple(line for line in lines if line.mean.n), is_simulated
-        self.is_about_mean = is_about_mean
-        self.range_deg = range_for(self._usual_deg, [line.mean.mean for line in self.lines])
+    def show_curves(self, curves: Sequence[StrideCurve], is_simulated: bool, is_about_mean: bool = False) -> None:
+        """Draw every curve that is known, and widen the axis where one leaves it."""
+        known = [curve for curve in curves if curve.is_known]
+        self.curves = tuple(replace(curve, order=(k, len(known))) for k, curve in enumerate(known))
+        self.is_simulated, self.is_about_mean = is_simulated, is_about_mean
+        self.range_deg = range_for(self._usual_deg, [curve.angle_deg for curve in known])
         self.redraw()
 
     def _curves(self) -> tuple[StrideCurve, ...]:
-        return tuple(
-            StrideCurve(
-                letter=line.letter,
-                side=self._side,
-                angle_deg=line.mean.mean,
-                toe_off_percent=line.toe_off_percent,
-                order=(k, len(self.lines)),
-                is_few=not is_mean_enough(line.mean.n),
-            )
-            for k, line in enumerate(self.lines)
-        )
+        return self.curves
 
 
 class ComparedFrame(Card):
@@ -87,10 +64,12 @@ class ComparedFrame(Card):
     def note(self) -> str:
         return self._note.text()
 
-    def show_lines(self, lines: Sequence[Line], note: str, is_simulated: bool, *, is_about_mean: bool = False) -> None:
-        self.chart.show_lines(lines, is_simulated, is_about_mean)
+    def show_curves(
+        self, curves: Sequence[StrideCurve], note: str, is_simulated: bool, *, is_about_mean: bool = False
+    ) -> None:
+        self.chart.show_curves(curves, is_simulated, is_about_mean)
         said = [note] if note else []
-        if not self.chart.lines:
+        if not self.chart.curves:
             said = said or [tr("Not measured.")]
         elif self.chart.is_widened:
             said.append(range_in_words(self.chart.range_deg))
@@ -103,12 +82,12 @@ class ComparedFrame(Card):
     def in_words(self) -> str:
         """Say each curve's highest and lowest angle, for who cannot see them."""
         said = [tr("Simulated.")] if self.chart.is_simulated else []
-        for line in self.chart.lines:
-            mean = line.mean.mean
+        for curve in self.chart.curves:
+            mean = curve.angle_deg
             told = tr("{letter}: {lowest} at {lowest_percent} % to {highest} at {highest_percent} %.")
             said.append(
                 told.format(
-                    letter=line.letter,
+                    letter=curve.letter,
                     lowest=degrees_in_words(np.min(mean)),
                     lowest_percent=np.argmin(mean),
                     highest=degrees_in_words(np.max(mean)),

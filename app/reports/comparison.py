@@ -13,6 +13,8 @@ from statistics import fmean
 
 import numpy as np
 
+from app.charts.cycles import is_mean_enough
+from app.charts.stride_chart import StrideCurve
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import joined, later, tr
 from core.body import Joint, Side
@@ -186,6 +188,18 @@ class Part:
         if not cycles or not together((found.shape, found.sign)).is_told:
             return mean_cycle(np.empty((0, POINTS)))
         return mean_cycle(np.rad2deg(np.concatenate(cycles)))
+
+    def curve(self, joint: Joint, *, is_about_mean: bool) -> StrideCurve:
+        """A joint's mean cycle as charts show it; without its height where that says nothing beside the others'."""
+        found, off = self.cycle(joint), self.value(joint.side, "stance_percent")
+        return StrideCurve(
+            self.letter,
+            joint.side,
+            angle_deg=found.mean - np.mean(found.mean) if is_about_mean else found.mean,
+            toe_off_percent=off.mean if is_mean_enough(off.n) else math.nan,
+            toe_off_label=self.letter,
+            is_few=not is_mean_enough(found.n),
+        )
 
     def is_measured(self, side: Side, measure: Measure) -> bool:
         joint = measure.joint(side)

@@ -4,12 +4,10 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
 from app.charts.drawing import MM, Picture
 from app.charts.on_paper import compared_look, draw
-from app.charts.stride_chart import StrideChart, StrideCurve
+from app.charts.stride_chart import NOT_KNOWN, StrideChart
 from app.gates_in_words import verdict_word
 from app.reports.comparison import (
     MEASURES,
@@ -143,8 +141,9 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
     curves, alts = [], []
     for k, part in enumerate(comparison.parts):
         if joint_of(kind, side) in part.joints:
-            order = k, len(comparison.parts)
-            curves.append(_curve(part, side, kind, order, is_about_mean=is_about_mean))
+            curve = part.curve(joint_of(kind, side), is_about_mean=is_about_mean)
+            angle_deg = NOT_KNOWN if curve.is_few else curve.angle_deg
+            curves.append(replace(curve, order=(k, len(comparison.parts)), angle_deg=angle_deg))
             alts.append(_alt(part, side, kind))
     chart = StrideChart(
         title=panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean),
@@ -155,19 +154,6 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
     return draw(chart, PLOT_WIDTH)
-
-
-def _curve(part: Part, side: Side, kind: str, order: tuple[int, int], *, is_about_mean: bool) -> StrideCurve:
-    found, off = part.cycle(joint_of(kind, side)), part.value(side, "stance_percent")
-    mean = found.mean if is_mean_enough(found.n) else np.full_like(found.mean, np.nan)
-    return StrideCurve(
-        letter=part.letter,
-        side=side,
-        order=order,
-        angle_deg=mean - np.mean(mean) if is_about_mean else mean,
-        toe_off_percent=off.mean if is_mean_enough(off.n) else math.nan,
-        toe_off_label=part.letter,
-    )
 
 
 def _alt(part: Part, side: Side, kind: str) -> str:

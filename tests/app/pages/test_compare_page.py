@@ -38,7 +38,7 @@ from core.verdicts.gates import judged
 from core.verdicts.measurement_error import ComparisonKind, ErrorSource, Judgement
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 from devices.walker_body import Tissue
-from tests.app.changed_analysis import recalibrated
+from tests.app.changed_analysis import recalibrated, with_few_strides
 from tests.app.room import words_cut
 
 DIGITS = 1e-5
@@ -166,10 +166,10 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
     cycles = lines_of(tmp_path / COMPARED_CYCLES)
     for (side, is_knee), frame in compare.frames.items():
         joint = Joint(f"{side}_{'knee' if is_knee else 'ankle'}")
-        assert len(frame.chart.lines) == 2
-        for line in frame.chart.lines:
-            column = [float(row[f"{line.letter}_{joint}_mean_deg"]) for row in cycles]
-            np.testing.assert_allclose(column, line.mean.mean, atol=DIGITS)
+        assert len(frame.chart.curves) == 2
+        for curve in frame.chart.curves:
+            column = [float(row[f"{curve.letter}_{joint}_mean_deg"]) for row in cycles]
+            np.testing.assert_allclose(column, curve.angle_deg, atol=DIGITS)
 
 
 def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[Part, ...], tmp_path: Path) -> None:
@@ -192,7 +192,7 @@ def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[
 def test_what_is_turned_off_leaves_axes_and_table(page: ResultPage) -> None:
     compare = page.compare
     compare.chips.buttons[0].click()
-    assert [line.letter for line in compare.frames[Side.LEFT, True].chart.lines] == ["B"]
+    assert [curve.letter for curve in compare.frames[Side.LEFT, True].chart.curves] == ["B"]
     assert compare.bases.count() == 1
     assert compare.comparison is not None
     assert not compare.comparison.rows
@@ -421,10 +421,18 @@ def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: An
     assert "withheld" not in rows["Knee range"]
     shown(page, doubtful, session, Kind.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, False]
-    assert frame.chart.lines == ()
+    assert frame.chart.curves == ()
     assert "A: withheld. The two sensors do not move as neighbours" in frame.note
-    assert len(page.compare.frames[Side.LEFT, False].chart.lines) == 2
+    assert len(page.compare.frames[Side.LEFT, False].chart.curves) == 2
     assert "withheld" not in page.compare.frames[Side.LEFT, False].note
+
+
+def test_two_strides_have_neither_a_curve_nor_a_toe_off(analysis: Analysis, session: Session) -> None:
+    part = conditions_of(with_few_strides(analysis, left=2), session.recordings)[0]
+    few, enough = (part.curve(joint, is_about_mean=False) for joint in (Joint.LEFT_KNEE, Joint.RIGHT_KNEE))
+    assert (few.is_known, few.is_few, math.isfinite(few.toe_off_percent)) == (False, True, False)
+    assert (enough.is_known, enough.is_few, math.isfinite(enough.toe_off_percent)) == (True, False, True)
+    assert enough.toe_off_label == part.letter
 
 
 def test_without_a_zero_curves_are_compared_about_their_mean(
@@ -432,7 +440,7 @@ def test_without_a_zero_curves_are_compared_about_their_mean(
 ) -> None:
     shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Kind.CONDITIONS)
     frame = page.compare.frames[Side.LEFT, True]
-    assert [float(np.mean(line.mean.mean)) for line in frame.chart.lines] == [pytest.approx(0.0, abs=1e-9)] * 2
+    assert [float(np.mean(curve.angle_deg)) for curve in frame.chart.curves] == [pytest.approx(0.0, abs=1e-9)] * 2
     assert "0° is the mean of the stride." in frame.note
     assert frame.chart.described.band is None
     assert "mean of the stride" not in page.compare.frames[Side.RIGHT, True].note

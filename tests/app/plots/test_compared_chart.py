@@ -1,5 +1,6 @@
 """Curves compared: the band only beside curves with a height, and a casing of one width at every size."""
 
+import math
 from collections.abc import Iterator
 
 import numpy as np
@@ -9,11 +10,11 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.cycles import Band
-from app.plots.compared_chart import ComparedChart, Line
+from app.charts.stride_chart import StrideCurve
+from app.plots.compared_chart import ComparedChart
 from app.reports.reference_bands import reference_curves
 from app.theme import Look, load_fonts
 from core.body import Side
-from core.gait.cycles import mean_cycle
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))
 
@@ -27,12 +28,12 @@ def look(qapp: QApplication) -> Iterator[Look]:
     look.set_scale(1.0)
 
 
-def flat(letter: str, angle_deg: float, n: int = 12) -> Line:
-    return Line(letter, mean_cycle(np.full((n, 101), angle_deg)), float("nan"))
+def flat(letter: str, angle_deg: float) -> StrideCurve:
+    return StrideCurve(letter, Side.LEFT, np.full(101, angle_deg))
 
 
 def chart_of(qtbot: QtBot, look: Look) -> ComparedChart:
-    chart = ComparedChart(look, Side.LEFT, is_knee=True)
+    chart = ComparedChart(look, is_knee=True)
     qtbot.addWidget(chart)
     chart.resize(600, 500)
     return chart
@@ -48,11 +49,11 @@ def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: Qt
     chart = chart_of(qtbot, look)
     chart.band = BAND
     band = QColor(look.theme.colours.band_1sd)
-    chart.show_lines([flat("A", 0.0)], is_simulated=False)
+    chart.show_curves([flat("A", 0.0)], is_simulated=False)
     assert band in colours_down(chart, 30)
-    chart.show_lines([flat("A", 0.0)], is_simulated=False, is_about_mean=True)
+    chart.show_curves([flat("A", 0.0)], is_simulated=False, is_about_mean=True)
     assert band not in colours_down(chart, 30)
-    chart.show_lines([flat("A", 0.0)], is_simulated=False)
+    chart.show_curves([flat("A", 0.0)], is_simulated=False)
     assert band in colours_down(chart, 30)
 
 
@@ -61,7 +62,7 @@ def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: Look, 
     look.set_scale(scale)
     chart = chart_of(qtbot, look)
     chart.band = Band(np.full(101, 40.0), np.full(101, 60.0))  # under all of the chart, to see the casing on
-    chart.show_lines([flat("A", 40.0)], is_simulated=False)
+    chart.show_curves([flat("A", 40.0)], is_simulated=False)
     band = QColor(look.theme.colours.band_1sd)
     others = [colour for colour in colours_down(chart, 70) if colour != band]
     zero_px, blurred_px = scale, 3.0
@@ -70,7 +71,7 @@ def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: Look, 
 
 def test_the_later_curve_is_the_thicker_one(look: Look, qtbot: QtBot) -> None:
     chart = chart_of(qtbot, look)
-    chart.show_lines([flat("A", 20.0), flat("B", 60.0)], is_simulated=False)
+    chart.show_curves([flat("A", 20.0), flat("B", 60.0)], is_simulated=False)
     colours = colours_down(chart, 10)
     of_line = [max(0, 255 - colour.blue()) for colour in colours]  # the left leg's orange
     half = len(of_line) // 2
@@ -78,7 +79,7 @@ def test_the_later_curve_is_the_thicker_one(look: Look, qtbot: QtBot) -> None:
     assert [curve.letter for curve in chart.described.curves] == ["A", "B"]
 
 
-def test_lines_without_strides_are_not_drawn(look: Look, qtbot: QtBot) -> None:
+def test_curves_that_are_not_known_are_not_drawn(look: Look, qtbot: QtBot) -> None:
     chart = chart_of(qtbot, look)
-    chart.show_lines([Line("A", mean_cycle(np.empty((0, 101))), float("nan")), flat("B", 60.0)], is_simulated=False)
+    chart.show_curves([flat("A", math.nan), flat("B", 60.0)], is_simulated=False)
     assert [curve.letter for curve in chart.described.curves] == ["B"]
