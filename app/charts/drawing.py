@@ -11,12 +11,8 @@ from core.body import Side
 from core.samples import FloatArray
 
 MM = 72 / 25.4
-INK, WHITE, GREY = PAPER.ink, PAPER.paper, PAPER.note
 COLOURS = {Side.LEFT: PAPER.left, Side.RIGHT: PAPER.right}
 DASHES = {Side.LEFT: "", Side.RIGHT: "4.6 2.2"}
-GRID = PAPER.grid
-OUTER, OUTER_EDGE, INNER, INNER_EDGE = PAPER.band_2sd, PAPER.band_2sd_edge, PAPER.band_1sd, PAPER.band_1sd_edge
-BAND_MEAN = PAPER.band_mean
 BADGE = 9.0
 
 
@@ -49,7 +45,7 @@ def box(x: float, y: float, width: float, height: float, fill: str, edge: str = 
 
 
 def text(
-    x: float, y: float, said: str, size: float, *, anchor: str = "start", weight: int = 400, fill: str = INK
+    x: float, y: float, said: str, size: float, *, anchor: str = "start", weight: int = 400, fill: str = PAPER.ink
 ) -> str:
     look = f'font-family="Inter" font-size="{size}" font-weight="{weight}" fill="{fill}" text-anchor="{anchor}"'
     return f'<text x="{x:.2f}" y="{y:.2f}" {look}>{escape(said)}</text>'
@@ -70,7 +66,7 @@ def area(x: FloatArray, low: FloatArray, high: FloatArray, fill: str, edge: str,
 def badge(x: float, y: float, letter: str, side: Side, colour: str, size: float = BADGE) -> str:
     """A letter on a line: in a circle on the left leg's, in a square on the right leg's."""
     half = size / 2
-    look = f'fill="{WHITE}" stroke="{colour}" stroke-width="1.1"'
+    look = f'fill="{PAPER.paper}" stroke="{colour}" stroke-width="1.1"'
     if side is Side.LEFT:
         shape = f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" {look}/>'
     else:
@@ -78,12 +74,12 @@ def badge(x: float, y: float, letter: str, side: Side, colour: str, size: float 
     return shape + text(x, y + 0.36 * 6.6, letter, 6.6, anchor="middle", weight=600)
 
 
-def marker(x: float, y: float, side: Side, fill: str = INK, size: float = 4.0) -> str:
+def marker(x: float, y: float, side: Side, fill: str = PAPER.ink, size: float = 4.0) -> str:
     """A mark at one value: round for the left leg, square for the right."""
     half = size / 2
     if side is Side.LEFT:
-        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" fill="{fill}" stroke="{WHITE}" stroke-width="0.5"/>'
-    return box(x - half, y - half, size, size, fill, WHITE, 0.5)
+        return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="{half}" fill="{fill}" stroke="{PAPER.paper}" stroke-width="0.5"/>'
+    return box(x - half, y - half, size, size, fill, PAPER.paper, 0.5)
 
 
 def mixed(colour: str, other: str, share: float) -> str:

@@ -12,18 +12,9 @@ from app.charts.axes import angle_in_words
 from app.charts.cycles import PERCENT, Band
 from app.charts.drawing import (
     BADGE,
-    BAND_MEAN,
     COLOURS,
     DASHES,
-    GREY,
-    GRID,
-    INK,
-    INNER,
-    INNER_EDGE,
     MM,
-    OUTER,
-    OUTER_EDGE,
-    WHITE,
     Picture,
     area,
     badge,
@@ -39,6 +30,7 @@ from app.charts.frame import Frame
 from app.charts.marks import Deviation
 from app.charts.places import USUAL_EMPTY_PERCENT, Box, MarkPlace, ground_of, place_mark
 from app.charts.stride_chart import Axis, StrideChart, StrideCurve, toe_offs_in_order
+from app.colours import PAPER
 from app.gates_in_words import verdict_word
 from app.wording import capitalised, tr
 from core.body import Side
@@ -74,7 +66,7 @@ def frame_of(chart: StrideChart, plot_width: float) -> Frame:
 
 def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
     """Colour and width of condition or visit `k` of `count`: earlier is pale and thin, later plain, dark and thick."""
-    pale, plain, dark = mixed(COLOURS[side], WHITE, 0.42), COLOURS[side], mixed(COLOURS[side], INK, 0.45)
+    pale, plain, dark = mixed(COLOURS[side], PAPER.paper, 0.42), COLOURS[side], mixed(COLOURS[side], PAPER.ink, 0.45)
     if count == 2:
         return ((pale, 1.0), (plain, PLAIN))[k]
     return ((pale, 0.95), (plain, FINE), (dark, 2.1))[k]
@@ -111,7 +103,7 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
         x, y = frame.x(PERCENT), frame.y(one.angle_deg)
         colour, width = _look(one)
         casing = 0.9 if one.order is not None else 1.7
-        parts += [curve(x, y, WHITE, width + casing), curve(x, y, colour, width, _dash(one))]
+        parts += [curve(x, y, PAPER.paper, width + casing), curve(x, y, colour, width, _dash(one))]
         parts += _beyond(frame, chart.axis, one)
     for one in chart.curves:
         parts += _peaks(frame, one)
@@ -149,15 +141,15 @@ def _bracket(frame: Frame, deviation: Deviation, place: MarkPlace) -> list[str]:
     parts = []
     for point in deviation.points:
         y = float(frame.y(point.angle_deg))
-        parts.append(line(float(frame.x(point.percent)), y, x, y, INK, 0.6, "0.8 1.6"))
-    parts.append(line(x, place.top, x, place.bottom, INK, BRACKET_WIDTH))
-    parts += [line(x - BRACKET_CAP, y, x + BRACKET_CAP, y, INK, BRACKET_WIDTH) for y in (place.top, place.bottom)]
+        parts.append(line(float(frame.x(point.percent)), y, x, y, PAPER.ink, 0.6, "0.8 1.6"))
+    parts.append(line(x, place.top, x, place.bottom, PAPER.ink, BRACKET_WIDTH))
+    parts += [line(x - BRACKET_CAP, y, x + BRACKET_CAP, y, PAPER.ink, BRACKET_WIDTH) for y in (place.top, place.bottom)]
     if deviation.number is not None:
         is_room = place.bottom - place.top > 3 * NUMBER_RADIUS  # else beside the bar, whose length would be hidden
         at = x if is_room else x + (-1 if place.are_words_at_right else 1) * (NUMBER_RADIUS + BRACKET_CAP + 1)
-        parts.append(f'<circle cx="{at:.2f}" cy="{middle:.2f}" r="{NUMBER_RADIUS}" fill="{INK}"/>')
+        parts.append(f'<circle cx="{at:.2f}" cy="{middle:.2f}" r="{NUMBER_RADIUS}" fill="{PAPER.ink}"/>')
         number = str(deviation.number)
-        parts.append(text(at, middle + 2.3, number, 6.4, anchor="middle", weight=600, fill=WHITE))
+        parts.append(text(at, middle + 2.3, number, 6.4, anchor="middle", weight=600, fill=PAPER.paper))
     if place.words is not None:
         at, anchor = (place.words.left, "start") if place.are_words_at_right else (place.words.right, "end")
         y = (place.words.top + place.words.bottom) / 2 + 2.5
@@ -179,9 +171,9 @@ def _points_of(frame: Frame, chart: StrideChart, places: Sequence[MarkPlace]) ->
 def _band(frame: Frame, band: Band) -> list[str]:
     x, mean, sd = frame.x(PERCENT), band.mean_deg, band.sd_deg
     return [
-        area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), OUTER, OUTER_EDGE, 0.35),
-        area(x, frame.y(mean - sd), frame.y(mean + sd), INNER, INNER_EDGE, 0.35),
-        curve(x, frame.y(mean), BAND_MEAN, 0.6),
+        area(x, frame.y(mean - 2 * sd), frame.y(mean + 2 * sd), PAPER.band_2sd, PAPER.band_2sd_edge, 0.35),
+        area(x, frame.y(mean - sd), frame.y(mean + sd), PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
+        curve(x, frame.y(mean), PAPER.band_mean, 0.6),
     ]
 
 
@@ -195,7 +187,7 @@ def _hatches(frame: Frame) -> list[str]:
     for along in np.arange(-frame.height, frame.width, HATCH_APART):
         first, last = max(along, 0.0), min(along + frame.height, frame.width)  # of the width, from bottom to top
         ends = [(frame.left + x, frame.bottom - (x - along)) for x in (first, last)]
-        parts.append(line(*ends[0], *ends[1], GRID, 0.35))
+        parts.append(line(*ends[0], *ends[1], PAPER.grid, 0.35))
     return parts
 
 
@@ -203,7 +195,7 @@ def _why_withheld(frame: Frame, chart: StrideChart) -> list[str]:
     lines = wrap(chart.withheld, int(0.8 * frame.width / (PER_LETTER * SIZE_OF_WORDS)))
     middle, height = (frame.top + frame.bottom) / 2, 16 + LINE_OF_WORDS * len(lines)
     top, x = middle - height / 2, (frame.left + frame.right) / 2
-    parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, WHITE)]
+    parts = [box(frame.left + 0.08 * frame.width, top, 0.84 * frame.width, height, PAPER.paper)]
     parts.append(text(x, top + 10, _withheld_word(), 8.6, anchor="middle", weight=600))
     for k, words in enumerate(lines):
         parts.append(text(x, top + 12 + LINE_OF_WORDS * (k + 0.8), words, SIZE_OF_WORDS, anchor="middle"))
@@ -216,8 +208,8 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
         x = float(frame.x(percent))
         is_labelled = percent % 20 == 0
         if is_labelled and 0 < percent < 100:
-            parts.append(line(x, frame.top, x, frame.bottom, GRID, 0.25))
-        parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), INK, 0.6))
+            parts.append(line(x, frame.top, x, frame.bottom, PAPER.grid, 0.25))
+        parts.append(line(x, frame.bottom, x, frame.bottom + (4 if is_labelled else 2.5), PAPER.ink, 0.6))
         if is_labelled:
             said = f"{percent} %" if is_narrow and percent == 100 else str(percent)
             parts.append(text(x, frame.bottom + 12, said, 7, anchor="middle"))
@@ -225,15 +217,15 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
         y = float(frame.y(degrees))
         is_labelled = degrees % axis.label_every == 0
         if is_labelled and axis.low < degrees < axis.high:
-            width, colour = (0.55, INK) if degrees == 0 else (0.25, GRID)
+            width, colour = (0.55, PAPER.ink) if degrees == 0 else (0.25, PAPER.grid)
             parts.append(line(frame.left, y, frame.right, y, colour, width))
-        parts.append(line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, INK, 0.6))
+        parts.append(line(frame.left - (4 if is_labelled else 2.5), y, frame.left, y, PAPER.ink, 0.6))
         if is_labelled:
             parts.append(text(frame.left - 6, y + 2.5, angle_in_words(float(degrees)), 7, anchor="end"))
     if not is_narrow:
         middle, said = (frame.left + frame.right) / 2, tr("Stride, % (0 and 100 = initial contact of the same foot)")
         parts.append(text(middle, frame.bottom + 22, said, 7, anchor="middle"))
-    parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", INK, 0.7))
+    parts.append(box(frame.left, frame.top, frame.width, frame.height, "none", PAPER.ink, 0.7))
     return parts
 
 
@@ -242,16 +234,16 @@ def _spans(frame: Frame, chart: StrideChart) -> list[str]:
     parts = []
     for row, said in ((0, tr("max")), (1, tr("min"))):
         y = TOP + SPAN_ROW * row
-        parts.append(text(frame.left - 4, y + 6.8, said, 6.6, anchor="end", fill=GREY))
+        parts.append(text(frame.left - 4, y + 6.8, said, 6.6, anchor="end", fill=PAPER.note))
         for span in chart.spans:
             if span.is_maximum is (row == 0):
                 left, right = float(frame.x(span.first)), float(frame.x(span.last))
-                parts.append(box(left, y, right - left, SPAN_HEIGHT, OUTER, OUTER_EDGE, 0.5))
+                parts.append(box(left, y, right - left, SPAN_HEIGHT, PAPER.band_2sd, PAPER.band_2sd_edge, 0.5))
                 parts.append(text((left + right) / 2, y + 6.8, span.name, 6.6, anchor="middle"))
     for one in chart.curves:
         for peak in one.peaks:
             x, y, top = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg)), frame.top + 12.5  # below the words
-            parts += [line(x, top, x, y, GREY, 0.5, "0.8 1.6")] if y > top else []
+            parts += [line(x, top, x, y, PAPER.note, 0.5, "0.8 1.6")] if y > top else []
     return parts
 
 
@@ -264,11 +256,11 @@ def _toe_offs(frame: Frame, curves: Sequence[StrideCurve], *, is_narrow: bool) -
         parts.append(line(x, frame.top, x, frame.bottom, _look(one)[0], 0.55 if is_many else 0.9, _dash(one)))
         if np.isfinite(one.toe_off_sd):
             reach = frame.width * one.toe_off_sd / 100
-            parts.append(line(x - reach, frame.top, x + reach, frame.top, INK, 1.4))
+            parts.append(line(x - reach, frame.top, x + reach, frame.top, PAPER.ink, 1.4))
         if is_many:
             spread = float(frame.x(sum(each.toe_off_percent for each in known) / len(known)))
             at = spread + 10 * (k - (len(known) - 1) / 2)
-            parts.append(line(x, frame.top, at, frame.top - 4.5, INK, 0.4))
+            parts.append(line(x, frame.top, at, frame.top - 4.5, PAPER.ink, 0.4))
             parts.append(text(at, frame.top - 6.5, one.toe_off_label, 7, anchor="middle", weight=600))
             if k == 0:
                 parts.append(text(at - 7, frame.top - 6.5, tr("toe-off"), 7, anchor="end"))
@@ -287,8 +279,8 @@ def _peaks(frame: Frame, one: StrideCurve) -> list[str]:
         x, y = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg))
         if np.isfinite(peak.sd_deg):
             low, high = (float(frame.y(peak.mean_deg + sign * peak.sd_deg)) for sign in (-1, 1))
-            parts.append(line(x, low, x, high, INK, 0.8))
-            parts += [line(x - 2.2, end, x + 2.2, end, INK, 0.8) for end in (low, high)]
+            parts.append(line(x, low, x, high, PAPER.ink, 0.8))
+            parts += [line(x - 2.2, end, x + 2.2, end, PAPER.ink, 0.8) for end in (low, high)]
         parts.append(marker(x, y, one.side))
     return parts
 
@@ -320,8 +312,8 @@ def _ticks(frame: Frame, ticks: Sequence[tuple[float, Side]]) -> list[str]:
 
 def _words(frame: Frame, chart: StrideChart) -> list[str]:
     parts = [
-        text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=GREY),
-        text(frame.right - 4, frame.bottom - 4.5, f"↓ {chart.axis.down}", 6.6, anchor="end", fill=GREY),
+        text(frame.left + 4, frame.top + 9.5, f"↑ {chart.axis.up}", 6.6, fill=PAPER.note),
+        text(frame.right - 4, frame.bottom - 4.5, f"↓ {chart.axis.down}", 6.6, anchor="end", fill=PAPER.note),
     ]
     return parts + _simulated(frame, chart)
 

@@ -8,7 +8,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QSizePolicy
 
-from app.charts.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, range_for
+from app.charts.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
 from app.theme import Look
@@ -94,8 +94,7 @@ class TwoWaysChart(Themed):
         texts = []
         for angle in self._angles():
             box = QRectF(0, self._y(angle) - px(9), area.left() - px(2 * TICK), px(18))
-            words = f"{angle:.0f}".replace("-", "\N{MINUS SIGN}")
-            texts.append(PaintedText(words, box, font, "ink2", RIGHT))
+            texts.append(PaintedText(angle_in_words(angle), box, font, "ink2", RIGHT))
         for time_s, words in self._times():
             box = QRectF(self._x(time_s) - px(30), area.bottom() + px(TICK), px(60), px(BELOW - TICK))
             if box.right() <= self.width() + px(RIGHT_MARGIN) / 2:

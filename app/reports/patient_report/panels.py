@@ -6,24 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
-from app.charts.drawing import (
-    BAND_MEAN,
-    COLOURS,
-    DASHES,
-    INK,
-    INNER,
-    INNER_EDGE,
-    OUTER,
-    OUTER_EDGE,
-    Picture,
-    box,
-    line,
-    marker,
-    picture,
-    text,
-)
+from app.charts.drawing import COLOURS, DASHES, Picture, box, line, marker, picture, text
 from app.charts.on_paper import PLAIN, STRIDE
 from app.charts.stride_chart import NO_STRIDES, Axis, PeakMark, Span, StrideCurve, usual_range_deg
+from app.colours import PAPER
 from app.reports.patient_report.facts import Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.wording import side_name, tr
@@ -129,10 +115,10 @@ def stride_swatch() -> Picture:
 
 def band_swatches() -> list[tuple[Picture, str]]:
     inner = [
-        box(0.2, 1, SWATCH_WIDTH - 0.4, 7, INNER, INNER_EDGE, 0.35),
-        line(0, 4.5, SWATCH_WIDTH, 4.5, BAND_MEAN, 0.6),
+        box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
+        line(0, 4.5, SWATCH_WIDTH, 4.5, PAPER.band_mean, 0.6),
     ]
-    outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, OUTER, OUTER_EDGE, 0.35)]
+    outer = [box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_2sd, PAPER.band_2sd_edge, 0.35)]
     return [
         (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Band mean, ±1 SD [1]")),
         (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
@@ -147,7 +133,7 @@ def leg_swatches(facts: Facts) -> list[tuple[Picture, str]]:
 def event_swatches(*, has_other_foot: bool, has_peaks: bool) -> list[tuple[Picture, str]]:
     x = SWATCH_WIDTH / 2
     left = COLOURS[Side.LEFT]
-    toe_off = [line(x, 0, x, SWATCH_HEIGHT, left, 0.9), line(x - 5, 0.8, x + 5, 0.8, INK, 1.4)]
+    toe_off = [line(x, 0, x, SWATCH_HEIGHT, left, 0.9), line(x - 5, 0.8, x + 5, 0.8, PAPER.ink, 1.4)]
     other = [line(x, 1, x, 8, left, 1.1)]
     found = [(picture(toe_off, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Toe\u2011off, bar on top ±1 SD"))]
     if has_other_foot:
@@ -157,13 +143,13 @@ def event_swatches(*, has_other_foot: bool, has_peaks: bool) -> list[tuple[Pictu
 
 def peak_swatch() -> tuple[Picture, str]:
     x = SWATCH_WIDTH / 2
-    parts = [line(x, 0.5, x, 8.5, INK, 0.8), marker(x, 4.5, Side.LEFT)]
+    parts = [line(x, 0.5, x, 8.5, PAPER.ink, 0.8), marker(x, 4.5, Side.LEFT)]
     return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Mean of single peaks, ±1 SD")
 
 
 def cross_swatch() -> Picture:
     x = SWATCH_WIDTH / 2
-    parts = [line(x - 1.8, 4.5 - 1.8 * way, x + 1.8, 4.5 + 1.8 * way, INK, 0.9) for way in (1, -1)]
+    parts = [line(x - 1.8, 4.5 - 1.8 * way, x + 1.8, 4.5 + 1.8 * way, PAPER.ink, 0.9) for way in (1, -1)]
     return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
 
 

@@ -5,25 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.charts.drawing import (
-    COLOURS,
-    DASHES,
-    GREY,
-    GRID,
-    INK,
-    INNER,
-    INNER_EDGE,
-    MM,
-    OUTER,
-    OUTER_EDGE,
-    Picture,
-    badge,
-    box,
-    line,
-    marker,
-    picture,
-    text,
-)
+from app.charts.drawing import COLOURS, DASHES, MM, Picture, badge, box, line, marker, picture, text
+from app.colours import PAPER
 from app.reports.patient_report.numbers_in_words import Band, fixed
 from app.wording import tr
 from core.body import Side
@@ -50,14 +33,17 @@ def gauge(
     parts = []
     if band is not None:
         mean, sd = (band[0] + band[1]) / 2, (band[1] - band[0]) / 2
-        for reach, fill, edge in ((2 * sd, OUTER, OUTER_EDGE), (sd, INNER, INNER_EDGE)):
+        for reach, fill, edge in (
+            (2 * sd, PAPER.band_2sd, PAPER.band_2sd_edge),
+            (sd, PAPER.band_1sd, PAPER.band_1sd_edge),
+        ):
             parts.append(box(at(mean - reach), top, at(mean + reach) - at(mean - reach), height, fill, edge, 0.35))
         group_mean = mean
     if group_mean is not None:
-        parts.append(line(at(group_mean), top, at(group_mean), top + height, GREY, 0.7))
-    parts.append(box(left, top, right - left, height, "none", INK, 0.6))
+        parts.append(line(at(group_mean), top, at(group_mean), top + height, PAPER.note, 0.7))
+    parts.append(box(left, top, right - left, height, "none", PAPER.ink, 0.6))
     for value in np.arange(low, high + step / 2, step):
-        parts.append(line(at(value), top + height, at(value), top + height + 2.5, INK, 0.5))
+        parts.append(line(at(value), top + height, at(value), top + height + 2.5, PAPER.ink, 0.5))
         parts.append(text(at(value), top + height + 20.5, fixed(float(value), 0), 6.6, anchor="middle"))
     for side, value in values.items():
         x = at(value)
@@ -114,10 +100,10 @@ def stride_strip(
     parts = [text(0, 8, title, 7.6, weight=600)]
     if band is not None:
         mean, sd = (band[0] + band[1]) / 2, (band[1] - band[0]) / 2
-        for reach, fill in ((2 * sd, OUTER), (sd, INNER)):
+        for reach, fill in ((2 * sd, PAPER.band_2sd), (sd, PAPER.band_1sd)):
             parts.append(box(left, y(mean + reach), right - left, y(mean - reach) - y(mean + reach), fill))
     for value in np.arange(low, high + 1, 20):
-        parts.append(line(left, y(value), right, y(value), GRID, 0.25))
+        parts.append(line(left, y(value), right, y(value), PAPER.grid, 0.25))
         parts.append(text(left - 6, y(value) + 2.5, fixed(float(value), 0), 7, anchor="end"))
     for side, strides in sides.items():
         if np.isfinite(strides.mean):
@@ -130,7 +116,9 @@ def stride_strip(
                 parts.append(marker(here, y(value), side, COLOURS[side], 4.4))
             elif not is_used:
                 there = bottom - (14 if side is Side.LEFT else 6)
-                parts += [line(here - 1.8, there - 1.8 * d, here + 1.8, there + 1.8 * d, INK, 0.9) for d in (1, -1)]
+                parts += [
+                    line(here - 1.8, there - 1.8 * d, here + 1.8, there + 1.8 * d, PAPER.ink, 0.9) for d in (1, -1)
+                ]
                 parts.append(text(here + 3, there + 2.3, side[0].upper(), 6.4))
     ends = sorted((y(s.mean), side) for side, s in sides.items() if np.isfinite(s.mean))
     for k, (height, side) in enumerate(ends):
@@ -139,7 +127,7 @@ def stride_strip(
         if k == 0 or (k + 1) % 5 == 0:
             parts.append(text(x(k), bottom + 9.5, str(k + 1), 7, anchor="middle"))
     parts.append(text((left + right) / 2, bottom + 20, tr("Stride, in the order walked"), 7, anchor="middle"))
-    parts.append(box(left, top, right - left, bottom - top, "none", INK, 0.7))
+    parts.append(box(left, top, right - left, bottom - top, "none", PAPER.ink, 0.7))
     if is_simulated:
         parts.append(text(right, 8, tr("SIMULATED"), 6.6, anchor="end", weight=600))
     return picture(parts, STRIP_WIDTH, STRIP_HEIGHT, alt)
