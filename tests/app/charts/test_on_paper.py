@@ -1,5 +1,6 @@
 """A deviation on paper: a bracket over its whole height, its size, and the number of its sentence."""
 
+import math
 import re
 from dataclasses import replace
 
@@ -67,7 +68,10 @@ def test_letters_keep_away_from_brackets() -> None:
     (place,) = places_of(frame_of(MARKED, WIDTH), MARKED)
     centres = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="4.5"', draw(MARKED, WIDTH).svg)
     assert len(centres) == 2
+    frame = frame_of(MARKED, WIDTH)
+    points = [(float(frame.x(point.percent)), float(frame.y(point.angle_deg))) for point in SWING.points]
     for x, y in centres:
+        assert min(math.dist((float(x), float(y)), point) for point in points) > 13
         is_beside = place.top - 9 < float(y) < place.bottom + 9
         assert not is_beside or abs(float(x) - place.bar_x) > 9
 
@@ -116,4 +120,6 @@ def test_a_narrow_chart_leaves_the_words_of_its_axis_away() -> None:
     assert "initial contact" in wide.svg
     assert "initial contact" not in narrow.svg
     assert ">100 %</text>" in narrow.svg
+    assert 'text-anchor="middle">L toe-off 60.0 %' in narrow.svg
+    assert 'text-anchor="start">L toe-off 60.0 %' in wide.svg
     assert ">100</text>" in wide.svg

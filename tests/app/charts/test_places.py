@@ -74,6 +74,17 @@ def test_a_second_mark_leaves_the_first_free() -> None:
     assert abs(first.bar_x - second.bar_x) > 5
 
 
+def test_a_bar_does_not_stand_in_the_words_of_another_mark() -> None:
+    ground = ground_of(KNEE, 0.8 * KNEE)
+    first = place_mark(ground, ends((73, 55), (73, 44)), [ONE_LINE, TWO_LINES], 50)
+    second = place_mark(ground, ends((3, 75), (3, 25)), [ONE_LINE], 30)  # where the first's words are
+    assert first.words is not None
+    assert second.words is not None
+    bar = Box(second.bar_x - 1, second.top, second.bar_x + 1, second.bottom)
+    assert not first.words.overlaps(bar)
+    assert not first.words.overlaps(second.words)
+
+
 def test_in_a_narrow_chart_the_second_line_goes_first_and_words_before_the_bar() -> None:
     ground = ground_of(KNEE)
     points = ends((73, 55), (50, 0))
