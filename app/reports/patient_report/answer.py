@@ -9,12 +9,15 @@ from enum import StrEnum
 from app.charts.cycles import is_mean_enough
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.what_stands_out import judged_differences, nothing_found, ranked_findings
-from app.wording import joined, later, tr
+from app.reports.patient_report.what_stands_out import (
+    BANDS_ON_SCREEN,
+    judged_differences,
+    nothing_found,
+    ranked_findings,
+)
+from app.wording import joined, tr
 from core.body import Side
 from core.verdicts.model import Verdict
-
-BANDS_ON_SCREEN = later("the band"), later("the band")
 
 
 class Outcome(StrEnum):

@@ -7,6 +7,7 @@ from app.charts.marks import BAND_SDS, Deviation, Gap, extreme_of, gaps_outside,
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
+from app.reports.patient_report.what_stands_out import BANDS_ON_SCREEN, ranked_findings
 from app.wording import tr
 from core.body import Joint, Side
 from core.norms import KNEE_OVERREAD
@@ -17,18 +18,19 @@ CONTACT, ALL = (0.0, 0.0), (0.0, 100.0)  # percent of the stride
 
 
 def deviations_of(facts: Facts) -> list[Deviation]:
-    """Of each kind of joint the excursion that differs most, where a sentence may tell it, on the first leg."""
+    """Of each kind of joint the excursion between the legs that the findings tell first, on the first leg."""
+    rows = {row.column: row for row in what_differs(facts)}
+    told = [rows[one.column] for one in ranked_findings(facts, None, BANDS_ON_SCREEN) if one.column in rows]
     found: list[Deviation] = []
     for kind in KINDS:
-        row = next((row for row in what_differs(facts) if _is_told_of(row, kind)), None)
+        row = next((row for row in told if _has_extremes(row, kind)), None)
         if row is not None:
             found.append(_on_leg(facts, row, kind))
     return found
 
 
-def _is_told_of(row: LegsRow, kind: str) -> bool:
-    has_extremes = QUANTITIES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
-    return has_extremes and row.column.startswith(kind) and row.difference.is_worth_a_sentence
+def _has_extremes(row: LegsRow, kind: str) -> bool:
+    return row.column.startswith(kind) and QUANTITIES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
 
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:

@@ -23,6 +23,7 @@ from core.verdicts.quantities import joint_of as joint_of_column
 
 MAX_FINDINGS = 3
 BANDS_ON_PAPER = later("band [1]"), later("band [2]")  # with the numbers of the sources on its last page
+BANDS_ON_SCREEN = later("the band"), later("the band")
 MAX_AWAY_SD = 2.0  # of a band: what lies nearer is inside of it
 MAX_OFFSET_DEG = 10.0  # laboratories differ by 7 deg in the height of their curves, a standing zero by 3 deg
 BETWEEN_LEGS = (
