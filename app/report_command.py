@@ -51,7 +51,7 @@ def make(wanted: argparse.Namespace, progress: Report) -> list[str]:
     """
     from app.reports.patient_report.document import make_report
     from app.reports.patient_report.report_file import check_report_place, chosen_walks, replace_report
-    from app.reports.patient_report.request import MAX_CONDITIONS, ReportRequest, Visit
+    from app.reports.patient_report.request import MAX_CONDITIONS, AnalysedVisit, ReportRequest
     from core.analysis import analyse
     from devices.files.refusal import FileRefusedError
 
@@ -62,12 +62,12 @@ def make(wanted: argparse.Namespace, progress: Report) -> list[str]:
     progress(0.0, str(wanted.session))
     comment = _comment(wanted.comment)
     session = read_place(wanted, wanted.session, progress)
-    visit = Visit(session, analyse(session, progress=progress))
+    visit = AnalysedVisit(session, analyse(session, progress=progress))
     walks = chosen_walks(visit, wanted.walk, str(wanted.session))
     earlier = None
     if wanted.earlier is not None:
         before = read_place(wanted, wanted.earlier, progress)
-        earlier = Visit(before, analyse(before, progress=progress))
+        earlier = AnalysedVisit(before, analyse(before, progress=progress))
         chosen_walks(earlier, [], str(wanted.earlier))  # refuses a visit without a walk
         walks = walks if wanted.walk else walks[-1:]  # a visit is compared with a visit
     now, version = datetime.now().astimezone(), version_of("gaitwright")

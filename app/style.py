@@ -48,7 +48,7 @@ SCROLL_BAR, SCROLL_MARGIN, LEAST_HANDLE = 12, 3, 32
 BUSY_S = 1.5  # from one end of a bar to the other, where it is not known how long something takes
 
 
-class Kind(Enum):
+class ButtonKind(Enum):
     """What a button is for: what we wish, another way, one beside the matter; on or off; one of a few; any of a few."""
 
     PRIMARY = auto()
@@ -63,7 +63,7 @@ class Kind(Enum):
 class ButtonFace:
     """What a button shows beside its word: icon, key cap or second line. `is_inverse`: it lies on an inverse ground."""
 
-    kind: Kind
+    kind: ButtonKind
     height: float
     icon: Icon | None = None
     key: str = ""
@@ -81,9 +81,9 @@ class _Measures:
 
 _PLAIN = _Measures(padding=20, text=16, icon=22, gap=8)
 _MEASURES = {
-    Kind.QUIET: _Measures(padding=10, text=16, icon=22, gap=8),
-    Kind.SEGMENT: _Measures(padding=14, text=14, icon=0, gap=0),
-    Kind.CHIP: _Measures(padding=12, text=14, icon=16, gap=4),
+    ButtonKind.QUIET: _Measures(padding=10, text=16, icon=22, gap=8),
+    ButtonKind.SEGMENT: _Measures(padding=14, text=14, icon=0, gap=0),
+    ButtonKind.CHIP: _Measures(padding=12, text=14, icon=16, gap=4),
 }
 
 
@@ -196,9 +196,9 @@ class ControlStyle(QProxyStyle):
 
     def _button_icon(self, face: ButtonFace, option: QStyleOption) -> Icon | None:
         is_on = bool(option.state & State.State_On)
-        if face.kind is Kind.TOGGLE:
+        if face.kind is ButtonKind.TOGGLE:
             return Icon.CHECK if is_on else Icon.UNCHECKED
-        return Icon.CHECK if face.kind is Kind.CHIP and is_on else face.icon
+        return Icon.CHECK if face.kind is ButtonKind.CHIP and is_on else face.icon
 
     def _button_widths(self, face: ButtonFace, option: QStyleOption) -> tuple[int, int, int]:
         """Give the widths of icon, word and key cap; a word is as wide as it is when chosen."""
@@ -214,7 +214,7 @@ class ControlStyle(QProxyStyle):
         widths = [width for width in self._button_widths(face, option) if width]
         width = sum(widths) + theme.px(measures.gap) * (len(widths) - 1)
         height = theme.px(face.height)
-        if face.kind is Kind.SEGMENT:
+        if face.kind is ButtonKind.SEGMENT:
             width = max(width, QFontMetrics(theme.font(12)).horizontalAdvance(face.note))
             height -= 4  # what the frame round all segments takes
         return QSize(width + 2 * theme.px(measures.padding), height)
@@ -223,7 +223,7 @@ class ControlStyle(QProxyStyle):
         assert isinstance(option, QStyleOptionButton)
         theme, measures, rect = self.theme, _MEASURES.get(face.kind, _PLAIN), option.rect
         ink = self._paint_button_frame(face, option, painter)
-        if face.kind is Kind.SEGMENT:
+        if face.kind is ButtonKind.SEGMENT:
             self._paint_two_lines(face, option, painter, ink)
             return
         icon, word, key = self._button_widths(face, option)
@@ -234,7 +234,7 @@ class ControlStyle(QProxyStyle):
             paint_icon(painter, picture, QRectF(x, (rect.height() - icon) / 2, icon, icon), ink)
             x += icon + gap
         if option.text:
-            is_chip = face.kind is Kind.CHIP
+            is_chip = face.kind is ButtonKind.CHIP
             is_light = is_chip and not option.state & State.State_On
             painter.setPen(ink)
             painter.setFont(theme.font(measures.text, MEDIUM if is_light else SEMIBOLD))
@@ -242,7 +242,7 @@ class ControlStyle(QProxyStyle):
             x += word + gap
         if face.key:
             cap = QRectF(x + 0.5, (rect.height() - theme.px(CAP)) / 2, key - 1, theme.px(CAP))
-            is_filled = face.kind is Kind.PRIMARY
+            is_filled = face.kind is ButtonKind.PRIMARY
             theme.paint_cap(painter, cap, face.key, ink, ink if is_filled else theme.colours.control)
 
     def _paint_button_frame(self, face: ButtonFace, option: QStyleOption, painter: QPainter) -> QColor:
@@ -253,25 +253,25 @@ class ControlStyle(QProxyStyle):
         radius, veil_ink = CONTROL_RADIUS, None
         if face.is_inverse:
             if is_enabled:
-                ink = QColor(c.inv if face.kind is Kind.PRIMARY else c.inv_ink)
-            fill = c.inv_ink if face.kind is Kind.PRIMARY else None
-            theme.paint_box(painter, box, fill, c.inv_ink2 if face.kind is Kind.SECONDARY else None)
+                ink = QColor(c.inv if face.kind is ButtonKind.PRIMARY else c.inv_ink)
+            fill = c.inv_ink if face.kind is ButtonKind.PRIMARY else None
+            theme.paint_box(painter, box, fill, c.inv_ink2 if face.kind is ButtonKind.SECONDARY else None)
             veil_ink = ink
-        elif face.kind is Kind.PRIMARY:
+        elif face.kind is ButtonKind.PRIMARY:
             theme.paint_box(painter, box, c.inv if is_enabled else c.track)
             if is_enabled:
                 ink = veil_ink = QColor(c.inv_ink)
-        elif face.kind is Kind.SEGMENT:
+        elif face.kind is ButtonKind.SEGMENT:
             radius = CONTROL_RADIUS - 1  # within the frame round all
             ink = QColor(c.disabled if not is_enabled else c.ink if is_on else c.ink2)
             if is_on:
                 theme.paint_box(painter, box, c.surface, c.ink, 1.75, radius)
         elif is_on:
             theme.paint_box(painter, box, c.surface, c.ink, 1.75)
-        elif face.kind is not Kind.QUIET:
+        elif face.kind is not ButtonKind.QUIET:
             theme.paint_box(painter, box, c.surface, c.control)
         is_touched = bool(option.state & (State.State_MouseOver | State.State_Sunken))
-        if is_touched and is_enabled and not (face.kind is Kind.SEGMENT and is_on):
+        if is_touched and is_enabled and not (face.kind is ButtonKind.SEGMENT and is_on):
             veil = theme.veil(bool(option.state & State.State_Sunken), veil_ink)
             theme.paint_box(painter, box, veil, radius=radius)
         if face.is_inverse and option.state & State.State_HasFocus:

@@ -242,12 +242,22 @@ def test_a_public_function_of_core_and_devices_says_what_its_numbers_are() -> No
     ] == []
 
 
-def test_a_class_of_core_and_devices_has_its_name_for_itself() -> None:
+def classes_of(*rooms: str) -> dict[str, list[Path]]:
+    """Every class by its name, with the files that define one of that name."""
     defined: dict[str, list[Path]] = {}
-    for file in python_files(*PACKAGES, "packaging", "tests"):
+    for file in python_files(*rooms):
         for node in ast.walk(parse(file)):
             if isinstance(node, ast.ClassDef):
                 defined.setdefault(node.name, []).append(file.relative_to(ROOT))
+    return defined
+
+
+def test_a_class_of_the_product_has_its_name_for_itself() -> None:
+    assert {name: files for name, files in classes_of("app", "core", "devices").items() if len(files) > 1} == {}
+
+
+def test_a_class_of_core_and_devices_shares_its_name_with_no_test() -> None:
+    defined = classes_of(*PACKAGES, "packaging", "tests")
     ours = {"core", "devices", "tests/core", "tests/devices", "tests/examples"}
     assert {
         name: sorted(map(str, files))

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from app.icons import Icon
 from app.theme import Look
 from app.widgets.banner import Banner
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.header import Header
 from app.widgets.page_stack import PageStack
@@ -220,7 +220,7 @@ class SessionScreen(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_done(self, opened: "Opened") -> None:
-        from app.reports.patient_report.request import Visit
+        from app.reports.patient_report.request import AnalysedVisit
 
         if self._results is None:
             from app.pages.result_page import ResultPage
@@ -234,7 +234,7 @@ class SessionScreen(Themed):
             for before, after in pairwise(order):
                 self.setTabOrder(before, after)
         self._opened, session = opened, opened.session
-        self._results.show_visit(Visit(session, opened.analysis))
+        self._results.show_visit(AnalysedVisit(session, opened.analysis))
         self.header.show_session(
             session.patient.code or tr("No code"), _in_words(session.patient), session.is_simulated
         )
@@ -299,11 +299,11 @@ class _ActionBar(Themed):
         super().__init__()
         self._look, self._is_narrow = look, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self.back = Button(look, tr("Back"), Kind.SECONDARY, Icon.BACK)
+        self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK)
         self.back.hide()
-        self.open_folder = Button(look, tr("Open a session folder"), Kind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
-        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.QUIET, Icon.PLAY, tr("Ctrl D"))
-        self.how_found = Button(look, tr("How was this found?"), Kind.QUIET, Icon.SEARCH)
+        self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.SECONDARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(look, tr("Open the demonstration"), ButtonKind.QUIET, Icon.PLAY, tr("Ctrl D"))
+        self.how_found = Button(look, tr("How was this found?"), ButtonKind.QUIET, Icon.SEARCH)
         self._purpose = Text(look, tr(PURPOSE_WORDS), size=12, tone="ink2", wraps=True)
         self._purpose.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._row = QHBoxLayout(self)

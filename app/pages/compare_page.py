@@ -30,7 +30,7 @@ from app.plots.difference_plot import DifferenceGroup, DifferencePlot, Differenc
 from app.reports.comparison import (
     Compared,
     Comparison,
-    Kind,
+    Contrast,
     Part,
     SideRow,
     compare_sides,
@@ -72,9 +72,9 @@ NO_COMMON_CONDITION = later(
     "This visit has no condition in common with an earlier one, so they are not compared. {walked}"
 )
 NOTHING = {
-    Kind.CONDITIONS: later("One walk has strides. Record a second one to compare."),
-    Kind.VISITS: later("No earlier visit of this patient has a walk to compare."),
-    Kind.SIDES: later("One leg was measured, so there is nothing to compare it with."),
+    Contrast.CONDITIONS: later("One walk has strides. Record a second one to compare."),
+    Contrast.VISITS: later("No earlier visit of this patient has a walk to compare."),
+    Contrast.SIDES: later("One leg was measured, so there is nothing to compare it with."),
 }
 
 
@@ -147,7 +147,7 @@ class ComparePage(Themed):
         """Whether earlier visits are offered."""
         return self._has_visits
 
-    def choose_kind(self, kind: Kind) -> None:
+    def choose_kind(self, kind: Contrast) -> None:
         """Compare this with that; nothing where it is not offered."""
         if (found := self.kinds.findData(kind)) >= 0:
             self.kinds.setCurrentIndex(found)
@@ -182,14 +182,14 @@ class ComparePage(Themed):
         self._show_parts()
 
     @property
-    def kind(self) -> Kind:
-        return Kind((self.kinds.currentData() or Kind.CONDITIONS).split()[0])
+    def kind(self) -> Contrast:
+        return Contrast((self.kinds.currentData() or Contrast.CONDITIONS).split()[0])
 
     @property
     def _of_visits(self) -> ComparedVisits | None:
         """The condition whose visits are compared."""
-        number = self.kinds.currentIndex() - self.kinds.findData(Kind.VISITS)
-        return self._visits[number] if self._visits and self.kind is Kind.VISITS else None
+        number = self.kinds.currentIndex() - self.kinds.findData(Contrast.VISITS)
+        return self._visits[number] if self._visits and self.kind is Contrast.VISITS else None
 
     @property
     def tab_order(self) -> list[QWidget]:
@@ -262,7 +262,7 @@ class ComparePage(Themed):
         self.view.setVisible(has_any and not self._is_spacious)
         self.plot.setVisible(view != TABLE or self._is_spacious)
         self.table.setVisible(view == TABLE or self._is_spacious)
-        is_sides = self.kind is Kind.SIDES
+        is_sides = self.kind is Contrast.SIDES
         self._grid_room.setVisible(not is_sides)
         self.side_charts.setVisible(is_sides)
         self.chips.setVisible(not is_sides)
@@ -288,21 +288,21 @@ class ComparePage(Themed):
         before = self.kinds.currentData()
         self.kinds.blockSignals(True)
         self.kinds.clear()
-        self.kinds.addItem(tr("Walks of this visit"), Kind.CONDITIONS)
+        self.kinds.addItem(tr("Walks of this visit"), Contrast.CONDITIONS)
         if self._has_visits and not self._visits:
-            self.kinds.addItem(tr("Visits"), Kind.VISITS)
+            self.kinds.addItem(tr("Visits"), Contrast.VISITS)
         for number, visits in enumerate(self._visits or ()):  # the first keeps the data of them all
             said = tr("Visits, {condition}").format(condition=condition_in_words(visits.condition))
-            self.kinds.addItem(said, f"{Kind.VISITS} {number}" if number else Kind.VISITS)
-        self.kinds.addItem(self._affected_words, Kind.SIDES)
-        first = Kind.CONDITIONS if len(self._conditions) > 1 else Kind.SIDES
+            self.kinds.addItem(said, f"{Contrast.VISITS} {number}" if number else Contrast.VISITS)
+        self.kinds.addItem(self._affected_words, Contrast.SIDES)
+        first = Contrast.CONDITIONS if len(self._conditions) > 1 else Contrast.SIDES
         self.kinds.setCurrentIndex(max(self.kinds.findData(before if before is not None else first), 0))
         self.kinds.blockSignals(False)
         self.kinds.updateGeometry()
         self._on_kind_changed()
 
     def _on_kind_changed(self) -> None:
-        if self.kind is Kind.VISITS and self._visits is None and not self._is_reading:
+        if self.kind is Contrast.VISITS and self._visits is None and not self._is_reading:
             self._is_reading = True
             self.visits_wished.emit()
         parts = self._parts()
@@ -311,7 +311,7 @@ class ComparePage(Themed):
         self._show()
 
     def _parts(self) -> tuple[Part, ...]:
-        if self.kind is Kind.VISITS:
+        if self.kind is Contrast.VISITS:
             return self._of_visits.parts if self._of_visits is not None else ()
         return self._conditions
 
@@ -327,14 +327,14 @@ class ComparePage(Themed):
         self.chips = chips
 
     def _offer_bases(self, parts: Sequence[Part]) -> None:
-        pattern = tr("Walk: {letter}") if self.kind is Kind.SIDES else tr("Starting point: {letter}")
-        shown = [part for part in parts if self.kind is Kind.SIDES or part.letter in self.chips.chosen]
+        pattern = tr("Walk: {letter}") if self.kind is Contrast.SIDES else tr("Starting point: {letter}")
+        shown = [part for part in parts if self.kind is Contrast.SIDES or part.letter in self.chips.chosen]
         before = self.bases.currentData()
         self.bases.blockSignals(True)
         self.bases.clear()
         for part in shown:
             self.bases.addItem(pattern.format(letter=part.letter), part.letter)
-        last = len(shown) - 1 if self.kind is Kind.SIDES else 0
+        last = len(shown) - 1 if self.kind is Contrast.SIDES else 0
         found = self.bases.findData(before)
         self.bases.setCurrentIndex(found if found >= 0 else last)
         self.bases.blockSignals(False)
@@ -348,19 +348,19 @@ class ComparePage(Themed):
     def _show(self) -> None:
         self.nothing.setText(self._why_nothing())
         if not self.nothing.text():
-            if self.kind is Kind.SIDES:
+            if self.kind is Contrast.SIDES:
                 self._show_sides()
             else:
                 self._show_comparison()
         self._show_parts()
 
     def _why_nothing(self) -> str:
-        if self.kind is Kind.VISITS and self._visits is None:
+        if self.kind is Contrast.VISITS and self._visits is None:
             return tr("The earlier visits are being read.")
         parts = self._parts()
-        if self.kind is Kind.SIDES:
-            return "" if any(len(part.sides) > 1 for part in parts) else tr(NOTHING[Kind.SIDES])
-        if self.kind is Kind.VISITS and not parts and self._walked:
+        if self.kind is Contrast.SIDES:
+            return "" if any(len(part.sides) > 1 for part in parts) else tr(NOTHING[Contrast.SIDES])
+        if self.kind is Contrast.VISITS and not parts and self._walked:
             return tr(NO_COMMON_CONDITION).format(walked=self._walked)
         return tr(NOTHING[self.kind]) if len(parts) < 2 else ""
 

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.field import Field
@@ -63,7 +63,7 @@ class CorrectPage(Themed):
         self._look = look
         self.walk_rows: dict[str, _WalkRow] = {}
         self.joint_rows: dict[Joint, _JointRow] = {}
-        self.back = Button(look, tr("Back to the results"), Kind.SECONDARY, Icon.BACK)
+        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
         self.note = Text(
             look, tr("Every correction is kept with who made it, and can be undone."), tone="ink2", wraps=True
         )
@@ -73,7 +73,7 @@ class CorrectPage(Themed):
         self.joints.column.addWidget(Text(look, tr("Joints"), size=16, weight=SEMIBOLD))
         self.sides = Card(look)
         self.sides.column.addWidget(Text(look, tr("Sides"), size=16, weight=SEMIBOLD))
-        self.swap = Button(look, tr("Left and right were swapped"), Kind.SECONDARY, Icon.REPEAT)
+        self.swap = Button(look, tr("Left and right were swapped"), ButtonKind.SECONDARY, Icon.REPEAT)
         self.swap_note = Text(look, size=14, tone="ink2", wraps=True)
         self._build()
         self.back.clicked.connect(self.closed)

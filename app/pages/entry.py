@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWi
 
 from app.theme import Look
 from app.widgets.banner import Banner
-from app.widgets.header import Mark
+from app.widgets.header import ProductMark
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 
@@ -22,7 +22,7 @@ class EntryPage(Themed):
         self._look = look
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
         self._mark_row = QHBoxLayout()
-        self._mark_row.addWidget(Mark(look))
+        self._mark_row.addWidget(ProductMark(look))
         self._mark_row.addWidget(self._name, 1)
         self.banner = Banner(look)
         self._inside = QWidget()

@@ -13,7 +13,7 @@ from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.text import SEMIBOLD, Text
@@ -43,8 +43,8 @@ class FirstStartPage(EntryPage):
         self._is_asking = False
         self._missing_title = Text(look, tr("Your library is missing"), size=26, weight=SEMIBOLD, wraps=True)
         self.missing_lead = Text(look, tone="ink2", wraps=True)
-        self.look_again = Button(look, tr("Look again"), Kind.PRIMARY, None, tr("Enter"))
-        self.make_another = Button(look, tr("Make a new, empty library instead"), Kind.QUIET, height=44)
+        self.look_again = Button(look, tr("Look again"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.make_another = Button(look, tr("Make a new, empty library instead"), ButtonKind.QUIET, height=44)
         self._title = Text(look, tr("Your library"), size=26, weight=SEMIBOLD, wraps=True)
         self._lead = Text(
             look,
@@ -57,8 +57,8 @@ class FirstStartPage(EntryPage):
         self.passphrase = Field(look, tr("Passphrase"), is_secret=True)
         self._strength = Text(look, tone="ink2", wraps=True)
         self.again = Field(look, tr("Passphrase again"), is_secret=True)
-        self.make = Button(look, tr("Make the library"), Kind.PRIMARY, None, tr("Enter"))
-        self.demonstration = Button(look, tr("Look at the demonstration first"), Kind.QUIET, Icon.PLAY, height=44)
+        self.make = Button(look, tr("Make the library"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.demonstration = Button(look, tr("Look at the demonstration first"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._key_title = Text(look, tr("Your recovery key"), size=26, weight=SEMIBOLD, wraps=True)
         self._key_lead = Text(
             look,
@@ -80,12 +80,12 @@ class FirstStartPage(EntryPage):
             wraps=True,
         )
         self._key_words = Text(look, size=20, weight=SEMIBOLD, is_code=True, wraps=True)
-        self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
-        self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
+        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.typed = Field(look, tr("Type it back from the paper or the file"), is_code=True)
-        self.go = Button(look, tr("Go on"), Kind.PRIMARY, None, tr("Enter"))
+        self.go = Button(look, tr("Go on"), ButtonKind.PRIMARY, None, tr("Enter"))
         self.renew = Button(look, tr("Make a new recovery key"))
-        self.later = Button(look, tr("Later: ask at the next log in"), Kind.QUIET, height=44)
+        self.later = Button(look, tr("Later: ask at the next log in"), ButtonKind.QUIET, height=44)
         self._build()
         self._connect()
         self._show()

@@ -25,7 +25,7 @@ from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.reports.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.findings_list import ORDER, FindingRow
@@ -66,10 +66,10 @@ class FoundPage(Themed):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look, self._width = look, 0.0
-        self.back = Button(look, tr("Back to the results"), Kind.SECONDARY, Icon.BACK)
+        self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
         names = [(str(joint), capitalised(name_of(joint)), "") for joint in _IN_ORDER]
         self.joints = Segmented(look, tr("Joint"), names)
-        self.save = Button(look, tr("Save these figures as CSV"), Kind.SECONDARY, Icon.FOLDER)
+        self.save = Button(look, tr("Save these figures as CSV"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.note = Text(look, tone="ink2", wraps=True)
         self.waiting = SentencePage(look)
         self.axis = _AxisCard(look)

@@ -23,7 +23,7 @@ from app.icons import Icon
 from app.pages.help_reader import HelpReader
 from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -52,7 +52,7 @@ class HelpPage(Themed):
         self.choice = Choice(look, tr("Topic"))
         self.choice.addItems([topic_title(topic) for topic in Topic])
         self.text = HelpReader(look)
-        self.back = Button(look, tr("Back"), Kind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.back = Button(look, tr("Back"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self._build()
         self.topics.chosen.connect(self.show_topic)
         self.choice.currentIndexChanged.connect(self._on_choice_changed)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, Q
 from app.icons import Icon, paint_icon
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -46,10 +46,10 @@ class HomePage(Themed):
         self._nobody = _Empty(look)
         self._code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
         self._person = Text(look, tone="ink2", wraps=True)
-        self.delete_patient = Button(look, tr("Delete patient"), Kind.QUIET, Icon.DELETE, height=44)
+        self.delete_patient = Button(look, tr("Delete patient"), ButtonKind.QUIET, Icon.DELETE, height=44)
         self._sessions_title = Text(look, tr("Sessions"), size=16, weight=SEMIBOLD)
         self._stored = Text(look, size=12, tone="ink2")
-        self.delete_session = Button(look, tr("Delete session"), Kind.QUIET, Icon.DELETE, height=44)
+        self.delete_session = Button(look, tr("Delete session"), ButtonKind.QUIET, Icon.DELETE, height=44)
         self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True)
         self._none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
         self._build()
@@ -250,8 +250,8 @@ class _Empty(Themed):
         self._look = look
         self._sentence = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.new_patient = Button(look, tr("New patient"), Kind.PRIMARY, Icon.ADD)
-        self.demonstration = Button(look, tr("Open demonstration"), Kind.QUIET, Icon.PLAY)
+        self.new_patient = Button(look, tr("New patient"), ButtonKind.PRIMARY, Icon.ADD)
+        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence)

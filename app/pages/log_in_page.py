@@ -13,7 +13,7 @@ from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -48,11 +48,11 @@ class LogInPage(EntryPage):
         self.again = Field(look, tr("New passphrase again"), is_secret=True)
         self._strength = Text(look, tone="ink2", wraps=True)
         self.remember = Toggle(look, tr("Remember on this computer"), "", is_on=False)
-        self.go = Button(look, tr("Open"), Kind.PRIMARY, None, tr("Enter"))
-        self.use_remembered = Button(look, tr("Open with this computer's keyring"), Kind.SECONDARY)
-        self.use_recovery = Button(look, tr("Use the recovery key"), Kind.QUIET, height=44)
-        self.leave = Button(look, tr("Another operator"), Kind.QUIET, height=44)
-        self.demonstration = Button(look, tr("Open demonstration"), Kind.QUIET, Icon.PLAY, height=44)
+        self.go = Button(look, tr("Open"), ButtonKind.PRIMARY, None, tr("Enter"))
+        self.use_remembered = Button(look, tr("Open with this computer's keyring"), ButtonKind.SECONDARY)
+        self.use_recovery = Button(look, tr("Use the recovery key"), ButtonKind.QUIET, height=44)
+        self.leave = Button(look, tr("Another operator"), ButtonKind.QUIET, height=44)
+        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY, height=44)
         self._second = QTimer(self)
         self._second.setInterval(SECOND_MS)
         self._build()

@@ -12,7 +12,7 @@ from app.icons import VERDICT_ICONS, Icon, paint_icon
 from app.reports.patient_report.data_quality import DataQuality, QualityLine
 from app.theme import Look
 from app.widgets.body_figure import BodyFigure, SensorMark
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.facts_table import fact_columns, fact_rows
 from app.widgets.findings_list import FindingsList
@@ -48,7 +48,7 @@ class QualityPage(Themed):
         self.then = Text(look, tone="ink2", wraps=True)
         self.in_order = Text(look, wraps=True)
         self.engineering = Toggle(look, tr("Engineering figures"), tr("E"), is_on=False)
-        self.how_found = Button(look, tr("How was this found?"), Kind.SECONDARY, Icon.SEARCH, height=52)
+        self.how_found = Button(look, tr("How was this found?"), ButtonKind.SECONDARY, Icon.SEARCH, height=52)
         self.facts = CellTable(look, tr("How each joint was found"), head=36)
         self.findings = FindingsList(look)
         self.figure = JointsFigure(look)
@@ -209,7 +209,7 @@ class LineCard(Themed):
         self._row.addLayout(words, 1)
         if can_repeat and line.side is not None:
             word = tr("Repeat left leg") if line.side is Side.LEFT else tr("Repeat right leg")
-            self.repeat = Button(look, word, Kind.SECONDARY, Icon.REPEAT, height=44)
+            self.repeat = Button(look, word, ButtonKind.SECONDARY, Icon.REPEAT, height=44)
             self._row.addWidget(self.repeat, 0, Qt.AlignmentFlag.AlignBottom)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self._on_look_changed()

@@ -20,18 +20,17 @@ from app.pages.strides_page import StridesPage
 from app.plots.angle_chart import Curve
 from app.plots.joint_charts import JointCharts
 from app.plots.moving_legs import MovingLegs
-from app.reports.comparison import Kind as ComparedKind
-from app.reports.comparison import conditions_of
+from app.reports.comparison import Contrast, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, sides_with_band
 from app.review.mean_legs import mean_legs
 from app.theme import Look
 from app.widgets import grid
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.door import Door
 from app.widgets.fact_strip import FactStrip
@@ -85,7 +84,7 @@ class Beside(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Room:
+class PageRoom:
     """What a page of its size has room for."""
 
     is_compact: bool = False
@@ -153,10 +152,10 @@ class ResultPage(Themed):
         super().__init__()
         parts = parts or ResultParts(look)
         self._look = look
-        self._visit: Visit | None = None
+        self._visit: AnalysedVisit | None = None
         self._can_choose = self._is_live = False
         self._stride: Mapping[Joint, FloatArray] = {}  # in force
-        self._room = Room()
+        self._room = PageRoom()
         self._height = 0.0
         self._behind = Behind.NOTHING
         self._wanted = ANSWER  # of a walk; kept while recordings without it are looked at
@@ -170,7 +169,7 @@ class ResultPage(Themed):
                 (STRIDES, tr("Strides"), ""),
             ],
         )
-        self.to_answer = Button(look, tr("Answer"), Kind.SECONDARY, Icon.BACK, tr("Esc"))
+        self.to_answer = Button(look, tr("Answer"), ButtonKind.SECONDARY, Icon.BACK, tr("Esc"))
         self.recordings = Choice(look, tr("Recording"))
         self.beside = Choice(look, tr("Beside"))
         self.methods = Segmented(
@@ -196,12 +195,12 @@ class ResultPage(Themed):
         self.charts = parts.charts
         self.quality = parts.quality
         self.shown = Text(look, size=14, tone="ink2")
-        self.whole = Button(look, tr("Whole recording"), Kind.QUIET, Icon.WHOLE, tr("Home"), height=44)
+        self.whole = Button(look, tr("Whole recording"), ButtonKind.QUIET, Icon.WHOLE, tr("Home"), height=44)
         self.hint = Text(look, size=12, tone="ink2", wraps=True)
         self._build()
         self._connect()
 
-    def show_visit(self, visit: Visit, *, can_choose: bool = False, is_live: bool = False) -> None:
+    def show_visit(self, visit: AnalysedVisit, *, can_choose: bool = False, is_live: bool = False) -> None:
         """Show the recording that was on the screen, if `visit` has it, else its first walk or first recording.
 
         Parameters
@@ -240,7 +239,7 @@ class ResultPage(Themed):
         Where there is little room the key figures join the sentence, and the controls take two rows.
         """
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
-        room = Room(
+        room = PageRoom(
             is_compact=is_compact,
             is_narrow=width < NARROW_BELOW,
             has_two_charts=width >= TWO_CHARTS_FROM,
@@ -620,7 +619,7 @@ class ResultPage(Themed):
             self.beside.blockSignals(True)
             self.beside.setCurrentIndex(0)
             self.beside.blockSignals(False)
-            self.compare.choose_kind(ComparedKind.CONDITIONS if beside is Beside.CONDITIONS else ComparedKind.VISITS)
+            self.compare.choose_kind(Contrast.CONDITIONS if beside is Beside.CONDITIONS else Contrast.VISITS)
             self.view.choose(COMPARE)
         is_band = self.beside.currentData() is Beside.BAND
         self.cycles.charts.set_band_shown(is_band)

@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QVBoxLayout
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 
@@ -20,7 +20,7 @@ class SentencePage(Themed):
         self._then = Text(look, size=14, tone="ink2", wraps=True)
         for text in (self._what, self._then):
             text.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.button = Button(look, "", Kind.SECONDARY, Icon.CHEVRON)
+        self.button = Button(look, "", ButtonKind.SECONDARY, Icon.CHEVRON)
         self.button.clicked.connect(self.pressed)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)

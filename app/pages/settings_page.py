@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 from app.icons import Icon
 from app.passphrases import REFUSED, strength_in_words, strength_of
 from app.theme import SCALES, Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -218,8 +218,8 @@ class SettingsPage(Themed):
             tone="ink2",
             wraps=True,
         )
-        self.print = Button(look, tr("Print"), Kind.SECONDARY, Icon.PRINT)
-        self.save = Button(look, tr("Save as a file"), Kind.SECONDARY, Icon.IMPORT)
+        self.print = Button(look, tr("Print"), ButtonKind.SECONDARY, Icon.PRINT)
+        self.save = Button(look, tr("Save as a file"), ButtonKind.SECONDARY, Icon.IMPORT)
         self.access_card.column.addWidget(self.old)
         self.access_card.column.addWidget(self.new)
         self.access_card.column.addWidget(self._strength)
@@ -243,7 +243,7 @@ class SettingsPage(Themed):
         self.backup_folder = Text(look, tone="ink2", wraps=True)
         self.backup_said = Text(look, weight=MEDIUM, wraps=True)
         self.back_up = Button(look, tr("Back up now"))
-        self.choose_folder = Button(look, tr("Choose the folder"), Kind.QUIET, Icon.FOLDER)
+        self.choose_folder = Button(look, tr("Choose the folder"), ButtonKind.QUIET, Icon.FOLDER)
         self.backup_card.column.addWidget(Text(look, hint, tone="ink2", wraps=True))
         self.backup_card.column.addWidget(self.backup_folder)
         self.backup_card.column.addWidget(self.backup_said)
@@ -273,7 +273,7 @@ class SettingsPage(Themed):
         self._leaving = ""
         self.leaving_words = Text(look, wraps=True)
         self.remove = Button(look, tr("Remove and change the key"))
-        self.keep = Button(look, tr("Cancel"), Kind.QUIET)
+        self.keep = Button(look, tr("Cancel"), ButtonKind.QUIET)
         self.operators_card.column.addWidget(self.leaving_words)
         self._add_left(self.operators_card, self.remove, self.keep)
         self._show_leaving("")
@@ -283,7 +283,7 @@ class SettingsPage(Themed):
         for key, words in self._roles:
             self.role.addItem(words, key)
         self.first = Field(look, tr("First passphrase, to be changed by its owner"), is_secret=True)
-        self.add = Button(look, tr("Add the operator"), Kind.SECONDARY, Icon.ADD)
+        self.add = Button(look, tr("Add the operator"), ButtonKind.SECONDARY, Icon.ADD)
         self.operators_card.column.addWidget(self.code)
         self.operators_card.column.addWidget(self.name)
         self.operators_card.column.addWidget(Text(look, tr("Role"), weight=MEDIUM))

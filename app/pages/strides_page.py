@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 from app.icons import Icon
 from app.reports.walk_figures import by_hand_in_words
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, StrideLine, StrideList
 from app.widgets.text import SEMIBOLD, Text
@@ -32,8 +32,8 @@ class StridesPage(Card):
         super().__init__(look, padding=12)
         self._recording: RecordingAnalysis | None = None
         self.list = StrideList(look, tr("Strides"))
-        self.turn = Button(look, "", Kind.SECONDARY, key=tr("Space"), height=44)
-        self.all = Button(look, tr("Take all in again"), Kind.QUIET, Icon.REPEAT, height=44)
+        self.turn = Button(look, "", ButtonKind.SECONDARY, key=tr("Space"), height=44)
+        self.all = Button(look, tr("Take all in again"), ButtonKind.QUIET, Icon.REPEAT, height=44)
         self.legend = Text(look, tr("Each curve is over its side's mean, in grey."), size=12, tone="ink2")
         self.note = Text(look, size=12, tone="ink2", wraps=True)
         self._buttons = QHBoxLayout()

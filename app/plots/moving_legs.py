@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 from app.icons import Icon
 from app.review.mean_legs import MeanLegs
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.segmented import Segmented
@@ -53,7 +53,7 @@ class MovingLegs(Card):
         head.addStretch(1)
         self.picture = _LegsPicture(look)
         self.picture.pointed.connect(self.show_percent)
-        self.play = Button(look, "", Kind.SECONDARY, Icon.PLAY, height=40)
+        self.play = Button(look, "", ButtonKind.SECONDARY, Icon.PLAY, height=40)
         self.speed = Segmented(look, tr("Speed"), [(key, word, "") for key, word, _ in SPEEDS])
         self.where = Text(look, weight=SEMIBOLD)
         self.note = Text(look, size=12, tone="ink2", wraps=True)

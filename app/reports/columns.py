@@ -28,7 +28,7 @@ NEEDS = {
 AS_PARAMETER, AS_ROW = "parameter", "as the parameter"
 
 
-class Column(NamedTuple):
+class ColumnMeaning(NamedTuple):
     """What a column means; `unit` None: as its name ends."""
 
     definition: str
@@ -37,23 +37,23 @@ class Column(NamedTuple):
     unit: str | None = None
 
 
-def _word(definition: str) -> Column:
+def _word(definition: str) -> ColumnMeaning:
     """A column of words or counts."""
-    return Column(definition, unit="")
+    return ColumnMeaning(definition, unit="")
 
 
-def _of_stride(name: str) -> Column:
+def _of_stride(name: str) -> ColumnMeaning:
     """A column that strides.csv has and the parameters of other tables are."""
     needs, kind = NEEDS.get(QUANTITIES[name], ""), name.split("_")[0]
     sign = FLEXION[kind] if QUANTITIES[name] is QuantityClass.HEIGHT else ""
     if name in WINDOWS:
         window = WINDOWS[name]
         what = "largest" if window.is_maximum else "smallest"
-        return Column(f"{what} angle from {window.first} to {window.last} % of the stride", needs, sign)
+        return ColumnMeaning(f"{what} angle from {window.first} to {window.last} % of the stride", needs, sign)
     if name in EXCURSIONS_BY_COLUMN:
         excursion = EXCURSIONS_BY_COLUMN[name]
-        return Column(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
-    return Column(OF_STRIDE[name], needs, sign)
+        return ColumnMeaning(f"{_extreme(excursion.high, 'largest')} less {_extreme(excursion.low, 'smallest')}", needs)
+    return ColumnMeaning(OF_STRIDE[name], needs, sign)
 
 
 def _extreme(window: PeakWindow | None, which: str) -> str:
@@ -75,13 +75,13 @@ OF_STRIDE = {
     "ankle_range_deg": "largest less smallest angle of the stride",
 }
 TIMES = {
-    "start_s": Column("initial contact that begins the stride"),
-    "full_contact_s": Column("the whole foot comes to the floor"),
-    "heel_rise_s": Column("the heel leaves the floor"),
-    "toe_off_s": Column("the foot leaves the floor"),
-    "end_s": Column("initial contact that ends the stride"),
+    "start_s": ColumnMeaning("initial contact that begins the stride"),
+    "full_contact_s": ColumnMeaning("the whole foot comes to the floor"),
+    "heel_rise_s": ColumnMeaning("the heel leaves the floor"),
+    "toe_off_s": ColumnMeaning("the foot leaves the floor"),
+    "end_s": ColumnMeaning("initial contact that ends the stride"),
 }
-ON_CLOCK = Column("on the recording's clock")
+ON_CLOCK = ColumnMeaning("on the recording's clock")
 SIDE = _word("left or right")
 USED = _word("true where the stride counts for averages")
 ANGLE_STATUS = _word(
@@ -98,43 +98,45 @@ OF_PART = {
 PARAMETER = _word("the column of strides.csv or figure of both legs that is compared")
 MEAN = {
     "n": N,
-    "mean": Column("mean over the strides used", AS_PARAMETER, AS_ROW, AS_ROW),
-    "sd": Column("standard deviation between the strides used", AS_PARAMETER, "", AS_ROW),
+    "mean": ColumnMeaning("mean over the strides used", AS_PARAMETER, AS_ROW, AS_ROW),
+    "sd": ColumnMeaning("standard deviation between the strides used", AS_PARAMETER, "", AS_ROW),
 }
 BY_HAND = {"left_out_by_hand": _word("strides that a person left out")}
 JUDGED = {
-    "difference": Column("the first mean less the second", AS_PARAMETER, AS_ROW, AS_ROW),
-    "error": Column("what a difference has to exceed to be real, at 95 %", AS_PARAMETER, "", AS_ROW),
+    "difference": ColumnMeaning("the first mean less the second", AS_PARAMETER, AS_ROW, AS_ROW),
+    "error": ColumnMeaning("what a difference has to exceed to be real, at 95 %", AS_PARAMETER, "", AS_ROW),
     "error_sources": _word("what the error contains"),
     "status": _word("the worse of what may be said of the two means"),
     "verdict": _word("exceeds_error, inside_error, withheld, too_few_strides (under 10) or no_published_figure"),
 }
-PERCENT = {"percent": Column("of the stride, from initial contact to the next")}
+PERCENT = {"percent": ColumnMeaning("of the stride, from initial contact to the next")}
 
 
-def _of_angles(joint: Joint) -> dict[str, Column]:
+def _of_angles(joint: Joint) -> dict[str, ColumnMeaning]:
     sign = FLEXION[joint.split("_")[1]]
     return {
-        f"{joint}_deg": Column("angle: twist of the relative orientation about the joint's axis", HEIGHT, sign),
-        f"{joint}_sd_deg": Column("standard deviation of the angle, estimated"),
-        f"{joint}_published_deg": Column("angle by the published filter, on the same identification", HEIGHT, sign),
-        f"{joint}_orientation_deg": Column("angle from the two sensors' orientations", HEIGHT, sign),
+        f"{joint}_deg": ColumnMeaning("angle: twist of the relative orientation about the joint's axis", HEIGHT, sign),
+        f"{joint}_sd_deg": ColumnMeaning("standard deviation of the angle, estimated"),
+        f"{joint}_published_deg": ColumnMeaning(
+            "angle by the published filter, on the same identification", HEIGHT, sign
+        ),
+        f"{joint}_orientation_deg": ColumnMeaning("angle from the two sensors' orientations", HEIGHT, sign),
         f"{joint}_status": ANGLE_STATUS,
     }
 
 
-def _of_cycles(joint: Joint) -> dict[str, Column]:
+def _of_cycles(joint: Joint) -> dict[str, ColumnMeaning]:
     sign = FLEXION[joint.split("_")[1]]
     return {
-        f"{joint}_mean_deg": Column("mean angle over the strides used", HEIGHT, sign),
-        f"{joint}_stride_sd_deg": Column("standard deviation between the strides used"),
+        f"{joint}_mean_deg": ColumnMeaning("mean angle over the strides used", HEIGHT, sign),
+        f"{joint}_stride_sd_deg": ColumnMeaning("standard deviation between the strides used"),
         f"{joint}_n": N,
-        f"{joint}_shape_deg": Column("mean angle over the strides used, less its mean", "sign", sign),
+        f"{joint}_shape_deg": ColumnMeaning("mean angle over the strides used, less its mean", "sign", sign),
         f"{joint}_status": ANGLE_STATUS,
     }
 
 
-def _prefixed(prefix: str, columns: Mapping[str, Column], whose: str) -> dict[str, Column]:
+def _prefixed(prefix: str, columns: Mapping[str, ColumnMeaning], whose: str) -> dict[str, ColumnMeaning]:
     return {prefix + name: one._replace(definition=f"{one.definition}{whose}") for name, one in columns.items()}
 
 
@@ -148,7 +150,7 @@ DIFFERENCES = {
     **JUDGED,
     **BY_HAND,
 }
-KNOWN: Mapping[str, Mapping[str, Column]] = {
+KNOWN: Mapping[str, Mapping[str, ColumnMeaning]] = {
     "angles.csv": {
         "time_s": ON_CLOCK,
         **{name: column for joint in Joint for name, column in _of_angles(joint).items()},
@@ -178,7 +180,9 @@ KNOWN: Mapping[str, Mapping[str, Column]] = {
         "start_s": TIMES["start_s"],
         "used": USED,
         **{
-            f"{window.name}_percent": Column(f"when the extremum from {window.first} to {window.last} % comes", "sign")
+            f"{window.name}_percent": ColumnMeaning(
+                f"when the extremum from {window.first} to {window.last} % comes", "sign"
+            )
             for window in WINDOWS.values()
         },
         **{name: _of_stride(name) for name in EXCURSIONS_BY_COLUMN},
@@ -189,7 +193,7 @@ KNOWN: Mapping[str, Mapping[str, Column]] = {
         "parameter": PARAMETER,
         **{name: one for side in Side for name, one in _prefixed(f"{side}_", {**MEAN, **BY_HAND}, "").items()},
         **JUDGED,
-        "symmetry_index_percent": Column("difference by the mean of both legs", AS_PARAMETER),
+        "symmetry_index_percent": ColumnMeaning("difference by the mean of both legs", AS_PARAMETER),
     },
     **dict.fromkeys(("differences.csv", "visits.csv"), DIFFERENCES),
     **dict.fromkeys(("compared_cycles.csv", "visits_cycles.csv"), CYCLES),
@@ -197,7 +201,7 @@ KNOWN: Mapping[str, Mapping[str, Column]] = {
 LETTERED = ("compared_cycles.csv", "visits_cycles.csv")  # whose columns begin with the letter of a condition or visit
 
 
-def column_of(file: str, name: str) -> Column:
+def column_of(file: str, name: str) -> ColumnMeaning:
     """What a column means.
 
     Raises

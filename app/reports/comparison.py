@@ -113,7 +113,7 @@ def sources_in_words(differences: Iterable[Difference]) -> str:
     return joined([tr(words) for source, words in ERROR_SOURCES.items() if source in found])
 
 
-class Kind(StrEnum):
+class Contrast(StrEnum):
     """What is compared with what."""
 
     CONDITIONS = "conditions"
@@ -278,7 +278,7 @@ class Compared:
 class Comparison:
     """`parts` in the order of time; each is told against `parts[base]`."""
 
-    kind: Kind
+    kind: Contrast
     parts: tuple[Part, ...]
     base: int = 0
     is_simulated: bool = False
@@ -320,7 +320,7 @@ class Comparison:
         )
 
     def is_same_attachment(self, part: Part) -> bool:
-        return self.kind is Kind.CONDITIONS and part.attachment == self.against.attachment
+        return self.kind is Contrast.CONDITIONS and part.attachment == self.against.attachment
 
     def has_one_zero(self, joint: Joint) -> bool:
         """Whether all parts that have the joint measured its height from the same kind of zero, and from one."""
@@ -329,7 +329,7 @@ class Comparison:
 
     def error_kind(self, part: Part) -> ComparisonKind:
         """What lies between a part and the one it is told against."""
-        if self.kind is Kind.VISITS:
+        if self.kind is Contrast.VISITS:
             return ComparisonKind.VISITS
         return ComparisonKind.ATTACHED if self.is_same_attachment(part) else ComparisonKind.STRAPPINGS
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.reports.comparison import Comparison, Kind, Measure, Part, Reservation, compare_legs, conditions_of
+from app.reports.comparison import Comparison, Contrast, Measure, Part, Reservation, compare_legs, conditions_of
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.status import status_of
 from app.reports.visits import by_condition
@@ -72,7 +72,7 @@ def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Compariso
         of_visits.append(conditions_of(analysis, session.recordings, prefix))
     are_simulated = [analysis.is_simulated for _, analysis in visits]
     found = [
-        Comparison(Kind.CONDITIONS, parts, is_simulated=is_simulated)
+        Comparison(Contrast.CONDITIONS, parts, is_simulated=is_simulated)
         for parts, is_simulated in zip(of_visits, are_simulated, strict=True)
         if len(parts) > 1
     ]
@@ -80,7 +80,7 @@ def comparisons_of(visits: Sequence[tuple[Session, Analysis]]) -> list[Compariso
     for of_visit, is_simulated in list(zip(walked, are_simulated, strict=True))[1:]:
         for condition in [condition for condition in of_visit if condition in walked[0]]:
             pair = (walked[0][condition], of_visit[condition])
-            found.append(Comparison(Kind.VISITS, pair, is_simulated=is_simulated or are_simulated[0]))
+            found.append(Comparison(Contrast.VISITS, pair, is_simulated=is_simulated or are_simulated[0]))
     return found
 
 

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 
 from app.reports.columns import COLUMNS, write_columns
-from app.reports.comparison import Comparison, Kind, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Contrast, conditions_of, first_and_second
 from app.reports.csv_report import write_angles, write_table
 from app.reports.differences import (
     COMPARED_CYCLES,
@@ -85,7 +85,7 @@ def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> No
     """The conditions of the session, each against the first, and the legs of each."""
     parts = conditions_of(analysis, session.recordings)
     if len(parts) > 1:
-        write_differences(rows_of(Comparison(Kind.CONDITIONS, parts)), folder / DIFFERENCES)
+        write_differences(rows_of(Comparison(Contrast.CONDITIONS, parts)), folder / DIFFERENCES)
         write_compared_cycles(parts, folder / COMPARED_CYCLES)
     write_sides(parts, first_and_second(analysis.affected_side), folder / SIDES)
 

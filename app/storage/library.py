@@ -47,7 +47,7 @@ class Library:
         from app.storage.corrections import Corrections
         from app.storage.database.schema import bring_up_to_date
         from app.storage.derived_keys import derived_keys
-        from app.storage.operators import Operators, Settings
+        from app.storage.operators import Operators, OperatorSettings
         from app.storage.patients import Patients
         from app.storage.recordings import Recordings
         from app.storage.results import Results
@@ -68,7 +68,7 @@ class Library:
         self.results = Results(self._unit)
         self.corrections = Corrections(self._unit)
         self.operators = Operators(self._unit)
-        self.settings = Settings(self._unit)
+        self.settings = OperatorSettings(self._unit)
         self.audit = Audit(self._unit)
 
     @classmethod

@@ -67,7 +67,7 @@ class Operators:
 CLINIC = "clinic"  # its name, as reports print it
 
 
-class Settings:
+class OperatorSettings:
     """What holds for the whole clinic. Values are whatever JSON holds."""
 
     def __init__(self, unit: UnitOfWork) -> None:

@@ -26,7 +26,7 @@ from app.storage.journal.header import (
 )
 from app.storage.journal.payloads import Belonging, SourceEntry
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
-from app.storage.journal.records import RECORD_MAGIC, Kind, Record, Seal
+from app.storage.journal.records import RECORD_MAGIC, Record, RecordKind, Seal
 from app.storage.opened import OpenedLibrary, Report
 from app.storage.stored import LibraryError, RecordingState, StoredJournal, StoredRecording
 from app.wording import tr
@@ -215,7 +215,7 @@ def _belonging(opened: OpenedLibrary, segments: Mapping[int, Path]) -> Belonging
     for path in segments.values():
         first = islice(JournalReader(path, opened.data_key).records(), FIRST_RECORDS)
         for record in first:
-            if isinstance(record, Damage) or record.kind is not Kind.MARK:
+            if isinstance(record, Damage) or record.kind is not RecordKind.MARK:
                 continue
             if (found := Belonging.parsed(json.loads(record.payload))) is not None:
                 return found
@@ -286,7 +286,7 @@ class _Contents:
                 continue
             last_ns = record.time_ns
             self._read += len(record.payload)
-            if record.kind is Kind.SOURCE:
+            if record.kind is RecordKind.SOURCE:
                 self.is_simulated |= SourceEntry.parsed(record.payload).info.is_simulated
             if self._read - self._told >= EVERY_BYTES:
                 self._told = self._read

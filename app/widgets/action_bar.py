@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
 from app.theme import Look
-from app.widgets.button import HEIGHT, Button, Kind
+from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
 from app.widgets.text import SEMIBOLD, Text
@@ -168,15 +168,15 @@ class ActionBar(Themed):
             on = recording.has_sound
             sound = BarAction(tr("Sound on") if on else tr("Sound off"), "", Icon.SOUND if on else Icon.SOUND_OFF)
         back = BarAction(tr("Back"), "", Icon.BACK) if state.has_back and not is_inverse else None
-        self.back.show_verb(back, Kind.SECONDARY, is_inverse)
-        self.sound.show_verb(sound, Kind.QUIET, is_inverse)
+        self.back.show_verb(back, ButtonKind.SECONDARY, is_inverse)
+        self.sound.show_verb(sound, ButtonKind.QUIET, is_inverse)
         for k, (button, verb) in enumerate(zip(self._quiet, _padded(state.quiet, len(self._quiet)), strict=True)):
             takes_place_of_back = k == 0 and not state.has_back
-            button.show_verb(verb, Kind.SECONDARY if takes_place_of_back else Kind.QUIET, is_inverse)
+            button.show_verb(verb, ButtonKind.SECONDARY if takes_place_of_back else ButtonKind.QUIET, is_inverse)
         for button, verb in zip(self._others, _padded(state.others, len(self._others)), strict=True):
-            button.show_verb(verb, Kind.SECONDARY, is_inverse)
+            button.show_verb(verb, ButtonKind.SECONDARY, is_inverse)
         wished = state.primary is not None and (state.primary.is_wished or is_inverse)
-        self.primary.show_verb(state.primary, Kind.PRIMARY if wished else Kind.SECONDARY, is_inverse)
+        self.primary.show_verb(state.primary, ButtonKind.PRIMARY if wished else ButtonKind.SECONDARY, is_inverse)
         self._clock.setVisible(is_inverse)
         self._title.setText(recording.title if recording is not None else "")
         self._note.setText(recording.note if recording is not None else state.note)
@@ -299,9 +299,9 @@ class VerbButton(Button):
 
     @property
     def is_filled(self) -> bool:
-        return self.face.kind is Kind.PRIMARY
+        return self.face.kind is ButtonKind.PRIMARY
 
-    def show_verb(self, verb: BarAction | None, kind: Kind, is_inverse: bool) -> None:
+    def show_verb(self, verb: BarAction | None, kind: ButtonKind, is_inverse: bool) -> None:
         self.setVisible(verb is not None)
         if verb is None:
             return

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.icons import Icon, paint_icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr
@@ -28,8 +28,8 @@ class Banner(Themed):
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self._what = Text(look, size=16, weight=SEMIBOLD, tone="caution_ink", wraps=True)
         self._next = Text(look, size=14, tone="caution_ink", wraps=True)
-        self.act = Button(look, "", Kind.SECONDARY, height=44)
-        self.dismiss = Button(look, tr("Dismiss"), Kind.QUIET, height=44)
+        self.act = Button(look, "", ButtonKind.SECONDARY, height=44)
+        self.dismiss = Button(look, tr("Dismiss"), ButtonKind.QUIET, height=44)
         words = QVBoxLayout()
         words.setSpacing(0)
         words.addStretch(1)

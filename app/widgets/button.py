@@ -9,12 +9,12 @@ from PySide6.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButt
 
 from app.icons import Icon
 from app.style import ButtonFace
-from app.style import Kind as Kind
+from app.style import ButtonKind as ButtonKind
 from app.theme import Look
 from app.wording import tr
 
 HEIGHT = 48
-CHOICES = (Kind.SEGMENT, Kind.CHIP)  # Enter belongs to the page they are on
+CHOICES = (ButtonKind.SEGMENT, ButtonKind.CHIP)  # Enter belongs to the page they are on
 
 
 class Button(QPushButton):
@@ -24,7 +24,7 @@ class Button(QPushButton):
         self,
         look: Look,
         text: str,
-        kind: Kind = Kind.SECONDARY,
+        kind: ButtonKind = ButtonKind.SECONDARY,
         icon: Icon | None = None,
         key: str = "",
         height: float = HEIGHT,

@@ -7,7 +7,7 @@ from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.themed import Themed
 
 HEIGHT = 44
@@ -128,7 +128,7 @@ def flow(wanted: Iterable[int], width: int, gap: int, height: int) -> list[QRect
 
 class _Chip(Button):
     def __init__(self, look: Look, word: str, group: Chips) -> None:
-        super().__init__(look, word, Kind.CHIP, height=HEIGHT, parent=group)
+        super().__init__(look, word, ButtonKind.CHIP, height=HEIGHT, parent=group)
         self._group = group
         self.setCheckable(True)
 

@@ -44,7 +44,7 @@ class GaugeState(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Measure:
+class GaugeMeasure:
     """One figure of a joint: as it is read, what is wanted, and how far its ring is closed (0 to 1)."""
 
     figure: str
@@ -59,8 +59,8 @@ class GaugeFace:
     """`axis` is None where it is not asked for: an ankle's closes in walking. `note` says why there is no gauge."""
 
     state: GaugeState = GaugeState.OPEN
-    axis: Measure | None = None
-    centre: Measure | None = None
+    axis: GaugeMeasure | None = None
+    centre: GaugeMeasure | None = None
     note: str = ""
 
     @property
@@ -104,13 +104,15 @@ def two_digits(value: float, wanted: float = math.inf) -> str:
     return figure
 
 
-def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> Measure:
+def _measure(value: float, wanted: float, begins: float, unit: str, is_closed: bool) -> GaugeMeasure:
     """A ring is logarithmic: each halving of what is uncertain closes as much of it."""
     share = math.log(begins / value) / math.log(begins / wanted) if 0 < value < math.inf else 0.0
     is_met = is_closed or value <= wanted
     share = 1.0 if is_met else min(max(share, 0.0), 1.0 - 1 / STEPS)
     figure = two_digits(value, math.inf if is_met else wanted) if value < begins else UNKNOWN
-    return Measure(figure, unit, f"{wanted:g}{unit}" if unit == "°" else f"{wanted:g} {unit}", _steps(share), is_met)
+    return GaugeMeasure(
+        figure, unit, f"{wanted:g}{unit}" if unit == "°" else f"{wanted:g} {unit}", _steps(share), is_met
+    )
 
 
 def _steps(share: float) -> float:

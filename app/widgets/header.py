@@ -29,7 +29,7 @@ class Header(Themed):
         super().__init__()
         self._look, self._has_mark, self._is_compact = look, has_mark, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
-        self._mark = Mark(look)
+        self._mark = ProductMark(look)
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
         self.code = Text(look, size=22, weight=SEMIBOLD, is_code=True)
         self.facts = Text(look, size=14, tone="ink2", wraps=True)
@@ -139,7 +139,7 @@ class Header(Themed):
         self._arrange()
 
 
-class Mark(QWidget):
+class ProductMark(QWidget):
     """The program's mark: two legs, left solid, right dashed."""
 
     def __init__(self, look: Look) -> None:

@@ -7,7 +7,7 @@ from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52
 PLAIN_HEIGHT = 48  # without second lines, as high as a field
@@ -87,7 +87,7 @@ class Segmented(QWidget):
 
 class _Segment(Button):
     def __init__(self, look: Look, word: str, note: str, height: float, parent: QWidget) -> None:
-        super().__init__(look, word, Kind.SEGMENT, height=height, parent=parent)
+        super().__init__(look, word, ButtonKind.SEGMENT, height=height, parent=parent)
         self._note, self._reason, self._is_brief = note, "", False
         self.setCheckable(True)
         self.setAutoExclusive(True)

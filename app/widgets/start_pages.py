@@ -5,7 +5,7 @@ from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import later, tr
@@ -19,8 +19,10 @@ class EmptyPage(Themed):
     def __init__(self, look: Look) -> None:
         super().__init__()
         self._look = look
-        self.open_folder = Button(look, tr("Open a session folder"), Kind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
-        self.open_demonstration = Button(look, tr("Open the demonstration"), Kind.SECONDARY, Icon.PLAY, tr("Ctrl D"))
+        self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
+        self.open_demonstration = Button(
+            look, tr("Open the demonstration"), ButtonKind.SECONDARY, Icon.PLAY, tr("Ctrl D")
+        )
         self._sentence = Text(look, tr(SENTENCE), size=26, weight=SEMIBOLD)
         self._hint = Text(look, tr("A session folder can also be dropped here."), tone="ink2")
         self._row = QHBoxLayout()
@@ -63,7 +65,7 @@ class WorkingPage(Themed):
         self._line.setTextVisible(False)
         self._line.setRange(0, 1000)
         self._line.setAccessibleName(tr("Progress"))
-        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP, tr("Esc"))
+        self.stop = Button(look, tr("Stop"), ButtonKind.SECONDARY, Icon.STOP, tr("Esc"))
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._title)

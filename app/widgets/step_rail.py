@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWi
 from app.icons import Icon
 from app.theme import Look
 from app.tokens import CONTROL_RADIUS
-from app.widgets.header import Mark
+from app.widgets.header import ProductMark
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
 from app.widgets.text import REGULAR, SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -50,7 +50,7 @@ class StepRail(Themed):
         self.setAccessibleName(tr("Steps"))
         self.rows: list[RailButton] = []
         self.below: list[RailButton] = []
-        self._mark = Mark(look)
+        self._mark = ProductMark(look)
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)
         self._note = Text(look, size=12, tone="ink2", wraps=True)
         self._tag = _NameTag(look, self)

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
 from app.theme import Look
 from app.widgets.action_bar import BarAction, VerbButton
-from app.widgets.button import Kind
+from app.widgets.button import ButtonKind
 from app.widgets.text import Text
 from app.widgets.themed import Themed
 from app.wording import tr
@@ -52,7 +52,7 @@ class Toast(Themed):
     def offer(self, what: str) -> None:
         """Say what was done; what was said before can no longer be undone from here."""
         self._text.setText(what)
-        self.button.show_verb(BarAction(tr("Undo"), tr("Ctrl Z")), Kind.QUIET, is_inverse=True)
+        self.button.show_verb(BarAction(tr("Undo"), tr("Ctrl Z")), ButtonKind.QUIET, is_inverse=True)
         self.setAccessibleName(what)
         self._fit()
         self.show()

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import NOBODY
 from core.body import Joint, Side
 from core.gait.strides import Reason
@@ -51,11 +51,11 @@ def with_few_strides(analysis: Analysis, **counts: int) -> Analysis:
     return judged(replace(analysis, recordings=tuple(recordings)))
 
 
-def visit_of(analysis: Analysis, session: Session, who: AgeAndHeight = NOBODY) -> Visit:
+def visit_of(analysis: Analysis, session: Session, who: AgeAndHeight = NOBODY) -> AnalysedVisit:
     """The analysis with the session it came of, walked by a patient of this age and height."""
     born = 2026 - who.age_years if who.age_years is not None else None
     patient = replace(session.patient, birth_year=born, height_m=who.height_m)
-    return Visit(replace(session, patient=patient, started="2026-11-23T10:00:00+00:00"), analysis)
+    return AnalysedVisit(replace(session, patient=patient, started="2026-11-23T10:00:00+00:00"), analysis)
 
 
 def walk_of(analysis: Analysis) -> RecordingAnalysis:

@@ -10,7 +10,7 @@ import pytest
 
 from app.cli import main
 from app.compare_command import DIFFERENCES, FLAGS, _table
-from app.reports.comparison import Kind
+from app.reports.comparison import Contrast
 from app.reports.differences import Row, comparisons_of, rows_of, without_common_condition
 from core.analysis import analyse
 from core.body import Side
@@ -65,7 +65,7 @@ def test_conditions_are_told_against_the_first_and_visits_by_condition(visits: l
     renamed = replace(
         session, recordings=(*session.recordings[:-1], replace(session.recordings[-1], condition="shoes"))
     )
-    assert [found.kind for found in comparisons_of([visits[0], (renamed, analysis)])] == [Kind.CONDITIONS]
+    assert [found.kind for found in comparisons_of([visits[0], (renamed, analysis)])] == [Contrast.CONDITIONS]
     assert without_common_condition([visits[0], (renamed, analysis)]) == [2]
     assert without_common_condition(visits) == []
     assert comparisons_of(visits[1:]) == []

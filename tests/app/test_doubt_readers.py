@@ -7,7 +7,7 @@ import pytest
 
 from app.pages.result_page import ResultPage
 from app.reports.patient_report.document import make_report
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -31,8 +31,8 @@ def analysis(session: Session) -> Analysis:
 def read(session: Session, analysis: Analysis, result_page: ResultPage) -> tuple[Doubts, Doubts]:
     """What the report says, and what the screen says."""
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
-    report = make_report(ReportRequest(Visit(session, analysis), ("walk 1",), made_at, "1.2.3"))
-    result_page.show_visit(Visit(session, analysis))
+    report = make_report(ReportRequest(AnalysedVisit(session, analysis), ("walk 1",), made_at, "1.2.3"))
+    result_page.show_visit(AnalysedVisit(session, analysis))
     return said_in_report(report), said_on_screen(result_page)
 
 

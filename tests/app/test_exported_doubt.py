@@ -22,7 +22,7 @@ from rerun.chunk import RrdReader
 from app.exports.exports import Format, export_from_folder
 from app.pages.result_page import ResultPage
 from app.reports.patient_report.document import make_report
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.result_folder import LOG, write_results
 from app.review.rerun_log import write_log
 from core.analysis import analyse
@@ -377,8 +377,8 @@ def test_report_and_screen_say_the_same(
 ) -> None:
     session, analysis = analysed
     made_at = datetime(2026, 11, 22, 12, tzinfo=UTC)
-    report = said_in_report(make_report(ReportRequest(Visit(session, analysis), (WALK,), made_at, "1.2.3")))
-    result_page.show_visit(Visit(session, analysis))
+    report = said_in_report(make_report(ReportRequest(AnalysedVisit(session, analysis), (WALK,), made_at, "1.2.3")))
+    result_page.show_visit(AnalysedVisit(session, analysis))
     screen = said_on_screen(result_page)
     places = {name: (Side(side), column) for name, (side, column) in OF_SIDES.items()}
     places |= {name: (Side.LEFT, column) for name, column in BOTH.items()}

@@ -21,7 +21,7 @@ from pytestqt.qtbot import QtBot
 from app.icons import Icon
 from app.style import IS_WRONG
 from app.theme import Look, load_fonts
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
 from app.widgets.field import Field
@@ -71,7 +71,7 @@ def test_a_larger_scale_reaches_every_kind_of_control(qtbot: QtBot, look: Look) 
 
 
 def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: Look) -> None:
-    button = Button(look, "Go", Kind.PRIMARY)
+    button = Button(look, "Go", ButtonKind.PRIMARY)
     line = QLineEdit("P-0147")
     for widget in (button, line):
         qtbot.addWidget(widget)
@@ -86,7 +86,7 @@ def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: Look) 
 
 
 def test_what_cannot_be_pressed_is_not_painted_as_wished(qtbot: QtBot, look: Look) -> None:
-    button = Button(look, "Go", Kind.PRIMARY)
+    button = Button(look, "Go", ButtonKind.PRIMARY)
     qtbot.addWidget(button)
     button.setEnabled(False)
     found = colours_in(button.grab().toImage())

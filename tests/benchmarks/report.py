@@ -11,8 +11,8 @@ from statistics import median
 
 from PySide6.QtGui import QImage
 
-from app.reports.patient_report.document import Preview, make_report
-from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+from app.reports.patient_report.document import ReportPreview, make_report
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from core.analysis import analyse
 from core.samples import RecordingKind
 from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
@@ -20,13 +20,13 @@ from devices.walker import DEMONSTRATION, FreeMotion, Standing, Walk, simulate
 PREVIEW_PPI = 80.0  # of a page beside the words in a window of 1280 x 800
 
 
-def visit_of(walks: int) -> Visit:
+def visit_of(walks: int) -> AnalysedVisit:
     """Give a simulated visit, every walk under a condition of its own."""
     walking = tuple(Walk(name=f"walk {k + 1}", strides=14) for k in range(walks))
     session = simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), *walking))).session
     named = tuple(replace(r, condition=r.name if r.kind is RecordingKind.WALKING else "") for r in session.recordings)
     session = replace(session, recordings=named)
-    return Visit(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 def main() -> None:
@@ -42,7 +42,7 @@ def main() -> None:
             make_report(request)
             walls.append(time.perf_counter() - wall)
             cpus.append(time.process_time() - cpu)
-        preview, looks, looks_cpus = Preview(), [], []
+        preview, looks, looks_cpus = ReportPreview(), [], []
         for k in range(2 * repeats):
             wall, cpu = time.perf_counter(), time.process_time()
             pages = preview.pages(replace(request, comment=f"Words {k} of the clinician."), PREVIEW_PPI)

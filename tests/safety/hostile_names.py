@@ -23,7 +23,7 @@ import pikepdf
 
 from app.reports.patient_report.document import make_report, report_data
 from app.reports.patient_report.plain_text import plain
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.result_folder import write_results
 from core.analysis import analyse
 from core.samples import RecordingKind
@@ -85,14 +85,14 @@ def names(count: int) -> Iterator[str]:
         yield f"{parts[0]}{anything}{parts[1]}"
 
 
-def visit() -> Visit:
+def visit() -> AnalysedVisit:
     """Two short walks of two conditions."""
     walks = (Walk(strides=12), Walk("walk 2", strides=12))
     session = simulate(replace(DEMONSTRATION, recordings=(Standing(), FreeMotion(), *walks))).session
-    return Visit(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
-def named(plain_visit: Visit, name: str) -> ReportRequest:
+def named(plain_visit: AnalysedVisit, name: str) -> ReportRequest:
     """Put the name into every place that somebody can type into; recordings keep theirs, which files give."""
     session = plain_visit.session
     patient = replace(session.patient, code=name, sex=name, device=name, aids=name)
@@ -106,7 +106,7 @@ def named(plain_visit: Visit, name: str) -> ReportRequest:
     )
     typed = replace(session, patient=patient, sensors=sensors, recordings=recordings, surface=name, notes=name)
     return ReportRequest(
-        Visit(typed, plain_visit.analysis),
+        AnalysedVisit(typed, plain_visit.analysis),
         tuple(walking),
         MADE_AT,
         "1.2.3",

@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from app.storage.journal.disk import Room, Trouble
-from app.storage.journal.records import Kind
+from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter, State
 from devices.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LINES, NO_ROOM_ASKED, read_all
@@ -108,7 +108,7 @@ def fill_once(folder: Path, piece_bytes: int, room: Room, fills: Fills) -> str:
         time.sleep(max(begin_s + sent_bytes / 30e6 - time.monotonic(), 0.0))
     summary = journal.stop()
     records, damages, report = read_all(summary.path, KEY)
-    kept = [record for record in records if record.kind is Kind.BYTES]
+    kept = [record for record in records if record.kind is RecordKind.BYTES]
     fills.said_ms.append((said[0][1] - kept[-1].time_ns) / 1e6)
     fills.footers += report.footer is not None
     # a disk may be seen to be full to the last byte before it refuses one

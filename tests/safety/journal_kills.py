@@ -21,7 +21,7 @@ import numpy as np
 
 from app.storage.journal.header import find_segments, read_header
 from app.storage.journal.payloads import STREAM
-from app.storage.journal.records import Kind
+from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter
 from devices.host_clock import host_time_ns
 from tests.safety.journal_material import ID, KEY, LAYOUT, LINES, NAMES, NO_ROOM_ASKED, WALKER, block, line, read_all
@@ -89,7 +89,7 @@ def judge(folder: Path) -> tuple[float, str]:
     records, damages, report = read_all(paths[1], KEY)
     if damages or report.missing_records:
         return 0.0, f"{report}"
-    received = [record.payload for record in records if record.kind is Kind.BYTES]
+    received = [record.payload for record in records if record.kind is RecordKind.BYTES]
     if any(payload[STREAM.size :] != line(k) for k, payload in enumerate(received)):
         return 0.0, "what was read is not what was written"
     last_ns = records[-1].time_ns if records else read_header(paths[1]).opened_ns

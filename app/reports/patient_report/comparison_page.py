@@ -13,7 +13,7 @@ from app.reports.comparison import (
     MEASURES,
     Compared,
     Comparison,
-    Kind,
+    Contrast,
     Measure,
     Part,
     Reservation,
@@ -37,7 +37,7 @@ from app.reports.patient_report.numbers_in_words import (
     spread,
 )
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.visits import by_condition, condition_in_words
 from app.wording import capitalised, joined, tr
 from core.body import Side
@@ -66,12 +66,12 @@ def comparison_of(request: ReportRequest) -> Comparison | None:
             replace(part, letter=str(k + 1), name=names[k].format(day=_day_of(of.session.started)))
             for k, (part, of) in enumerate(zip(pair, (request.earlier, visit), strict=True))
         ]
-        return Comparison(Kind.VISITS, tuple(parts), is_simulated=is_simulated)
+        return Comparison(Contrast.VISITS, tuple(parts), is_simulated=is_simulated)
     if len(request.walks) < 2:
         return None
     conditions = [_condition(visit, name, request.walks) for name in request.walks]
     lettered = [replace(part, letter=letter) for letter, part in zip("ABC", conditions, strict=False)]
-    return Comparison(Kind.CONDITIONS, tuple(lettered), is_simulated=is_simulated)
+    return Comparison(Contrast.CONDITIONS, tuple(lettered), is_simulated=is_simulated)
 
 
 def not_compared_page(request: ReportRequest) -> list[Block]:
@@ -97,7 +97,7 @@ def _condition_typed(condition: str) -> str:
     return typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
 
 
-def _condition(visit: Visit, name: str, chosen: Sequence[str]) -> Part:
+def _condition(visit: AnalysedVisit, name: str, chosen: Sequence[str]) -> Part:
     for part in conditions_of(visit.analysis, visit.session.recordings):
         names = {walk.name for walk in part.walks}
         if name in names:
@@ -111,7 +111,7 @@ def _day_of(started: str) -> str:
 
 def comparison_page(comparison: Comparison, shown: Facts) -> list[Block]:
     """`shown` is the walk that the other pages are of: it belongs to the last part."""
-    title = tr("Comparison of visits") if comparison.kind is Kind.VISITS else tr("Comparison of conditions")
+    title = tr("Comparison of visits") if comparison.kind is Contrast.VISITS else tr("Comparison of conditions")
     items = [_legend_entry(comparison, k) for k in range(len(comparison.parts))]
     kinds = [kind for kind in KINDS if any(joint_of(kind, side) in comparison.joints for side in Side)]
     pictures = [_panel(comparison, shown, side, kind) for kind in kinds for side in comparison.sides]
@@ -176,7 +176,7 @@ def _band(comparison: Comparison, shown: Facts, kind: str, side: Side) -> Band |
 
 
 def _table(comparison: Comparison, shown: Facts, sides: Sequence[Side]) -> Block:
-    first, is_visits = comparison.against, comparison.kind is Kind.VISITS
+    first, is_visits = comparison.against, comparison.kind is Contrast.VISITS
     columns = [Column(tr("Measure, °"), "1fr", is_number=False), *(Column(part.letter) for part in comparison.parts)]
     for part in comparison.others:
         if is_visits:
@@ -210,7 +210,7 @@ def _row(comparison: Comparison, side: Side, measure: Measure) -> list[Cell | st
         found, is_told = compared.difference, compared.is_told
         words = Cell(judged_in_words(found), is_bold=found.exceeds) if is_told else _why_not(compared)
         decimals = measure.decimals
-        error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Kind.VISITS else []
+        error = [fixed(found.error, decimals) if is_told else NOTHING] if comparison.kind is Contrast.VISITS else []
         cells += [signed(found.difference, decimals) if is_told else NOTHING, *error, words]
     return cells
 
@@ -233,7 +233,7 @@ def _measure(column: str) -> str:
 
 def _what_else_changed(comparison: Comparison) -> str:
     """Open with what besides the condition may make a difference: the straps, the zero, the speed."""
-    if comparison.kind is Kind.VISITS:
+    if comparison.kind is Contrast.VISITS:
         said = [tr("Two visits, sensors put on anew.")]
     elif comparison.is_one_attachment:
         said = [tr("One session, sensors not moved between walks.")]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from app.reports.patient_report import quality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.quality import Cause
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.wording import capitalised, joined, later, name_of, place, sentence, tr
 from core.body import Joint, Side
 from core.findings import Finding, Severity
@@ -83,7 +83,7 @@ def data_quality(facts: Facts) -> DataQuality:
     return _quality(first, then, [*map(_of_cause, found), *map(_of_finding, findings)], _in_order(facts))
 
 
-def quality_without_walk(visit: Visit, recording: str) -> DataQuality:
+def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
     """What was noticed about a recording of which nothing is judged; empty: about the whole session."""
     lines = [_of_finding(finding) for finding in _noticed(visit, recording, set())]
     first = tr("Nothing stands out.") if not lines else tr("This was noticed.")
@@ -110,7 +110,7 @@ def _of_finding(finding: Finding) -> QualityLine:
     return QualityLine(Verdict.CARE, where, capitalised(why + "." if stop else why), to_do)
 
 
-def _noticed(visit: Visit, recording: str, gates: set[str]) -> list[Finding]:
+def _noticed(visit: AnalysedVisit, recording: str, gates: set[str]) -> list[Finding]:
     """What was noticed of this recording or of the session that no verdict says already, the gravest first."""
     others = {one.name for one in visit.session.recordings} - {recording} if recording else set()
     found = [

@@ -49,7 +49,7 @@ def make_report(request: ReportRequest) -> bytes:
     return pdf
 
 
-class Preview:
+class ReportPreview:
     """The pages for a look before, again and again while somebody types: what the words do not change is kept."""
 
     def __init__(self) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from app.charts.cycles import is_mean_enough
 from app.reports.comparison import Part, first_and_second
 from app.reports.patient_report.numbers_in_words import Band
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, bands_of, sides_with_band
 from app.reports.summary import summarise
 from app.reports.walk_figures import Figure, band_of_peak, peak_place, side_cycle, strides_used, time_distance_figures
@@ -32,7 +32,7 @@ KINDS = ("knee", "ankle")
 class Facts:
     """One walk of one visit."""
 
-    visit: Visit
+    visit: AnalysedVisit
     walk: RecordingAnalysis
 
     @property

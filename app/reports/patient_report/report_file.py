@@ -5,11 +5,11 @@ import tempfile
 from datetime import datetime
 from pathlib import Path
 
-from app.reports.comparison import Kind
+from app.reports.comparison import Contrast
 from app.reports.differences import rows_of, write_compared_cycles, write_differences
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import make_report
-from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.reports.result_folder import OWN_SESSION, REPORT, SUMMARY, VISITS, VISITS_CYCLES, describe_tables
 from core.results import Analysis
 from core.samples import Session
@@ -27,7 +27,7 @@ def write_report(session: Session, analysis: Analysis, folder: Path, made_at: da
     OSError
         The disk is full or cannot be written to.
     """
-    visit = Visit(session, analysis)
+    visit = AnalysedVisit(session, analysis)
     walks = default_walks(visit)
     if walks:
         request = ReportRequest(visit, walks, made_at, version)
@@ -43,13 +43,13 @@ def write_visits(request: ReportRequest, folder: Path) -> None:
         The disk is full or cannot be written to.
     """
     comparison = comparison_of(request)
-    if comparison is not None and comparison.kind is Kind.VISITS:
+    if comparison is not None and comparison.kind is Contrast.VISITS:
         write_differences(rows_of(comparison), folder / VISITS)
         write_compared_cycles(comparison.parts, folder / VISITS_CYCLES)
         describe_tables(request.visit.analysis, folder)
 
 
-def chosen_walks(visit: Visit, wanted: list[str], session: str) -> tuple[str, ...]:
+def chosen_walks(visit: AnalysedVisit, wanted: list[str], session: str) -> tuple[str, ...]:
     """Give the walks that were asked for, or those a report shows when none was.
 
     Raises

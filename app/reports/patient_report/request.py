@@ -12,7 +12,7 @@ PAPERS = ("a4", "letter")
 
 
 @dataclass(frozen=True, slots=True)
-class Visit:
+class AnalysedVisit:
     """One session and its analysis."""
 
     session: Session
@@ -54,7 +54,7 @@ class ReportRequest:
         A visit before this one to compare with, in place of the conditions.
     """
 
-    visit: Visit
+    visit: AnalysedVisit
     walks: tuple[str, ...]
     made_at: datetime
     software_version: str
@@ -62,7 +62,7 @@ class ReportRequest:
     operator: str = ""
     clinic: str = ""
     paper: str = "a4"
-    earlier: Visit | None = None
+    earlier: AnalysedVisit | None = None
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:
@@ -77,7 +77,7 @@ class ReportRequest:
         return self.walks[-1]
 
 
-def default_walks(visit: Visit) -> tuple[str, ...]:
+def default_walks(visit: AnalysedVisit) -> tuple[str, ...]:
     """Choose the last walk of each of the last conditions; the last walk alone where there is one condition.
 
     Walks without a stride that is used come last, but a report of them still says why. Empty: no walk was analysed.

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from enum import IntEnum
 
-from app.reports.comparison import Compared, Comparison, Kind, compare_legs
+from app.reports.comparison import Compared, Comparison, Contrast, compare_legs
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
@@ -336,7 +336,7 @@ def _speed_error(kind: ComparisonKind, mean_m_s: float) -> float:
 def _changed(facts: Facts, comparison: Comparison | None, row: Compared) -> str:
     """One figure of one part beside that of the first."""
     unit, decimals = unit_and_decimals(row.measure.column)
-    is_visits = comparison is not None and comparison.kind is Kind.VISITS
+    is_visits = comparison is not None and comparison.kind is Contrast.VISITS
     pattern = (
         tr("{what}: {value}, at the earlier visit {other}; difference {difference}, error {error}.")
         if is_visits

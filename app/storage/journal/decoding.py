@@ -17,7 +17,7 @@ from app.storage.data_key import KeyMaterial
 from app.storage.journal.header import JournalHeader
 from app.storage.journal.payloads import FLOAT, ROWS, STREAM, Rows, SampleLayout, SourceEntry, block_of
 from app.storage.journal.reader import Damage, JournalReader, ReadReport
-from app.storage.journal.records import Kind, Record
+from app.storage.journal.records import Record, RecordKind
 from core.body import Site
 from core.samples import BoolArray, FloatArray, ImuBlock, Recording
 from core.tracks import nominal_step_s
@@ -28,7 +28,7 @@ Decoders = Mapping[str, Callable[[], StreamDecoder]]
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class JournalMark:
     time_s: float
     text: str
 
@@ -52,7 +52,7 @@ class DecodedJournal:
     """
 
     sensors: Mapping[str, DecodedSensor]
-    marks: tuple[Mark, ...]
+    marks: tuple[JournalMark, ...]
     sources: tuple[SourceInfo, ...]
     undecoded: tuple[str, ...]
     dropped_records: int
@@ -84,13 +84,13 @@ def decode(
         A file cannot be read.
     """
     parts, offset_s = [], 0.0
-    before: _Segment | None = None
+    before: _JournalSegment | None = None
     for path, wrapped_key in zip(segments, wrapped_keys or [None] * len(segments), strict=True):
         reader = JournalReader(path, data_key, wrapped_key)
         if before is not None and reader.header.continues(before.header):
             before.go_on(reader)
             continue
-        segment = _Segment(reader, decoders)
+        segment = _JournalSegment(reader, decoders)
         segment.read()
         if before is not None:
             offset_s += _opened_later_s(before, segment.header)
@@ -103,7 +103,9 @@ def decode(
     every = [segment for segment, _ in parts]
     return DecodedJournal(
         sensors={sensor: _joined(same) for sensor, same in pieces.items()},
-        marks=tuple(Mark(mark.time_s + offset_s, mark.text) for segment, offset_s in parts for mark in segment.marks),
+        marks=tuple(
+            JournalMark(mark.time_s + offset_s, mark.text) for segment, offset_s in parts for mark in segment.marks
+        ),
         sources=tuple(entry.info for segment in every for entry in segment.sources.values()),
         undecoded=tuple(name for segment in every for name in segment.undecoded),
         dropped_records=sum(segment.dropped_records for segment in every),
@@ -111,14 +113,14 @@ def decode(
     )
 
 
-class _Segment:
+class _JournalSegment:
     """What the records of one journal come to, and of those that continue it."""
 
     def __init__(self, reader: JournalReader, decoders: Decoders) -> None:
         self.readers, self.header = [reader], reader.header
         self._known = decoders
         self.sources: dict[int, SourceEntry] = {}
-        self.marks: list[Mark] = []
+        self.marks: list[JournalMark] = []
         self.undecoded: list[str] = []
         self.last_ns = self.header.opened_ns
         self._told_dropped = self._dropped_before = 0
@@ -147,14 +149,14 @@ class _Segment:
                 continue
             self.last_ns = record.time_ns
             match record.kind:
-                case Kind.SOURCE:
+                case RecordKind.SOURCE:
                     self._begin(SourceEntry.parsed(record.payload))
-                case Kind.BYTES:
+                case RecordKind.BYTES:
                     self._feed(record)
-                case Kind.SAMPLES:
+                case RecordKind.SAMPLES:
                     self._take(record)
-                case Kind.MARK:
-                    self.marks.append(Mark(self._since_opening_s(record), json.loads(record.payload)))
+                case RecordKind.MARK:
+                    self.marks.append(JournalMark(self._since_opening_s(record), json.loads(record.payload)))
 
     def decoded(self) -> list[tuple[str, DecodedSensor]]:
         found = [piece for decoder in self._decoders.values() for piece in decoder.finish().items()]
@@ -310,7 +312,7 @@ def _joined_unknown(name: str, blocks: Sequence[ImuBlock]) -> NDArray[np.generic
     return np.array(texts, dtype=np.dtypes.StringDType())
 
 
-def _opened_later_s(before: _Segment, header: JournalHeader) -> float:
+def _opened_later_s(before: _JournalSegment, header: JournalHeader) -> float:
     """How long after a segment the next one was opened.
 
     By the monotonic clock, which nobody sets; where it began anew in between, with the machine, by the wall clock, but

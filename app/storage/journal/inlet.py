@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from app.storage.journal.payloads import SampleLayout, SourceEntry
-from app.storage.journal.records import MAX_PAYLOAD, OVERHEAD_BYTES, Kind
+from app.storage.journal.records import MAX_PAYLOAD, OVERHEAD_BYTES, RecordKind
 from devices.source import SourceInfo
 
-Waiting = tuple[Kind, int, bytes]
+Waiting = tuple[RecordKind, int, bytes]
 """Kind, time and payload of a record that has no number yet."""
 
 
@@ -41,7 +41,7 @@ class Inlet:
     def source(self, info: SourceInfo, layout: SampleLayout | None) -> int:
         with self._change:
             entry = SourceEntry(len(self.sources), info, layout)
-            self._append(Kind.SOURCE, entry.packed())
+            self._append(RecordKind.SOURCE, entry.packed())
             self.sources[entry.number] = entry
         return entry.number
 
@@ -49,7 +49,7 @@ class Inlet:
         with self._change:
             self._tell_anew(replace(self.sources[source], info=info, layout=layout))
 
-    def put(self, kind: Kind, source: int, payload: bytes, *, waits: bool = False) -> bool:
+    def put(self, kind: RecordKind, source: int, payload: bytes, *, waits: bool = False) -> bool:
         """Put in a source's record; whether it was taken. `waits` for room instead of dropping it."""
         size = len(payload) + OVERHEAD_BYTES
         with self._change:
@@ -71,7 +71,7 @@ class Inlet:
     def put_mark(self, payload: bytes) -> bool:
         """Put in a mark: few and small as they are, there is always room for them."""
         with self._change:
-            return self._append(Kind.MARK, payload)
+            return self._append(RecordKind.MARK, payload)
 
     def take(self, most_bytes: int) -> list[Waiting]:
         """The oldest records, some `most_bytes` of them. They go on waiting until they are `written`."""
@@ -124,7 +124,7 @@ class Inlet:
         since_s = self._stuck_since_s
         return 0.0 if since_s is None else self._awake_s() - since_s
 
-    def _append(self, kind: Kind, payload: bytes) -> bool:
+    def _append(self, kind: RecordKind, payload: bytes) -> bool:
         if len(payload) > MAX_PAYLOAD:
             raise ValueError(f"a record holds {len(payload)} bytes, expected {MAX_PAYLOAD} at most")
         if not self.is_open:
@@ -138,7 +138,7 @@ class Inlet:
         return True
 
     def _tell_anew(self, entry: SourceEntry) -> None:
-        self._append(Kind.SOURCE, entry.packed())
+        self._append(RecordKind.SOURCE, entry.packed())
         self.sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
 
     def _drop(self, size: int) -> None:

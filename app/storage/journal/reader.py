@@ -13,7 +13,15 @@ from typing import BinaryIO
 from app.storage.data_key import KeyMaterial
 from app.storage.journal.header import HEADER_BYTES, JournalHeader
 from app.storage.journal.payloads import Footer
-from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, OVERHEAD_BYTES, RECORD_MAGIC, Kind, Record, Seal
+from app.storage.journal.records import (
+    FIRST_NUMBER,
+    MAX_PAYLOAD,
+    OVERHEAD_BYTES,
+    RECORD_MAGIC,
+    Record,
+    RecordKind,
+    Seal,
+)
 
 CHUNK_BYTES = 2 * MAX_PAYLOAD
 
@@ -103,7 +111,7 @@ class JournalReader:
                 window.skip(size)
                 report.records += 1
                 report.missing_records += record.number - (last.number + 1 if last else FIRST_NUMBER)
-                if record.kind is Kind.FOOTER:
+                if record.kind is RecordKind.FOOTER:
                     report.footer = Footer.parsed(record.payload)
                 last = record
                 yield record

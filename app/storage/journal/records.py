@@ -26,7 +26,7 @@ MAX_PAYLOAD = 1 << 20
 FIRST_NUMBER = 1
 
 
-class Kind(IntEnum):
+class RecordKind(IntEnum):
     SOURCE = 1
     BYTES = 2
     SENT = 3
@@ -35,14 +35,14 @@ class Kind(IntEnum):
     FOOTER = 6
 
 
-KINDS = frozenset(Kind)
+KINDS = frozenset(RecordKind)
 
 
 class Record(NamedTuple):
     """One record as it was given to the writer; `time_ns` on the host's monotonic clock."""
 
     number: int
-    kind: Kind
+    kind: RecordKind
     time_ns: int
     payload: bytes
 
@@ -86,4 +86,4 @@ class Seal:
                 payload = self._cipher.decrypt(number.to_bytes(NONCE_BYTES, "big"), payload, bound)
             except InvalidTag:
                 return None
-        return Record(number, Kind(kind), time_ns, payload), end + CHECKSUM.size
+        return Record(number, RecordKind(kind), time_ns, payload), end + CHECKSUM.size

@@ -27,7 +27,7 @@ from app.storage.journal.disk import FULL_RATE_BYTES_S, ROOM, JournalFile, Room,
 from app.storage.journal.header import JournalHeader, find_segments
 from app.storage.journal.inlet import Inlet, Waiting
 from app.storage.journal.payloads import STREAM, Footer, Rows, SampleLayout, SourceEntry, rows_of
-from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, Kind, Record, Seal
+from app.storage.journal.records import FIRST_NUMBER, MAX_PAYLOAD, Record, RecordKind, Seal
 from app.storage.journal.shelter import DrawnSegment, Shelter
 from core.samples import ImuBlock
 from devices.host_clock import host_time_ns
@@ -218,11 +218,11 @@ class JournalWriter:
 
     def received(self, source: int, data: bytes) -> bool:
         """Keep what was read from a source, before anything looks at it."""
-        return self._stream(Kind.BYTES, source, data)
+        return self._stream(RecordKind.BYTES, source, data)
 
     def sent(self, source: int, data: bytes) -> bool:
         """Keep what was written to a source."""
-        return self._stream(Kind.SENT, source, data)
+        return self._stream(RecordKind.SENT, source, data)
 
     def samples(self, source: int, sensor: int, block: ImuBlock, *, waits: bool = False) -> bool:
         """Keep samples of the source's sensor of that index; their times are seconds since the journal was opened.
@@ -289,7 +289,7 @@ class JournalWriter:
 
     # whoever calls
 
-    def _stream(self, kind: Kind, source: int, data: bytes) -> bool:
+    def _stream(self, kind: RecordKind, source: int, data: bytes) -> bool:
         if len(data) > MAX_PAYLOAD - STREAM.size:
             k = len(data) // 2
             return self._stream(kind, source, data[:k]) & self._stream(kind, source, data[k:])
@@ -300,9 +300,9 @@ class JournalWriter:
         if len(payload) > MAX_PAYLOAD and len(rows.numbers) > 1:
             first, second = rows.halves()
             return self._rows(first, waits) & self._rows(second, waits)  # both, whatever became of the first
-        return self._put(Kind.SAMPLES, rows.source, payload, waits)
+        return self._put(RecordKind.SAMPLES, rows.source, payload, waits)
 
-    def _put(self, kind: Kind, source: int, payload: bytes, waits: bool) -> bool:
+    def _put(self, kind: RecordKind, source: int, payload: bytes, waits: bool) -> bool:
         is_taken = self._inlet.put(kind, source, payload, waits=waits)
         if self._inlet.stuck_s > SLOW_S:
             self._tell(Trouble.DISK_SLOW)
@@ -379,14 +379,14 @@ class JournalWriter:
         self._file.sync()
         self._synced_s, self._known_s = time.monotonic(), self._written_s
 
-    def _sealed(self, kind: Kind, time_ns: int, payload: bytes) -> bytes:
+    def _sealed(self, kind: RecordKind, time_ns: int, payload: bytes) -> bytes:
         # a number is spent when it is used, not when it is written: its nonce must not come again
         number, self._number = self._number, self._number + 1
         return self._seal.closed(Record(number, kind, time_ns, payload))
 
     def _note_sources(self, batch: Sequence[Waiting]) -> None:
         for kind, _, payload in batch:
-            if kind is Kind.SOURCE:
+            if kind is RecordKind.SOURCE:
                 entry = SourceEntry.parsed(payload)
                 self._sources[entry.number] = replace(entry, dropped_records=0, dropped_bytes=0)
 
@@ -415,7 +415,7 @@ class JournalWriter:
         self.path, self.header, self._seal = segment.path, segment.header, Seal(segment.header, segment.key)
         self._number = FIRST_NUMBER
         self._began_s, self._looked_s, self._looked_size = time.monotonic(), 0.0, 0
-        told = (self._sealed(Kind.SOURCE, self._last_ns, entry.packed()) for entry in self._sources.values())
+        told = (self._sealed(RecordKind.SOURCE, self._last_ns, entry.packed()) for entry in self._sources.values())
         if out := b"".join(told):
             self._file.append(out)
         self._tell(Trouble.MOVED)
@@ -447,7 +447,7 @@ class JournalWriter:
         footer = Footer(reason, records - self._dropped_before, size - self._dropped_bytes_before)
         # of a segment that is gone on with: what still waits is the next one's, and as old as it is
         now_ns = self._last_ns if reason == Trouble.MOVED else self._inlet.last_ns()
-        self._file.append(self._sealed(Kind.FOOTER, now_ns, footer.packed()))
+        self._file.append(self._sealed(RecordKind.FOOTER, now_ns, footer.packed()))
         self._sync()
         self._dropped_before, self._dropped_bytes_before = records, size
 

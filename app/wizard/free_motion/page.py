@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 from app.icons import Icon
 from app.theme import Look
 from app.widgets.body_figure import BodyFigure, SensorMark
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
 from app.widgets.hint import Hint, HintBand
 from app.widgets.notice import Notice
@@ -23,7 +23,7 @@ FIGURE_WIDTH = 232
 
 
 @dataclass(frozen=True, slots=True)
-class FreeMotionView:
+class FreeMotionFace:
     """What the motion looks like now. `emphasised` is the limb to move; `elapsed_s` None before it is recorded."""
 
     gauges: Mapping[Joint, GaugeFace] = field(default_factory=dict)
@@ -97,7 +97,7 @@ class FreeMotionPage(Themed):
         """
         self.question.ask(what, then, answers, is_understood=is_understood)
 
-    def show_state(self, view: FreeMotionView) -> None:
+    def show_state(self, view: FreeMotionFace) -> None:
         """Show how far the motion has come; only what reads otherwise is painted anew."""
         self.band.show_hint(view.hint)
         self.band.show_elapsed(view.elapsed_s, USUAL_S)
@@ -150,7 +150,10 @@ class _Question(Themed):
         self._look = look
         self._is_understood = False
         self.notice = Notice(look, size=14)
-        self.buttons = (Button(look, "", Kind.PRIMARY, height=44), Button(look, "", Kind.SECONDARY, height=44))
+        self.buttons = (
+            Button(look, "", ButtonKind.PRIMARY, height=44),
+            Button(look, "", ButtonKind.SECONDARY, height=44),
+        )
         self._row = QHBoxLayout(self)
         self._row.addWidget(self.notice, 1)
         for button in self.buttons:

@@ -25,7 +25,7 @@ from app.wizard.free_motion.hints import (
     unplaced_hint,
 )
 from app.wizard.free_motion.motion_shown import gauge_faces, sensor_marks
-from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
+from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.free_motion.side_question import SILENT, SideQuestion, Words
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.recordings import SessionRecording
@@ -461,7 +461,7 @@ class FreeMotionStep(Step):
         self._show_question()
         asked = self._asked()
         self._page.show_state(
-            FreeMotionView(
+            FreeMotionFace(
                 gauges=gauge_faces(self._visit, self._motion, asked.joint),
                 hint=asked.hint,
                 elapsed_s=self._elapsed_s if self._is_recording else None,

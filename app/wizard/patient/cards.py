@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -122,7 +122,7 @@ class TakenCard(Card):
     def __init__(self, look: Look) -> None:
         super().__init__(look, padding=20, spacing=12)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self.open = Button(look, tr("Open this patient"), Kind.SECONDARY, Icon.FOLDER)
+        self.open = Button(look, tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
         self.column.addWidget(self._title)
         self.column.addWidget(self.open)
 
@@ -138,7 +138,7 @@ class LastVisitCard(Card):
         self._facts = QGridLayout()
         super().__init__(look, padding=20, spacing=10)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self.same = Button(look, tr("Same set-up as last visit"), Kind.SECONDARY, Icon.REPEAT)
+        self.same = Button(look, tr("Same set-up as last visit"), ButtonKind.SECONDARY, Icon.REPEAT)
         self._facts.setColumnStretch(1, 1)
         self._shown: list[Text] = []
         self.column.addWidget(self._title)

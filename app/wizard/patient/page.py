@@ -239,7 +239,7 @@ class PatientPage(Themed):
         ]
         for number, row in enumerate(self._rows):
             if number == 2:
-                self._form.column.addWidget(_Line(self._look))
+                self._form.column.addWidget(_FieldLine(self._look))
             self._form.column.addLayout(row)
         self._form.column.addStretch(1)
         self._beside = QWidget()
@@ -367,7 +367,7 @@ class _Captioned(Themed):
         self._above.setSpacing(px(8))
 
 
-class _Line(QWidget):
+class _FieldLine(QWidget):
     """A hairline between who it is and what it is about."""
 
     def __init__(self, look: Look) -> None:

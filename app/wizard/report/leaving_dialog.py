@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.wording import tr
@@ -45,8 +45,8 @@ class LeavingDialog(QDialog):
         self._grid = QGridLayout(self._table)
         self._grid.setColumnStretch(1, 1)
         self._grid.setContentsMargins(0, 0, 0, 0)
-        self.go = Button(look, tr("Choose the folder"), Kind.PRIMARY)
-        self.cancel = Button(look, tr("Cancel"), Kind.SECONDARY)
+        self.go = Button(look, tr("Choose the folder"), ButtonKind.PRIMARY)
+        self.cancel = Button(look, tr("Cancel"), ButtonKind.SECONDARY)
         self._build()
         self.typed.turned.connect(self._show)
         self.go.clicked.connect(self._on_go_clicked)

@@ -17,8 +17,7 @@ from app.icons import Icon
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.request import ReportRequest, default_walks
-from app.reports.patient_report.request import Visit as ReportVisit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.storage.audit import about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
@@ -39,7 +38,7 @@ from devices.decoders import DECODERS
 from devices.files.refusal import FileRefusedError
 
 if TYPE_CHECKING:
-    from app.reports.patient_report.document import Preview
+    from app.reports.patient_report.document import ReportPreview
     from app.storage.opened import OpenedLibrary
     from app.storage.stored import SessionSummary
     from app.wizard.report.leaving_dialog import Rows
@@ -70,9 +69,9 @@ class ReportStep(Step):
         self._kept: frozenset[str] = frozenset()  # of what was typed freely: leaves with the files without a name
         self._comment: str | None = None  # typed here, not yet known to the session's row
         self._clinic = ""
-        self._earlier: tuple[UUID, ReportVisit] | None = None  # as was read last
+        self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
         self._reading: UUID | None = None
-        self._preview: Preview | None = None  # of its threads
+        self._preview: ReportPreview | None = None  # of its threads
         visit.preview.done.connect(self._on_previewed)
         visit.preview.failed.connect(self._on_preview_failed)
         visit.evaluation.done.connect(self._show)
@@ -192,7 +191,7 @@ class ReportStep(Step):
         evaluation = self._visit.evaluation
         if evaluation.session is None or evaluation.analysis is None:
             return None
-        visit = ReportVisit(evaluation.session, evaluation.analysis)
+        visit = AnalysedVisit(evaluation.session, evaluation.analysis)
         walks = default_walks(visit)
         if not walks:
             return None
@@ -216,9 +215,9 @@ class ReportStep(Step):
 
     def _previewing(self, request: ReportRequest, ppi: float) -> Work:
         def work(_report: Report) -> object:
-            from app.reports.patient_report.document import Preview
+            from app.reports.patient_report.document import ReportPreview
 
-            self._preview = self._preview or Preview()
+            self._preview = self._preview or ReportPreview()
             return self._preview.pages(request, ppi)
 
         return work
@@ -274,7 +273,7 @@ class ReportStep(Step):
             self._clinic = clinic
             self._show()
 
-    def _earlier_chosen(self) -> ReportVisit | None:
+    def _earlier_chosen(self) -> AnalysedVisit | None:
         """The earlier visit to compare with, once it is read."""
         chosen = self.page.report.chosen_visit
         return self._earlier[1] if self._earlier is not None and self._earlier[0] == chosen else None
@@ -282,13 +281,13 @@ class ReportStep(Step):
     def _read_earlier(self, session_id: UUID) -> None:
         self._reading = session_id
 
-        def read(opened: "OpenedLibrary", report: Report) -> tuple[UUID, ReportVisit]:
-            return session_id, ReportVisit(*read_analysed(opened, session_id, report))
+        def read(opened: "OpenedLibrary", report: Report) -> tuple[UUID, AnalysedVisit]:
+            return session_id, AnalysedVisit(*read_analysed(opened, session_id, report))
 
         self._controller.run_long(read, self._on_earlier_read, self._on_earlier_refused, None, self)
         self.changed.emit()
 
-    def _on_earlier_read(self, found: tuple[UUID, ReportVisit]) -> None:
+    def _on_earlier_read(self, found: tuple[UUID, AnalysedVisit]) -> None:
         self._reading = None
         self._earlier = found
         self._on_options_changed()  # another one may have been chosen meanwhile

@@ -188,14 +188,14 @@ class ResultsStep(Step):
         self.changed.emit()
 
     def _hold(self, results: "ResultPage", analysis: "Analysis") -> None:
-        from app.reports.patient_report.request import Visit as VisitToRead  # as the results' page, which imported it
+        from app.reports.patient_report.request import AnalysedVisit  # as the results' page, which imported it
 
         session = self._visit.evaluation.session
         if session is None or (self._held is not None and self._held[0] is session and self._held[1] is analysis):
             return
         self._held = session, analysis  # of other words for a walk the same analysis may come
         is_live = self._visit.sensors.acquisition is not None
-        results.show_visit(VisitToRead(session, analysis), can_choose=True, is_live=is_live)
+        results.show_visit(AnalysedVisit(session, analysis), can_choose=True, is_live=is_live)
 
     # how a joint was found
 

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
@@ -96,7 +96,7 @@ class ColumnsForm(Themed):
         self.rate = self._choice(tr("Angular rate in"), {"deg/s": "deg/s", "rad/s": "rad/s", "mdeg/s": "mdeg/s"})
         self.force = self._choice(tr("Acceleration in"), {"g": "g", "m/s2": "m/s²", "mg": "mg"})
         self.notice = Notice(look, size=16)
-        self.back = Button(look, tr("Other sources"), Kind.QUIET)
+        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
         self._build()
         self.back.clicked.connect(self.back_pressed)
         self._on_look_changed()

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLay
 from app.icons import Icon
 from app.pages.home_lists import LineList, PatientLine
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
@@ -54,8 +54,8 @@ class SessionChooser(Themed):
         self.sessions = LineList(look, tr("Stored sessions"))
         self.sessions.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # it scrolls by itself
         self._none = Text(look, tr("No other session with recordings is stored in this library."), 15, wraps=True)
-        self.folder = Button(look, tr("Choose a session folder"), Kind.SECONDARY, Icon.FOLDER)
-        self.back = Button(look, tr("Other sources"), Kind.QUIET)
+        self.folder = Button(look, tr("Choose a session folder"), ButtonKind.SECONDARY, Icon.FOLDER)
+        self.back = Button(look, tr("Other sources"), ButtonKind.QUIET)
         self._lists = QStackedWidget()
         self._lists.addWidget(self.sessions)
         self._lists.addWidget(self._none)

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 
 from app.icons import Icon
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -75,7 +75,7 @@ class NoSource(Themed):
             button.deleteLater()
         self.buttons, self._options = [], list(options)
         for number, option in enumerate(options):
-            button = Button(self._look, option.name, Kind.PRIMARY if number == 0 else Kind.SECONDARY)
+            button = Button(self._look, option.name, ButtonKind.PRIMARY if number == 0 else ButtonKind.SECONDARY)
             button.clicked.connect(self._on_clicked)
             self._row.addWidget(button, 0, Qt.AlignmentFlag.AlignHCenter)
             button.show()  # at once: what is not in sight yet takes no focus
@@ -108,7 +108,7 @@ class Searching(Themed):
         self._line = QProgressBar()
         self._line.setTextVisible(False)
         self._line.setRange(0, 0)
-        self.stop = Button(look, tr("Stop"), Kind.SECONDARY, Icon.STOP)
+        self.stop = Button(look, tr("Stop"), ButtonKind.SECONDARY, Icon.STOP)
         self._column = QVBoxLayout(self)
         self._column.addStretch(1)
         self._column.addWidget(self._sentence)

@@ -7,7 +7,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.theme import Look
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -123,8 +123,8 @@ class StoppedCard(Card):
     def __init__(self, look: Look) -> None:
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(look, size=14, tone="ink2", wraps=True)
-        self.keep = Button(look, "", Kind.PRIMARY, key="K")
-        self.discard = Button(look, tr("Discard"), Kind.SECONDARY, key="D")
+        self.keep = Button(look, "", ButtonKind.PRIMARY, key="K")
+        self.discard = Button(look, tr("Discard"), ButtonKind.SECONDARY, key="D")
         self._row, self._verbs = QBoxLayout(ACROSS), QHBoxLayout()
         super().__init__(look)
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)

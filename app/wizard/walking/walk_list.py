@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 from app.icons import Icon, paint_icon
 from app.theme import Look
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
-from app.widgets.button import Button, Kind
+from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.icons import IconMark
 from app.widgets.painted_button import PaintedButton
@@ -72,7 +72,7 @@ class WalkList(Card):
     restrapped_pressed = Signal()
 
     def __init__(self, look: Look) -> None:
-        self._rows: list[_Row] = []
+        self._rows: list[_ListedWalk] = []
         self._is_compact = False
         self._title = Text(look, tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
         self._none = Text(look, tr("No walk yet."), size=14, tone="ink2", wraps=True)
@@ -108,7 +108,7 @@ class WalkList(Card):
         while len(self._rows) > len(rows):
             self._rows.pop().deleteLater()
         while len(self._rows) < len(rows):
-            added = _Row(self._look, self)
+            added = _ListedWalk(self._look, self)
             self._list.insertWidget(len(self._rows), added)
             self._rows.append(added)
         for widget, row in zip(self._rows, rows, strict=True):
@@ -142,7 +142,7 @@ class WalkList(Card):
         self._fit()
 
 
-class _Row(Themed):
+class _ListedWalk(Themed):
     def __init__(self, look: Look, owner: WalkList) -> None:
         super().__init__()
         self._look, self._owner = look, owner
@@ -150,7 +150,7 @@ class _Row(Themed):
         self._label = Text(look, size=15, weight=MEDIUM, wraps=True)
         self._note = Text(look, size=12, tone="ink2", wraps=True)
         self._mark = IconMark(look, Icon.CHECK, size=20)
-        self.undo = Button(look, tr("Undo"), Kind.QUIET, height=44)
+        self.undo = Button(look, tr("Undo"), ButtonKind.QUIET, height=44)
         self._words = QVBoxLayout()
         self._words.addStretch(1)
         self._words.addWidget(self._label)

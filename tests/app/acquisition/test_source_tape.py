@@ -5,7 +5,7 @@ from pathlib import Path
 
 from app.acquisition.source_tape import SourceTape
 from app.storage.journal.reader import JournalReader
-from app.storage.journal.records import Kind, Record
+from app.storage.journal.records import Record, RecordKind
 from devices.stream import ByteSource
 from devices.ximu3 import Ximu3, command
 from tests.devices.scripted import ScriptedChannel
@@ -13,17 +13,19 @@ from tests.safety.journal_material import ID, KEY
 from tests.safety.live_material import open_journal
 
 
-def kept(path: Path) -> list[tuple[Kind, bytes]]:
+def kept(path: Path) -> list[tuple[RecordKind, bytes]]:
     records = [record for record in JournalReader(path, KEY).records() if isinstance(record, Record)]
-    return [(record.kind, record.payload[2:]) for record in records if record.kind in (Kind.SENT, Kind.BYTES)]
+    return [
+        (record.kind, record.payload[2:]) for record in records if record.kind in (RecordKind.SENT, RecordKind.BYTES)
+    ]
 
 
 def answers(written: bytes) -> bytes:
     return b'{"ping":{"sn":"A"}}\n' if b"ping" in written else written
 
 
-def sent(*written: bytes) -> Sequence[tuple[Kind, bytes]]:
-    return [(Kind.SENT, one) for one in written]
+def sent(*written: bytes) -> Sequence[tuple[RecordKind, bytes]]:
+    return [(RecordKind.SENT, one) for one in written]
 
 
 def test_what_was_sent_stands_before_what_came_of_it_and_again_after_a_loss(tmp_path: Path) -> None:
@@ -47,10 +49,10 @@ def test_what_was_sent_stands_before_what_came_of_it_and_again_after_a_loss(tmp_
     assert channel.written == [*greeting, strobe, *greeting]
     assert kept(summary.path) == [
         *sent(*greeting),
-        (Kind.BYTES, b"one"),
+        (RecordKind.BYTES, b"one"),
         *sent(strobe),
-        (Kind.BYTES, b"two"),
-        (Kind.BYTES, b"three"),
+        (RecordKind.BYTES, b"two"),
+        (RecordKind.BYTES, b"three"),
         *sent(*greeting),
-        (Kind.BYTES, b"four"),
+        (RecordKind.BYTES, b"four"),
     ]

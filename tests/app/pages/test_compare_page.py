@@ -15,7 +15,7 @@ from app.icons import Icon
 from app.pages.compare_page import CURVES, PLOT, TABLE
 from app.pages.compared_words import side_table_row
 from app.pages.result_page import COMPARE, ResultPage
-from app.reports.comparison import Comparison, Kind, Part, compare_sides, conditions_of, first_and_second
+from app.reports.comparison import Comparison, Contrast, Part, compare_sides, conditions_of, first_and_second
 from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
@@ -25,7 +25,7 @@ from app.reports.differences import (
     write_differences,
     write_sides,
 )
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
 from app.theme import Look, load_fonts
 from app.widgets.table_cells import TextCell
@@ -75,7 +75,7 @@ def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session)
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.set_room(1064, 672)
-    page.show_visit(Visit(session, analysis))
+    page.show_visit(AnalysedVisit(session, analysis))
     page.show()
     page.view.choose(COMPARE)
     return page
@@ -104,7 +104,7 @@ def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_vi
     told = tuple(replace(one, is_restrapped_before=one.name == "walk 2") for one in session.recordings)
     parts = conditions_of(analysis, told)
     assert [part.attachment for part in parts] == [0, 1, 1]
-    found = Comparison(Kind.CONDITIONS, parts)
+    found = Comparison(Contrast.CONDITIONS, parts)
     kinds = {found.error_kind(part) for part in found.others}
     assert kinds == {ComparisonKind.STRAPPINGS}
     by_column = {row.measure.column: row.difference for row in found.rows if row.side is Side.LEFT}
@@ -115,7 +115,7 @@ def test_walks_after_strapping_anew_are_of_another_part_and_judged_as_between_vi
 
 
 def test_within_one_attachment_the_error_holds_what_walks_differ_by_and_no_strapping(parts: tuple[Part, ...]) -> None:
-    found = Comparison(Kind.CONDITIONS, parts)
+    found = Comparison(Contrast.CONDITIONS, parts)
     (row,) = (row for row in found.rows if row.side is Side.RIGHT and row.measure.column == "ankle_rocker_deg")
     assert row.difference.error < 12.4  # of strapping and two zeros
     assert ErrorSource.WALKS in row.difference.sources
@@ -128,7 +128,9 @@ def test_without_a_common_zero_range_is_compared_and_height_is_not(parts: tuple[
     other = replace(parts[1].calibrated[knee], zero=ZeroKind.GONIOMETER)
     changed = (parts[0], replace(parts[1], calibrated={**parts[1].calibrated, knee: other}))
     told = {
-        row.measure.column: row.is_told for row in Comparison(Kind.CONDITIONS, changed).rows if row.side is Side.LEFT
+        row.measure.column: row.is_told
+        for row in Comparison(Contrast.CONDITIONS, changed).rows
+        if row.side is Side.LEFT
     }
     assert not told["knee_swing_peak_deg"]
     assert told["knee_range_deg"]
@@ -175,7 +177,7 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
 def test_every_number_of_the_legs_is_in_its_file(page: ResultPage, parts: tuple[Part, ...], tmp_path: Path) -> None:
     """Of whichever condition the legs are looked at."""
     compare = page.compare
-    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.SIDES))
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.SIDES))
     write_sides(parts, (Side.LEFT, Side.RIGHT), tmp_path / SIDES)
     written = lines_of(tmp_path / SIDES)
     seen = set()
@@ -213,13 +215,13 @@ def test_visits_are_asked_for_once_and_told_when_there_are_none(
     compare = page.compare
     compare.set_has_visits(True)
     with qtbot.waitSignal(compare.visits_wished):
-        compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+        compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     assert compare.nothing.isVisible()
     compare.show_visits([])
     assert "No earlier visit" in compare.nothing.text()
     compare.show_visits([ComparedVisits("AFO", parts, ())])
     assert compare.comparison is not None
-    assert compare.comparison.kind is Kind.VISITS
+    assert compare.comparison.kind is Contrast.VISITS
     assert compare.plot.isVisible()
 
 
@@ -265,7 +267,7 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
 ) -> None:
     compare = page.compare
     compare.set_has_visits(True)
-    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     visits = [
         walked("May", analysis, session, walk_1="A", walk_3="B"),
         walked("June", analysis, session, walk_1="B"),
@@ -274,10 +276,10 @@ def test_one_condition_after_the_other_is_chosen_on_the_screen(
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     words = [compare.kinds.itemText(k) for k in range(compare.kinds.count())]
     assert words[1:3] == ["Visits, A", "Visits, B"]
-    assert (compare.kind, compare.title.text()) == (Kind.VISITS, "Change from 1, A")
+    assert (compare.kind, compare.title.text()) == (Contrast.VISITS, "Change from 1, A")
     assert "Not compared, for want of a walk of this condition: June." in compare.conclusion.text()
     compare.kinds.setCurrentIndex(2)
-    assert (compare.kind, compare.title.text()) == (Kind.VISITS, "Change from 1, B")
+    assert (compare.kind, compare.title.text()) == (Contrast.VISITS, "Change from 1, B")
     assert compare.comparison is not None
     assert [part.name for part in compare.comparison.parts] == ["May", "June", "July"]
     assert "Not compared" not in compare.conclusion.text()
@@ -290,7 +292,7 @@ def test_visits_without_a_common_condition_are_not_compared_and_that_is_said(
 ) -> None:
     compare = page.compare
     compare.set_has_visits(True)
-    compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+    compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     visits = [walked("May", analysis, session, walk_1="A", walk_2=""), walked("July", analysis, session, walk_1="B")]
     compare.show_visits(visits_by_condition(visits), conditions_in_words(visits))
     assert compare.nothing.text() == (
@@ -311,9 +313,9 @@ def test_no_word_is_cut(page: ResultPage, room: tuple[int, int]) -> None:
             assert words_cut(page) == []
 
 
-def shown(page: ResultPage, analysis: Analysis, session: Session, kind: Kind) -> str:
+def shown(page: ResultPage, analysis: Analysis, session: Session, kind: Contrast) -> str:
     """Show an analysis compared in a way, and give what is concluded."""
-    page.show_visit(Visit(session, analysis))
+    page.show_visit(AnalysedVisit(session, analysis))
     page.compare.kinds.setCurrentIndex(page.compare.kinds.findData(kind))
     return page.compare.conclusion.text()
 
@@ -335,12 +337,12 @@ def bent_more(analysis: Analysis, by_deg: float, joint: Joint = Joint.RIGHT_KNEE
 def test_between_legs_only_what_is_worth_a_sentence_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    quiet = shown(page, analysis, session, Kind.SIDES)
+    quiet = shown(page, analysis, session, Contrast.SIDES)
     assert quiet == "No difference is larger than its error."
-    loud = shown(page, bent_more(analysis, 20.0), session, Kind.SIDES)
+    loud = shown(page, bent_more(analysis, 20.0), session, Contrast.SIDES)
     assert "Knee range \N{MINUS SIGN}" in loud
     assert "L against R: larger than its error (" in loud
-    ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Kind.SIDES)
+    ankle = shown(page, bent_more(analysis, 20.0, Joint.RIGHT_ANKLE), session, Contrast.SIDES)
     assert "Ankle range" not in ankle  # its error is borrowed: the table marks it, no sentence says it
     assert ankle == "No difference is so much larger than its error that it is said here; the table marks them."
 
@@ -348,7 +350,7 @@ def test_between_legs_only_what_is_worth_a_sentence_is_said(
 def test_between_walks_only_what_is_worth_a_sentence_is_said(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    page.show_visit(Visit(session, analysis))
+    page.show_visit(AnalysedVisit(session, analysis))
     found = page.compare.comparison
     assert found is not None
     said = [row for row in found.rows if row.is_told and row.difference.is_worth_a_sentence]
@@ -369,13 +371,13 @@ def test_every_cell_of_the_table_says_leg_measure_and_part(
 ) -> None:
     """Legs stand in a column of their own, where rows are of one of them."""
     cells, said = page.compare.table.cells, Qt.ItemDataRole.AccessibleTextRole
-    shown(page, analysis, session, Kind.CONDITIONS)
+    shown(page, analysis, session, Contrast.CONDITIONS)
     assert not page.compare.table.isColumnHidden(0)
     assert (cells.index(0, 0).data(), cells.index(0, 0).data(said)) == ("L", "left")
     heard = str(cells.index(0, 4).data(said))
     assert heard.startswith(f"L {cells.index(0, 1).data()}, B \N{MINUS SIGN} A: ")
     assert heard.endswith(f": {cells.index(0, 4).data()}")
-    shown(page, analysis, session, Kind.SIDES)
+    shown(page, analysis, session, Contrast.SIDES)
     assert page.compare.table.isColumnHidden(0)
     assert str(cells.index(0, 2).data(said)).startswith(f"{cells.index(0, 1).data()}, L: ")
     assert all(not line[0] for line in table_words(page))
@@ -395,13 +397,13 @@ def test_what_lies_beyond_its_error_is_marked_and_nothing_else(parts: tuple[Part
 def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    shown(page, analysis, session, Kind.SIDES)
+    shown(page, analysis, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range"][2].endswith(" \N{DAGGER}")
     assert "\N{DAGGER} rests on a figure" in page.compare.error.text()
     assert "For the ankle the knee's figure is borrowed." in page.compare.error.text()
     assert "strapping the sensors on" in page.compare.error.text()
-    shown(page, analysis, session, Kind.CONDITIONS)
+    shown(page, analysis, session, Contrast.CONDITIONS)
     assert "borrowed" not in page.compare.error.text()
     told = page.compare.error.text()
     for words in ("chance between strides", "drift within a walk", "another walking speed", "what walks differ by"):
@@ -414,12 +416,12 @@ def test_an_error_that_could_not_be_verified_bears_a_dagger_in_the_table(
 
 def test_what_is_withheld_stands_in_no_comparison(page: ResultPage, analysis: Analysis, session: Session) -> None:
     doubtful = recalibrated(analysis, [Joint.RIGHT_ANKLE], is_same_joint=False, sign_margin=1.05)
-    shown(page, doubtful, session, Kind.SIDES)
+    shown(page, doubtful, session, Contrast.SIDES)
     rows = {name: cells for _, name, *cells in table_words(page)}
     assert rows["Ankle range"][1:3] == ["withheld", "\N{EN DASH}"]
     assert rows["Ankle range"][0] not in ("withheld", "\N{EN DASH}")
     assert "withheld" not in rows["Knee range"]
-    shown(page, doubtful, session, Kind.CONDITIONS)
+    shown(page, doubtful, session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.RIGHT, False]
     assert frame.chart.curves == ()
     assert "A: withheld. The two sensors do not move as neighbours" in frame.note
@@ -438,7 +440,7 @@ def test_two_strides_have_neither_a_curve_nor_a_toe_off(analysis: Analysis, sess
 def test_without_a_zero_curves_are_compared_about_their_mean(
     page: ResultPage, analysis: Analysis, session: Session
 ) -> None:
-    shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Kind.CONDITIONS)
+    shown(page, recalibrated(analysis, [Joint.LEFT_KNEE], zero=ZeroKind.NONE), session, Contrast.CONDITIONS)
     frame = page.compare.frames[Side.LEFT, True]
     assert [float(np.mean(curve.angle_deg)) for curve in frame.chart.curves] == [pytest.approx(0.0, abs=1e-9)] * 2
     assert "0° is the mean of the stride." in frame.note

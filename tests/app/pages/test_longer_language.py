@@ -17,9 +17,9 @@ from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
 from app.theme import Look, load_fonts
-from app.widgets.gauge import GaugeFace, GaugeState, Measure
+from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
-from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
+from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from app.wizard.patient.cards import LastVisit
 from app.wizard.patient.page import PatientDraft, PatientPage
 from app.wizard.sensors.page import SensorsPage, Way
@@ -174,12 +174,14 @@ def standing(phase: StandPhase, **more: object) -> Callable[[Look], QWidget]:
 def free_motion(look: Look) -> QWidget:
     page = FreeMotionPage(look)
     open_face = GaugeFace(
-        GaugeState.NOW, Measure("11", "°", "1.5°", 0.4, False), Measure("34", "mm", "10 mm", 0.3, False)
+        GaugeState.NOW, GaugeMeasure("11", "°", "1.5°", 0.4, False), GaugeMeasure("34", "mm", "10 mm", 0.3, False)
     )
-    ready = GaugeFace(GaugeState.READY, Measure("0.8", "°", "1.5°", 1.0, True), Measure("6", "mm", "10 mm", 1.0, True))
+    ready = GaugeFace(
+        GaugeState.READY, GaugeMeasure("0.8", "°", "1.5°", 1.0, True), GaugeMeasure("6", "mm", "10 mm", 1.0, True)
+    )
     faces = dict.fromkeys(Joint, ready) | {Joint.LEFT_KNEE: open_face}
     hint = Hint(tr("Circle the left lower leg"), tr("Change direction."))
-    page.show_state(FreeMotionView(faces, hint, 7.3, Site.LEFT_SHANK))
+    page.show_state(FreeMotionFace(faces, hint, 7.3, Site.LEFT_SHANK))
     return page
 
 

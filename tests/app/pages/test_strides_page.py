@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import ANSWER, STRIDES, ResultPage
-from app.reports.patient_report.request import Visit
+from app.reports.patient_report.request import AnalysedVisit
 from app.theme import Look, load_fonts
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.analysis import analyse
@@ -44,7 +44,7 @@ def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis)
     qtbot.addWidget(page)
     page.resize(1280, 700)
     page.set_room(1280.0, 672.0)
-    page.show_visit(Visit(session, analysis), can_choose=True)
+    page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     page.view.choose(STRIDES)
     with qtbot.waitActive(page):
         page.show()
@@ -87,7 +87,7 @@ def test_a_stride_is_left_out_by_key_and_by_mouse_and_stays_where_it_was(
         QTest.mouseClick(strides.viewport(), Qt.MouseButton.LeftButton, pos=at)
         assert len(turned) == count
     assert turned == [("walk 1", line, True)] * 4
-    page.show_visit(Visit(session, without(session, analysis, line)), can_choose=True)
+    page.show_visit(AnalysedVisit(session, without(session, analysis, line)), can_choose=True)
     assert page.view.choice == STRIDES
     assert strides.hasFocus()
     assert strides.currentIndex().row() == row
@@ -114,7 +114,7 @@ def test_where_nothing_is_kept_nothing_can_be_left_out(
 ) -> None:
     """A session folder is looked at: nothing looks as if it could be pressed, and it is said why."""
     strides = page.strides.list
-    page.show_visit(Visit(session, analysis))
+    page.show_visit(AnalysedVisit(session, analysis))
     row = first_used(page)
     strides.choose(row)
     mark = strides.cells.index(row, STRIDE)
@@ -126,7 +126,7 @@ def test_where_nothing_is_kept_nothing_can_be_left_out(
     assert strides.accessibleDescription() == ""
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is None
     assert "import this session first" in page.strides.note.text()
-    page.show_visit(Visit(session, analysis), can_choose=True)
+    page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     assert not page.strides.turn.isHidden()
     assert mark.data(Qt.ItemDataRole.CheckStateRole) is not None
     assert strides.grab().toImage() != without_boxes
@@ -164,7 +164,7 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     found = without(session, analysis, line)
     (walk,) = (recording for recording in found.recordings if recording.gait)
     said = f"1 of {len(walk.gait[Side.LEFT].strides)} left strides left out by hand."
-    page.show_visit(Visit(session, found), can_choose=True)
+    page.show_visit(AnalysedVisit(session, found), can_choose=True)
     assert page.strides.note.text() == said
     assert not page.cycles.by_hand.isVisible()
     page.view.choose(ANSWER)
@@ -173,7 +173,7 @@ def test_what_was_left_out_by_hand_is_said_wherever_figures_stand(
     assert said in page.cycles.time_distance.note.text()
     assert "left out by hand" in page.cycles.peaks.note.text()
     assert said in page.compare.conclusion.text()
-    page.show_visit(Visit(session, analysis), can_choose=True)
+    page.show_visit(AnalysedVisit(session, analysis), can_choose=True)
     assert page.cycles.by_hand.text() == ""
     assert not page.cycles.by_hand.isVisible()
 
@@ -229,6 +229,6 @@ def test_every_cell_of_a_stride_is_said_and_the_mark_is_a_box_to_tick(
     ticked = Qt.ItemDataRole.CheckStateRole
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Checked
     assert strides.cells.index(row, STATE).data(ticked) is None
-    page.show_visit(Visit(session, without(session, analysis, line)), can_choose=True)
+    page.show_visit(AnalysedVisit(session, without(session, analysis, line)), can_choose=True)
     assert strides.cells.index(row, STRIDE).data(ticked) == Qt.CheckState.Unchecked
     assert str(strides.cells.index(row, STRIDE).data(said)) == f"Left stride {line.number}, left out by hand"

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.reports.comparison import Comparison, Kind, Part
+from app.reports.comparison import Comparison, Contrast, Part
 from app.reports.differences import rows_of, write_compared_cycles, write_differences, write_sides
 from core.body import Joint, Side
 from core.results import ZeroKind
@@ -27,7 +27,7 @@ def table(path: Path) -> list[dict[str, str]]:
 
 
 def differences(folder: Path, *parts: Part) -> dict[tuple[str, str], dict[str, str]]:
-    write_differences(rows_of(Comparison(Kind.CONDITIONS, parts)), folder / "differences.csv")
+    write_differences(rows_of(Comparison(Contrast.CONDITIONS, parts)), folder / "differences.csv")
     return {(row["side"], row["parameter"]): row for row in table(folder / "differences.csv")}
 
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.storage.idle_lock import IdleLock
-from app.storage.journal.records import Kind
+from app.storage.journal.records import RecordKind
 from app.storage.journal.writer import JournalWriter, State
 from tests.safety.journal_material import ID, KEY, NO_ROOM_ASKED, read_all
 
@@ -117,5 +117,5 @@ def test_a_recording_goes_on_when_the_screen_locks_and_the_key_is_forgotten(tmp_
         assert journal.status.state is State.RECORDING
         summary = journal.stop()
     records, damages, report = read_all(summary.path, KEY)
-    assert [record.payload for record in records if record.kind is Kind.MARK] == [b'"seen"', b'"unseen"']
+    assert [record.payload for record in records if record.kind is RecordKind.MARK] == [b'"seen"', b'"unseen"']
     assert (damages, report.is_whole) == ([], True)

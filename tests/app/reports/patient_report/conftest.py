@@ -5,7 +5,7 @@ from datetime import datetime, timedelta, timezone
 
 import pytest
 
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.analysis import analyse
 from core.body import Side
 from core.samples import RecordingKind
@@ -15,13 +15,13 @@ MADE_AT = datetime(2026, 11, 21, 22, 15, 30, tzinfo=timezone(timedelta(hours=1))
 
 
 @pytest.fixture(scope="session")
-def demonstration() -> Visit:
+def demonstration() -> AnalysedVisit:
     session = simulate(DEMONSTRATION).session
-    return Visit(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 @pytest.fixture(scope="session")
-def one_leg() -> Visit:
+def one_leg() -> AnalysedVisit:
     """The demonstration's left leg; the right one wears no sensor."""
     told = simulate(DEMONSTRATION).session
     recordings = tuple(
@@ -29,11 +29,11 @@ def one_leg() -> Visit:
         for r in told.recordings
     )
     session = replace(told, recordings=recordings)
-    return Visit(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 @pytest.fixture(scope="session")
-def alignments() -> Visit:
+def alignments() -> AnalysedVisit:
     walks = tuple(Walk(name=f"walk {k}", strides=13, speed_m_s=speed) for k, speed in ((1, 1.05), (2, 1.15), (3, 1.2)))
     settings = replace(DEMONSTRATION, seed=7, prosthetic_side=Side.RIGHT)
     told = simulate(replace(settings, recordings=(Standing(), FreeMotion(), *walks))).session
@@ -43,19 +43,19 @@ def alignments() -> Visit:
         for r in told.recordings
     )
     session = replace(told, recordings=recorded, started="2026-11-20T09:42:00+01:00")
-    return Visit(session, analyse(session))
+    return AnalysedVisit(session, analyse(session))
 
 
 @pytest.fixture
-def request_of_demonstration(demonstration: Visit) -> ReportRequest:
+def request_of_demonstration(demonstration: AnalysedVisit) -> ReportRequest:
     return ReportRequest(demonstration, ("walk 1",), MADE_AT, "1.2.3")
 
 
 @pytest.fixture
-def request_of_one_leg(one_leg: Visit) -> ReportRequest:
+def request_of_one_leg(one_leg: AnalysedVisit) -> ReportRequest:
     return ReportRequest(one_leg, ("walk 1",), MADE_AT, "1.2.3")
 
 
 @pytest.fixture
-def request_of_alignments(alignments: Visit) -> ReportRequest:
+def request_of_alignments(alignments: AnalysedVisit) -> ReportRequest:
     return ReportRequest(alignments, ("walk 1", "walk 2", "walk 3"), MADE_AT, "1.2.3")

@@ -4,7 +4,7 @@ import pytest
 
 from app.reports.patient_report.answer import Answer, Outcome, answer_of
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
 from core.results import Analysis
 from tests.app.changed_analysis import recalibrated, rewalked, walk_of, with_few_strides
@@ -17,7 +17,7 @@ def analysis(request_of_demonstration: ReportRequest) -> Analysis:
 
 
 def answer(request: ReportRequest, analysis: Analysis) -> Answer:
-    return answer_of(Facts(Visit(request.visit.session, analysis), walk_of(analysis)))
+    return answer_of(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)))
 
 
 def test_what_differs_most_is_the_answer_and_its_error_stands_beside_it(

@@ -12,8 +12,8 @@ import pypdf
 import pytest
 
 from app.reports.patient_report.comparison_page import comparison_of
-from app.reports.patient_report.document import Preview, make_report
-from app.reports.patient_report.request import ReportRequest, Visit, default_walks
+from app.reports.patient_report.document import ReportPreview, make_report
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
 
@@ -39,7 +39,7 @@ def elements(node: pikepdf.Object) -> Iterator[pikepdf.Object]:
 
 
 @pytest.fixture(scope="module")
-def report(alignments: Visit) -> bytes:
+def report(alignments: AnalysedVisit) -> bytes:
     made_at = datetime.fromisoformat("2026-11-21T22:15:30+01:00")
     return make_report(ReportRequest(alignments, default_walks(alignments), made_at, "1.2.3"))
 
@@ -104,7 +104,11 @@ def test_page_one_stays_one_page(
     patient = replace(visit.session.patient, device="W" * 200, aids="two crutches", code="W" * 60)
     session = replace(visit.session, patient=patient, surface="corridor " * 40)
     wanted = replace(
-        request_of_alignments, visit=Visit(session, visit.analysis), paper=paper, operator="W" * 200, clinic="W " * 200
+        request_of_alignments,
+        visit=AnalysedVisit(session, visit.analysis),
+        paper=paper,
+        operator="W" * 200,
+        clinic="W " * 200,
     )
     reader = pypdf.PdfReader(io.BytesIO(make_report(wanted)))
     pages = [reader.get_destination_page_number(entry) for entry in reader.outline if not isinstance(entry, list)]
@@ -175,7 +179,7 @@ def test_page_one_alone_says_what_was_measured_and_what_differs(
 
 
 def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
-    request_of_alignments: ReportRequest, alignments: Visit
+    request_of_alignments: ReportRequest, alignments: AnalysedVisit
 ) -> None:
     page = texts(make_report(replace(request_of_alignments, earlier=alignments)))[3]
     assert "Comparison of visits" in page
@@ -184,11 +188,11 @@ def test_two_visits_are_compared_by_the_error_of_a_new_attachment(
 
 
 def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
-    request_of_alignments: ReportRequest, alignments: Visit
+    request_of_alignments: ReportRequest, alignments: AnalysedVisit
 ) -> None:
     """C of this visit is told against C of the earlier one; where that has only A, against nothing."""
     recordings = alignments.session.recordings[:-2]  # up to alignment A
-    before = Visit(
+    before = AnalysedVisit(
         replace(alignments.session, recordings=recordings),
         replace(alignments.analysis, recordings=alignments.analysis.recordings[:-2]),
     )
@@ -204,11 +208,13 @@ def test_a_visit_of_another_alignment_is_not_compared_and_the_report_says_so(
     assert not any("so it is not compared" in page for page in texts(make_report(replace(request, earlier=alignments))))
 
 
-def walked_under(visit: Visit, request: ReportRequest) -> Visit:
+def walked_under(visit: AnalysedVisit, request: ReportRequest) -> AnalysedVisit:
     """A visit whose last walk is of the condition that a report shows."""
     condition = request.visit.recording(request.shown).condition
     *others, last = visit.session.recordings
-    return Visit(replace(visit.session, recordings=(*others, replace(last, condition=condition))), visit.analysis)
+    return AnalysedVisit(
+        replace(visit.session, recordings=(*others, replace(last, condition=condition))), visit.analysis
+    )
 
 
 def test_a_long_comment_is_printed_whole(request_of_demonstration: ReportRequest) -> None:
@@ -219,21 +225,21 @@ def test_a_long_comment_is_printed_whole(request_of_demonstration: ReportRequest
     assert any("Line 149 of" in page for page in pages)
 
 
-def test_a_request_without_time_zone_or_walk_is_refused(demonstration: Visit) -> None:
+def test_a_request_without_time_zone_or_walk_is_refused(demonstration: AnalysedVisit) -> None:
     with pytest.raises(ValueError, match="time zone"):
         ReportRequest(demonstration, ("walk 1",), datetime(2026, 11, 21), "1.2.3")
     with pytest.raises(ValueError, match="0 walks"):
         ReportRequest(demonstration, (), datetime.fromisoformat("2026-11-21T12:00+00:00"), "1.2.3")
 
 
-def test_a_look_again_is_as_if_it_were_the_first(alignments: Visit) -> None:
+def test_a_look_again_is_as_if_it_were_the_first(alignments: AnalysedVisit) -> None:
     """What is kept of the last look must not stand where something else was asked for."""
     asked = ReportRequest(alignments, ("walk 1",), datetime.fromisoformat("2026-11-21T22:15:30+01:00"), "1.2.3")
     changes = ({"comment": "Knee was tender."}, {"comment": ""}, {"walks": ("walk 1", "walk 2")}, {"paper": "letter"})
-    preview, before = Preview(), list[bytes]()
+    preview, before = ReportPreview(), list[bytes]()
     for change in changes:
         asked = replace(asked, **change)
         pages = preview.pages(asked, 40.0)
-        assert pages == Preview().pages(asked, 40.0)
+        assert pages == ReportPreview().pages(asked, 40.0)
         assert pages != before
         before = pages

@@ -8,7 +8,7 @@ import pytest
 
 from app.reports.patient_report.document import make_report
 from app.reports.patient_report.plain_text import BOX, MAX_MARKS, breakable, isolated, plain, plain_lines
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from tests.safety.hostile_names import try_names
 
 pytestmark = pytest.mark.endurance  # minutes in all: the default run has three
@@ -39,7 +39,7 @@ def with_text(request: ReportRequest, text: str) -> ReportRequest:
     session = replace(
         session, patient=patient, sensors=sensors, recordings=recordings, surface=text, started=text, notes=text
     )
-    visit = Visit(session, request.visit.analysis)
+    visit = AnalysedVisit(session, request.visit.analysis)
     return replace(request, visit=visit, comment=text, operator=text, clinic=text, software_version=text[:20] or "1")
 
 
@@ -72,7 +72,9 @@ def test_a_direction_stays_within_its_own_text(request_of_demonstration: ReportR
     """A Hebrew code may not turn round the date beside it in the title."""
     patient = replace(request_of_demonstration.visit.session.patient, code="אבג 1")
     session = replace(request_of_demonstration.visit.session, patient=patient, started="2026-11-20T09:42:00+01:00")
-    pdf = make_report(replace(request_of_demonstration, visit=Visit(session, request_of_demonstration.visit.analysis)))
+    pdf = make_report(
+        replace(request_of_demonstration, visit=AnalysedVisit(session, request_of_demonstration.visit.analysis))
+    )
     reader = pypdf.PdfReader(io.BytesIO(pdf))
     assert reader.metadata is not None
     assert reader.metadata.title == "Gait report \u2068אבג 1\u2069, 20 Nov 2026, SIMULATED"

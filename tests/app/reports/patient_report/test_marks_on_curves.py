@@ -7,7 +7,7 @@ import pytest
 
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
 from core.results import Analysis
 from core.samples import FloatArray
@@ -22,7 +22,7 @@ def analysis(request_of_demonstration: ReportRequest) -> Analysis:
 
 
 def facts(request: ReportRequest, analysis: Analysis) -> Facts:
-    visit: Visit = visit_of(analysis, request.visit.session, GROWN)
+    visit: AnalysedVisit = visit_of(analysis, request.visit.session, GROWN)
     return Facts(visit, walk_of(analysis))
 
 

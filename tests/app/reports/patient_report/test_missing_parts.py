@@ -10,7 +10,7 @@ import pypdf
 import pytest
 
 from app.reports.patient_report.document import make_report, report_data
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.strides import Reason
@@ -27,7 +27,7 @@ def shown(request: ReportRequest) -> list[str]:
 
 
 def with_analysis(request: ReportRequest, analysis: Analysis) -> ReportRequest:
-    return replace(request, visit=Visit(request.visit.session, analysis))
+    return replace(request, visit=AnalysedVisit(request.visit.session, analysis))
 
 
 def with_walk(request: ReportRequest, gait: Mapping[Side, SideGait]) -> ReportRequest:
@@ -90,7 +90,9 @@ def test_without_a_foot_sensor_a_line_stands_in_place_of_the_ankle(request_of_de
     recordings = tuple(
         replace(r, imu={site: block for site, block in r.imu.items() if "foot" not in site}) for r in session.recordings
     )
-    pages = shown(replace(request, visit=Visit(replace(session, recordings=recordings), request.visit.analysis)))
+    pages = shown(
+        replace(request, visit=AnalysedVisit(replace(session, recordings=recordings), request.visit.analysis))
+    )
     assert "Ankle not measured: no sensor on the left and right foot." in pages[1]
     assert "Ankle (dorsiflexion +)" not in pages[2]
 
@@ -178,7 +180,7 @@ def test_sensors_that_are_no_neighbours_leave_no_number_of_their_joint(
 def test_a_child_and_a_crawl_stand_beside_no_band(request_of_demonstration: ReportRequest) -> None:
     session = request_of_demonstration.visit.session
     child = replace(session, started="2026-11-20T09:42:00+01:00", patient=replace(session.patient, birth_year=2016))
-    visit = Visit(child, request_of_demonstration.visit.analysis)
+    visit = AnalysedVisit(child, request_of_demonstration.visit.analysis)
     pages = shown(replace(request_of_demonstration, visit=visit))
     assert "no band" in pages[0]
     assert "No band: the groups at hand are adults." in pages[1]
@@ -243,5 +245,5 @@ def test_simulated_data_say_so_everywhere_and_real_data_nowhere(
 ) -> None:
     analysis = replace(request_of_demonstration.visit.analysis, is_simulated=simulated, findings=())
     session = replace(request_of_demonstration.visit.session, sensors={})
-    request = replace(request_of_demonstration, visit=Visit(session, analysis))
+    request = replace(request_of_demonstration, visit=AnalysedVisit(session, analysis))
     assert all(("SIMULATED" in page) is simulated for page in shown(request))

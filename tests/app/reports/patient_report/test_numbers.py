@@ -19,7 +19,7 @@ from app.charts.stride_chart import StrideChart
 from app.reports.patient_report import comparison_page, consistency_page, curves_page, panels, peaks_page
 from app.reports.patient_report.document import report_data
 from app.reports.patient_report.numbers_in_words import MINUS, NOTHING, against_band, fixed, signed, spread
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.reference_bands import reference_curves, time_distance_classes
 from app.reports.result_folder import write_results
 from core.body import Side
@@ -30,7 +30,7 @@ NUMBER = re.compile(rf"[{MINUS}]?\d+(?:\.\d+)?")
 
 
 @pytest.fixture(scope="module")
-def results(demonstration: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def results(demonstration: AnalysedVisit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("results")
     write_results(demonstration.session, demonstration.analysis, folder)
     return folder

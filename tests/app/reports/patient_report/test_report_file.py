@@ -9,13 +9,13 @@ import pytest
 
 from app.cli import main
 from app.reports.patient_report.report_file import check_report_place, chosen_walks, replace_report, session_of
-from app.reports.patient_report.request import Visit, default_walks
+from app.reports.patient_report.request import AnalysedVisit, default_walks
 from devices.files.refusal import FileRefusedError
 from devices.files.session_folder import write_session
 
 
 @pytest.fixture(scope="module")
-def session(demonstration: Visit, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def session(demonstration: AnalysedVisit, tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("visit") / "session"
     write_session(demonstration.session, folder)
     return folder
@@ -70,13 +70,13 @@ def test_results_lead_to_the_session_inside_them(session: Path, tmp_path: Path) 
     assert session_of(session) == session
 
 
-def test_the_last_walk_of_each_condition_is_shown(alignments: Visit) -> None:
+def test_the_last_walk_of_each_condition_is_shown(alignments: AnalysedVisit) -> None:
     assert default_walks(alignments) == ("walk 1", "walk 2", "walk 3")
     recordings = tuple(replace(r, condition="") for r in alignments.session.recordings)
-    alike = Visit(replace(alignments.session, recordings=recordings), alignments.analysis)
+    alike = AnalysedVisit(replace(alignments.session, recordings=recordings), alignments.analysis)
     assert default_walks(alike) == ("walk 3",)
     assert chosen_walks(alike, ["walk 2", "walk 1"], "session") == ("walk 2", "walk 1")
-    nothing = Visit(alignments.session, replace(alignments.analysis, recordings=()))
+    nothing = AnalysedVisit(alignments.session, replace(alignments.analysis, recordings=()))
     assert default_walks(nothing) == ()
     with pytest.raises(FileRefusedError, match="no kept walk"):
         chosen_walks(nothing, [], "session")

@@ -9,7 +9,7 @@ from app.reports.comparison import MEASURES
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.request import ReportRequest, Visit
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.patient_report.what_stands_out import (
     BETWEEN_LEGS,
     MAX_FINDINGS,
@@ -32,7 +32,7 @@ ZERO = "Zero is the standing posture"
 def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
     """The sentences of a report, of another analysis where one is given."""
     if analysis is not None:
-        request = replace(request, visit=Visit(request.visit.session, analysis))
+        request = replace(request, visit=AnalysedVisit(request.visit.session, analysis))
     _, bullets = what_stands_out(facts_of(request), comparison_of(request))
     sentences = bullets["said"]
     assert isinstance(sentences, list)
@@ -42,7 +42,7 @@ def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
 def of_a_child(request: ReportRequest, analysis: Analysis) -> ReportRequest:
     session = request.visit.session
     child = replace(session, started="2026-11-20", patient=replace(session.patient, birth_year=2016))
-    return replace(request, visit=Visit(child, analysis))
+    return replace(request, visit=AnalysedVisit(child, analysis))
 
 
 def with_more(analysis: Analysis, side: Side, name: str, more: float) -> Analysis:
@@ -208,7 +208,7 @@ def test_at_most_three_findings_are_told_one_of_each_joint_and_direction(
         ("step_time_s", 0.3),
     ):
         analysis = with_more(analysis, Side.LEFT, name, more)
-    request = replace(request_of_demonstration, visit=Visit(request_of_demonstration.visit.session, analysis))
+    request = replace(request_of_demonstration, visit=AnalysedVisit(request_of_demonstration.visit.session, analysis))
     told = findings(facts_of(request), None)
     assert len(told) == MAX_FINDINGS
     below = [one for one in told if "knee" in one.lower() and ("below" in one or "difference \u2212" in one)]
@@ -273,4 +273,4 @@ def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonst
 
 
 def lines(request: ReportRequest, analysis: Analysis) -> list[str]:
-    return findings(Facts(Visit(request.visit.session, analysis), walk_of(analysis)), None)
+    return findings(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)), None)

@@ -9,7 +9,7 @@ from crc32c import crc32c
 
 from app.storage.journal.header import HEADER_BYTES, JournalHeader
 from app.storage.journal.reader import Damage, JournalReader
-from app.storage.journal.records import CHECKSUM, MAX_PAYLOAD, RECORD_HEADER, Kind, Record, Seal
+from app.storage.journal.records import CHECKSUM, MAX_PAYLOAD, RECORD_HEADER, Record, RecordKind, Seal
 from app.storage.journal.writer import JournalWriter
 from tests.safety.journal_material import (
     ID,
@@ -25,7 +25,7 @@ from tests.safety.journal_material import (
 )
 from tests.safety.journal_tails import Original
 
-RECORD = Record(7, Kind.BYTES, 1_000, b"some bytes")
+RECORD = Record(7, RecordKind.BYTES, 1_000, b"some bytes")
 HEADER, OWN_KEY = JournalHeader(ID, 1, 0, 0).with_new_key(KEY)
 
 
@@ -115,9 +115,9 @@ def test_nothing_counts_that_stands_behind_the_footer(tmp_path: Path) -> None:
     header = JournalReader(path, KEY).header
     key = header.key(KEY, "a")
     before = path.read_bytes()
-    path.write_bytes(before + Seal(header, key).closed(Record(999, Kind.MARK, 1 << 62, b'"added"')))
+    path.write_bytes(before + Seal(header, key).closed(Record(999, RecordKind.MARK, 1 << 62, b'"added"')))
     records, damages, report = read_all(path, KEY)
-    assert records[-1].kind is Kind.FOOTER
+    assert records[-1].kind is RecordKind.FOOTER
     assert damages == [Damage(len(before), path.stat().st_size - len(before))]
     assert not report.is_whole
 

@@ -13,7 +13,7 @@ import pytest
 from app.storage.journal.disk import TOLD, JournalFile, Room, Trouble
 from app.storage.journal.header import JournalRefusedError, find_segments
 from app.storage.journal.payloads import Footer, SourceEntry
-from app.storage.journal.records import MAX_PAYLOAD, Kind
+from app.storage.journal.records import MAX_PAYLOAD, RecordKind
 from app.storage.journal.writer import SLOW_S, JournalWriter, State
 from devices.source import SourceInfo
 from tests.safety.journal_material import (
@@ -77,11 +77,15 @@ def test_what_is_put_in_comes_out_in_order_and_whole(tmp_path: Path, key: bytes 
     summary = record_some(tmp_path, key, rounds=20)
     records, damages, report = read_all(summary.path, key)
     kinds = [record.kind for record in records]
-    assert kinds[:3] == [Kind.SOURCE, Kind.SOURCE, Kind.SENT]
-    assert (kinds.count(Kind.SAMPLES), kinds.count(Kind.BYTES), kinds.count(Kind.MARK)) == (120, 20, 2)
-    assert kinds[-1] is Kind.FOOTER
+    assert kinds[:3] == [RecordKind.SOURCE, RecordKind.SOURCE, RecordKind.SENT]
+    assert (kinds.count(RecordKind.SAMPLES), kinds.count(RecordKind.BYTES), kinds.count(RecordKind.MARK)) == (
+        120,
+        20,
+        2,
+    )
+    assert kinds[-1] is RecordKind.FOOTER
     assert [record.number for record in records] == list(range(1, len(records) + 1))
-    assert [r.payload[2:] for r in records if r.kind is Kind.BYTES] == [line(k) for k in range(20)]
+    assert [r.payload[2:] for r in records if r.kind is RecordKind.BYTES] == [line(k) for k in range(20)]
     assert SourceEntry.parsed(records[0].payload) == SourceEntry(0, WALKER, LAYOUT)
     assert SourceEntry.parsed(records[1].payload) == SourceEntry(1, LINES)
     assert report.is_whole
@@ -101,7 +105,7 @@ def test_what_was_put_in_can_be_read_while_the_recording_goes_on(tmp_path: Path,
         assert journal.received(source, line(0))
         wait_for(lambda: journal.status.records == 2)
         records, damages, report = read_all(journal.path, KEY)
-        assert [record.kind for record in records] == [Kind.SOURCE, Kind.BYTES]
+        assert [record.kind for record in records] == [RecordKind.SOURCE, RecordKind.BYTES]
         assert damages == []
         assert report.footer is None
         wait_for(lambda: len(disk.syncs) >= 3)
@@ -134,7 +138,7 @@ def test_a_disk_that_stalls_holds_up_nobody_and_costs_nothing(tmp_path: Path, di
         assert said == [Trouble.DISK_SLOW]
         disk.answers.set()
     records, _, report = read_all(journal.path, KEY)
-    assert [r.payload[2:] for r in records if r.kind is Kind.BYTES] == [line(k) for k in range(2001)]
+    assert [r.payload[2:] for r in records if r.kind is RecordKind.BYTES] == [line(k) for k in range(2001)]
     assert report.is_whole
 
 
@@ -200,14 +204,19 @@ def test_what_a_stalled_disk_has_no_room_for_is_dropped_counted_and_said(tmp_pat
         assert journal.received(source, b"after")
         assert journal.received(other, b"nothing dropped here")
     records, _, report = read_all(journal.path, KEY)
-    told = [SourceEntry.parsed(record.payload) for record in records if record.kind is Kind.SOURCE]
+    told = [SourceEntry.parsed(record.payload) for record in records if record.kind is RecordKind.SOURCE]
     assert [(entry.number, entry.dropped_records, entry.dropped_bytes) for entry in told] == [
         (0, 0, 0),
         (1, 0, 0),
         (0, dropped, dropped * 1002),
     ]
     kinds = [record.kind for record in records]
-    assert kinds[-4:] == [Kind.SOURCE, Kind.BYTES, Kind.BYTES, Kind.FOOTER]  # told anew right before it goes on
+    assert kinds[-4:] == [
+        RecordKind.SOURCE,
+        RecordKind.BYTES,
+        RecordKind.BYTES,
+        RecordKind.FOOTER,
+    ]  # told anew right before it goes on
     assert report.footer == Footer("stopped", dropped, dropped * 1002)
     assert journal.stop().dropped_records == dropped
 
@@ -238,7 +247,7 @@ def test_a_disk_that_fails_ends_the_recording_at_its_last_batch_and_says_so(
     assert (summary.state, summary.reason, summary.sha256) == (State.BROKEN, trouble, "")
     assert summary.dropped_records == 3
     records, damages, _ = read_all(journal.path, KEY)
-    assert [record.kind for record in records] == [Kind.SOURCE, Kind.BYTES]
+    assert [record.kind for record in records] == [RecordKind.SOURCE, RecordKind.BYTES]
     assert damages == []
 
 
@@ -276,7 +285,7 @@ def test_a_piece_that_a_full_disk_cut_off_is_taken_back_and_no_number_comes_twic
         journal.received(source, bytes(60_000))
         wait_for(lambda: journal.status.state is not State.RECORDING)
     records, damages, report = read_all(journal.path, KEY)
-    assert [(record.number, record.kind) for record in records] == [(1, Kind.SOURCE), (3, Kind.FOOTER)]
+    assert [(record.number, record.kind) for record in records] == [(1, RecordKind.SOURCE), (3, RecordKind.FOOTER)]
     assert damages == []
     assert report.missing_records == 1  # number 2 was on the disk for a moment; its nonce is spent
     assert report.footer == Footer("disk_full", 1, 60_002)
@@ -341,7 +350,7 @@ def test_what_is_too_long_for_a_record_is_kept_in_pieces(tmp_path: Path) -> None
         with pytest.raises(ValueError, match="at most"):
             journal.source(SourceInfo("lines", "1", settings={"all": "x" * MAX_PAYLOAD}))
     records, _, report = read_all(journal.path, KEY)
-    assert b"".join(record.payload[2:] for record in records if record.kind is Kind.BYTES) == data
+    assert b"".join(record.payload[2:] for record in records if record.kind is RecordKind.BYTES) == data
     assert report.is_whole
 
 
@@ -378,7 +387,7 @@ def test_many_threads_may_put_in_at_once(tmp_path: Path) -> None:
     records, _, _ = read_all(journal.path, KEY)
     assert all(a.time_ns <= b.time_ns for a, b in itertools.pairwise(records))
     for source in range(4):
-        sent = [r.payload[2:] for r in records if r.kind is Kind.BYTES and r.payload[0] == source]
+        sent = [r.payload[2:] for r in records if r.kind is RecordKind.BYTES and r.payload[0] == source]
         assert sent == [line(k) for k in range(300)]
 
 

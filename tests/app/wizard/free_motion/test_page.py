@@ -10,24 +10,24 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.theme import Look, load_fonts
-from app.widgets.gauge import Gauge, GaugeFace, GaugeState, Measure
+from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
-from app.wizard.free_motion.page import FreeMotionPage, FreeMotionView
+from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
 from core.body import Joint, Site
 from tests.app.layout_items import item_of, items_held
 
 
-def measure(figure: str, unit: str = "°", share: float = 0.4) -> Measure:
-    return Measure(figure, unit, f"1.5{unit}", share, is_met=False)
+def measure(figure: str, unit: str = "°", share: float = 0.4) -> GaugeMeasure:
+    return GaugeMeasure(figure, unit, f"1.5{unit}", share, is_met=False)
 
 
 def face(figure: str = "11", share: float = 0.4, state: GaugeState = GaugeState.OPEN) -> GaugeFace:
     return GaugeFace(state, measure(figure, share=share), measure("34", "mm"))
 
 
-def view(**faces: GaugeFace) -> FreeMotionView:
+def view(**faces: GaugeFace) -> FreeMotionFace:
     gauges = {joint: faces.get(joint.value, face()) for joint in Joint}
-    return FreeMotionView(gauges, Hint("Circle the left lower leg", "Change direction."), 7.3, Site.LEFT_SHANK)
+    return FreeMotionFace(gauges, Hint("Circle the left lower leg", "Change direction."), 7.3, Site.LEFT_SHANK)
 
 
 @pytest.fixture

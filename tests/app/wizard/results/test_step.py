@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication, QFileDialog
 from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import STRIDES
-from app.reports.comparison import Kind
+from app.reports.comparison import Contrast
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.theme import Look, load_fonts
@@ -175,7 +175,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
 def test_an_earlier_visit_is_compared_as_worn_anew(qtbot: QtBot, visit: Visit, step: ResultsStep) -> None:
     compare = step.page.results().compare
     with qtbot.waitSignal(visit.earlier_read, timeout=60_000):
-        compare.kinds.setCurrentIndex(compare.kinds.findData(Kind.VISITS))
+        compare.kinds.setCurrentIndex(compare.kinds.findData(Contrast.VISITS))
     found = compare.comparison
     assert found is not None
     assert [(part.letter, part.name) for part in found.parts] == [("1", "2026-09-01"), ("2", "2026-10-01")]
