@@ -10,6 +10,7 @@ from app.reports.patient_report.data_quality import DataQuality
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import NOTHING, fixed
 from app.reports.walk_figures import Figure
+from app.widgets.door import DoorWords
 from app.widgets.fact_strip import KeyFigure
 from app.wording import tr, tr_n
 from core.body import Side
@@ -17,19 +18,19 @@ from core.gait.strides import Reason
 from core.verdicts.model import Verdict
 
 
-def door_words(found: DataQuality) -> tuple[Verdict, str, str, str]:
+def door_words(found: DataQuality) -> DoorWords:
     """The verdict of the gravest remark, where it holds, what to do or why, and how many there are."""
     if not found.lines:
         is_judged = bool(found.in_order)
         first = tr("Everything that was measured can be read.") if is_judged else found.first
-        return Verdict.READ, first, found.in_order, ""
+        return DoorWords(Verdict.READ, first, found.in_order)
     line = found.lines[0]
     pattern = tr("{where}: {verdict}.") if line.where else tr("Data: {verdict}.")
     first = pattern.format(where=line.where, verdict=verdict_word(line.verdict))
-    is_grave = line.verdict is Verdict.WITHHELD
-    then = line.to_do or line.why if is_grave else line.why
+    then = line.to_do or line.why if line.is_grave else line.why
     count = len(found.lines)
-    return line.verdict, first, then, tr_n("{count} remark", "{count} remarks", count).format(count=count)
+    remarks = tr_n("{count} remark", "{count} remarks", count).format(count=count)
+    return DoorWords(line.verdict, first, then, remarks, is_caution=line.is_grave)
 
 
 def key_figures(facts: Facts) -> list[KeyFigure]:

@@ -189,7 +189,7 @@ class LineCard(Themed):
     def __init__(self, look: Look, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()
         self._look, self._line = look, line
-        is_grave = line.verdict is Verdict.WITHHELD
+        is_grave = line.is_grave
         tone, quiet = ("caution_ink", "caution_ink") if is_grave else ("ink", "ink2")
         title = f"{line.where}: {verdict_word(line.verdict)}" if line.where else verdict_word(line.verdict)
         self.setAccessibleName(" ".join(filter(None, [f"{title}.", line.why, line.to_do])))
@@ -221,7 +221,7 @@ class LineCard(Themed):
 
     def paintEvent(self, _event: QPaintEvent) -> None:
         c, box = self._look.theme.colours, QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        is_grave = self._line.verdict is Verdict.WITHHELD
+        is_grave = self._line.is_grave
         fill, edge = (c.caution, c.caution_edge) if is_grave else (c.surface, c.control)
         self._look.theme.paint_box(QPainter(self), box, fill, edge, 1)
 

@@ -559,7 +559,7 @@ class ResultPage(Themed):
             found, strides, joints = quality_without_walk(visit, recording.name if recording else ""), "", {}
             calibrated = visit.analysis.calibrated_for(recording) if recording is not None else {}
         sites = [site for site in Site if any(site in one.imu for one in visit.session.recordings)]
-        self.door.tell(*door_words(found))
+        self.door.tell(door_words(found))
         self.quality.show_quality(found, joints, sites, strides, can_repeat=self._is_live)
         self.quality.show_engineering(calibrated, visit.analysis.findings)
 

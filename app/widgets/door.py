@@ -1,5 +1,7 @@
 """How far what is shown can be trusted, in one line, and the way to the whole of it."""
 
+from dataclasses import dataclass
+
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
@@ -19,29 +21,40 @@ CAP = 22
 LEAST_WIDTH = 320
 
 
+@dataclass(frozen=True, slots=True)
+class DoorWords:
+    """`details`: how much stands behind it. `is_caution`: it is yellow, for something is taken away."""
+
+    verdict: Verdict
+    first: str
+    then: str = ""
+    details: str = ""
+    is_caution: bool = False
+
+
 class Door(PaintedButton):
     """What does not fit is cut short on the screen, and heard whole."""
 
     def __init__(self, look: Look, key: str) -> None:
         super().__init__(look)
-        self._key, self._verdict = key, Verdict.READ
-        self._first = self._then = ""
-        self._details = tr("Details")
+        self._key, self._shown = key, DoorWords(Verdict.READ, "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
         self.setAccessibleDescription(tr("Key {key}").format(key=key))
 
     @property
     def words(self) -> str:
-        return " ".join(filter(None, [self._first, self._then]))
+        return " ".join(filter(None, [self._shown.first, self._shown.then]))
 
-    def tell(self, verdict: Verdict, first: str, then: str = "", details: str = "") -> None:
-        """`details`: how much stands behind it."""
-        self._verdict, self._first, self._then = verdict, first, then
-        self._details = details or tr("Details")
-        self.setAccessibleName(f"{self.words} {self._details}")
+    def tell(self, shown: DoorWords) -> None:
+        self._shown = shown
+        self.setAccessibleName(tr("Data: {words}").format(words=f"{self.words} {self._details}"))
         self.setToolTip(self.words)
         self.update()
+
+    @property
+    def _details(self) -> str:
+        return self._shown.details or tr("Details")
 
     def sizeHint(self) -> QSize:
         px = self._look.theme.px
@@ -59,13 +72,13 @@ class Door(PaintedButton):
         width = QFontMetrics(bold).horizontalAdvance(self._details) + 1
         found = [PaintedText(self._details, QRectF(right - width, 0, width, height), bold, tone, RIGHT)]
         left, room = px(PADDING + ICON + 8), right - width - px(16)
-        first = QFontMetrics(bold).elidedText(self._first, Qt.TextElideMode.ElideRight, int(room - left))
+        first = QFontMetrics(bold).elidedText(self._shown.first, Qt.TextElideMode.ElideRight, int(room - left))
         taken = QFontMetrics(bold).horizontalAdvance(first) + 1
         found.append(PaintedText(first, QRectF(left, 0, taken, height), bold, tone, LEFT))
         left += taken + px(8)
-        if first == self._first and self._then and room - left > px(40):
-            then = QFontMetrics(plain).elidedText(self._then, Qt.TextElideMode.ElideRight, int(room - left))
-            grey = "ink2" if self._verdict is not Verdict.WITHHELD else tone
+        if first == self._shown.first and self._shown.then and room - left > px(40):
+            then = QFontMetrics(plain).elidedText(self._shown.then, Qt.TextElideMode.ElideRight, int(room - left))
+            grey = tone if self._shown.is_caution else "ink2"
             found.append(PaintedText(then, QRectF(left, 0, room - left, height), plain, grey, LEFT))
         return found
 
@@ -74,13 +87,13 @@ class Door(PaintedButton):
         c, px = theme.colours, theme.px
         painter = QPainter(self)
         box = QRectF(self.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
-        is_grave = self._verdict is Verdict.WITHHELD
+        is_grave = self._shown.is_caution
         theme.paint_box(
             painter, box, c.caution if is_grave else c.surface, c.caution_edge if is_grave else c.control, 1
         )
         self.paint_veil(painter, box)
         ink, middle, icon = getattr(c, self._tone), self.height() / 2, px(ICON)
-        paint_icon(painter, VERDICT_ICONS[self._verdict], QRectF(px(PADDING), middle - icon / 2, icon, icon), ink)
+        paint_icon(painter, VERDICT_ICONS[self._shown.verdict], QRectF(px(PADDING), middle - icon / 2, icon, icon), ink)
         for text in self.texts():
             text.paint(painter, c)
         theme.paint_cap(painter, self._cap(), self._key, ink, c.caution_edge if is_grave else c.control)
@@ -88,7 +101,7 @@ class Door(PaintedButton):
 
     @property
     def _tone(self) -> str:
-        return "caution_ink" if self._verdict is Verdict.WITHHELD else "ink"
+        return "caution_ink" if self._shown.is_caution else "ink"
 
     def _chevron(self) -> QRectF:
         icon = self._look.theme.px(ICON)

@@ -64,6 +64,6 @@ def answer_of(facts: Facts) -> Answer:
 
 
 def _brief_caveat(facts: Facts) -> list[str]:
-    """What cannot be read; why, and what to do, stands one step behind the answer."""
-    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,))]
+    """Which joint or leg cannot be read; why, and what to do, stands one step behind the answer."""
+    withheld = [cause.where for cause in quality.causes(facts, (Verdict.WITHHELD,)) if not cause.is_between]
     return [tr("Withheld: {where}.").format(where=withheld[0][:1].lower() + withheld[0][1:])] if withheld else []

@@ -42,7 +42,7 @@ ALL_READ = {
 class QualityLine:
     """One thing that stands against a figure: `where` it is, `why`, and what `to_do`, which may be empty.
 
-    `side` is the leg whose free motion mends it, None where that does not.
+    `side` is the leg whose free motion mends it, None where that does not. `is_between`: each leg alone can be read.
     """
 
     verdict: Verdict
@@ -50,6 +50,12 @@ class QualityLine:
     why: str
     to_do: str
     side: Side | None = None
+    is_between: bool = False
+
+    @property
+    def is_grave(self) -> bool:
+        """Whether it takes a joint or a leg away."""
+        return self.verdict is Verdict.WITHHELD and not self.is_between
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,14 +97,14 @@ def quality_without_walk(visit: AnalysedVisit, recording: str) -> DataQuality:
 
 
 def _quality(first: str, then: str, lines: list[QualityLine], in_order: str) -> DataQuality:
-    ordered = sorted(lines, key=lambda line: line.verdict is not Verdict.WITHHELD)
+    ordered = sorted(lines, key=lambda line: (not line.is_grave, line.verdict is not Verdict.WITHHELD))
     return DataQuality(worst(line.verdict for line in ordered), first, then, tuple(ordered), in_order)
 
 
 def _of_cause(cause: Cause) -> QualityLine:
     sides = {place.side for place in cause.places if isinstance(place, Joint)}
     side = sides.pop() if cause.gate in FREE_MOTION_MENDS and len(sides) == 1 else None
-    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side)
+    return QualityLine(cause.verdict, cause.where, cause.words.why, cause.words.to_do, side, cause.is_between)
 
 
 def _of_finding(finding: Finding) -> QualityLine:

@@ -74,6 +74,11 @@ class Cause:
     words: GateWords
 
     @property
+    def is_between(self) -> bool:
+        """Whether it is only about instants of both legs, so that each leg can be read."""
+        return set(self.places) == {None}
+
+    @property
     def said(self) -> str:
         return " ".join(filter(None, self.words))
 
@@ -112,7 +117,9 @@ def _where(facts: Facts, places: Sequence[Place]) -> str:
     """Name the places of a reason: a leg stands for its joints, both legs for all."""
     sides = [side for side in Side if side in places]
     joints = [joint for joint in places if isinstance(joint, Joint) and joint.side not in sides]
-    if None in places or (len(sides) == len(Side) and not joints):
+    if not sides and not joints:
+        return tr("Between the legs")
+    if len(sides) == len(Side) and not joints:
         return tr("Both legs")
     if not sides and len(joints) > 1 and len(joints) == len(facts.verdicts.joints):
         return tr("All joints")

@@ -529,7 +529,7 @@ def test_tab_goes_in_the_order_of_reading(qtbot: QtBot, window: SessionScreen, r
         "Recording",
         "Result",
         "Knee and ankle angles of walk 1",
-        "R foot",
+        "Data: R foot",
         "Open a session folder",
         "Open the demonstration",
         "How was this found?",
