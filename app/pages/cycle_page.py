@@ -164,11 +164,11 @@ def _whose(bands: Bands, only: str) -> str:
     band = bands.curves
     if band is None:
         return tr(WHY_NO_BAND[bands.why_no_curves or NoBand.OTHER_SPEED])
-    sds = tr("inner 1 SD, outer 2 SD").replace(" SD", "\N{NO-BREAK SPACE}SD")
-    whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s; {sds}.")
-    said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, sds=sds)
+    whose = tr("Band: {count} {group}, {speed_m_s:.2f} m/s, {source}.")
+    first, year = _authors(band.source).partition(",")[0], _authors(band.source).rpartition(" ")[2]
+    said = whose.format(count=band.n, group=tr(band.group), speed_m_s=band.speed_m_s, source=f"{first} {year}")
     others = tr(OTHER_AGES) if bands.are_curves_of_other_ages else ""
-    return " ".join(filter(None, [f"{said} {_authors(band.source)}.", others, only]))
+    return " ".join(filter(None, [said, others, only]))
 
 
 def _group_in_words(group: ReferenceValues | None, why_none: NoBand | None) -> str:

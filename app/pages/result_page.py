@@ -439,6 +439,9 @@ class ResultPage(Themed):
         self.beside.blockSignals(True)
         self.beside.clear()
         self.beside.addItem(tr("Beside the band"), Beside.BAND)
+        self.beside.setItemData(
+            0, tr("The band's inner part is 1 SD, its outer part 2 SD."), Qt.ItemDataRole.ToolTipRole
+        )
         self.beside.addItem(tr("The legs alone"), Beside.LEGS)
         if has_conditions:
             self.beside.addItem(tr("Another walk \u2026"), Beside.CONDITIONS)
