@@ -34,12 +34,9 @@ class KeyAction(Enum):
     RIGHT_LEG = auto()
     LABEL = auto()  # number: 1 to 9
     IDENTIFY = auto()
-    STRIDES = auto()
     EARLIER = auto()
     LATER = auto()
-    FILL = auto()
-    UNFILL = auto()  # Esc
-    BAND = auto()
+    LEAVE = auto()  # Esc
     STEP = auto()  # number: 1 to 7
     BACK = auto()
     HELP = auto()
@@ -71,9 +68,6 @@ _PLAIN: dict[int, KeyAction] = {
     _Key.Key_L: KeyAction.LEFT_LEG,
     _Key.Key_R: KeyAction.RIGHT_LEG,
     _Key.Key_I: KeyAction.IDENTIFY,
-    _Key.Key_S: KeyAction.STRIDES,
-    _Key.Key_F: KeyAction.FILL,
-    _Key.Key_B: KeyAction.BAND,
 }
 _BRACKETS = {"[": KeyAction.EARLIER, "]": KeyAction.LATER}  # by what is written: many keyboards have them on AltGr
 _WITH_CTRL: dict[int, KeyAction] = {
@@ -193,7 +187,7 @@ def _plain_intent(event: QKeyEvent) -> Intent | None:
     if len(event.text()) == 1 and event.text() in "123456789":
         return Intent(KeyAction.LABEL, int(event.text()))
     if event.key() == _Key.Key_Escape:
-        return Intent(KeyAction.UNFILL)
+        return Intent(KeyAction.LEAVE)
     action = _PLAIN.get(event.key())
     return Intent(action) if action is not None else None
 

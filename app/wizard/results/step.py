@@ -129,7 +129,7 @@ class ResultsStep(Step):
                 self._visit.reviewing.show(evaluation.session, evaluation.analysis)
 
     def on_intent(self, intent: Intent) -> bool:
-        if intent.action not in (KeyAction.BACK, KeyAction.UNFILL):
+        if intent.action not in (KeyAction.BACK, KeyAction.LEAVE):
             return False
         if self._part is Shown.DIAGNOSTICS:
             self._on_answered()
