@@ -455,6 +455,8 @@ class MainWindow(QWidget):
             self.session.stop()
         elif current is self.session:
             self.session.leave()
+        elif self._wizard is not None and current is self._wizard:
+            self._wizard.escape()
 
 
 class _DropFrame(QWidget):

@@ -386,7 +386,6 @@ class ResultPage(Themed):
             (tr("Q"), self.door),
             (tr("F"), self.all_figures),
             (tr("G"), self.show_legs),
-            (tr("Esc"), self.to_answer),
             (tr("E"), self.quality.engineering),
         ):
             shortcut = QShortcut(QKeySequence(key), button)  # asleep while its button is hidden

@@ -305,6 +305,10 @@ class Wizard(QWidget):
         if not step.prepare():
             del self._to_prepare[0]
 
+    def escape(self) -> None:
+        """Go back from what the step shows in place of its page; the window has this key for itself."""
+        self.act_on(Intent(KeyAction.LEAVE))
+
     def act_on(self, intent: Intent) -> None:
         """Do what a key asks for: the step that is in sight is asked first."""
         if not self._steps or (intent.action in (KeyAction.RUN, KeyAction.PRIMARY) and self._has_just_turned()):

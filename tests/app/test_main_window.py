@@ -33,6 +33,7 @@ from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
 from app.theme import Look, load_fonts
+from app.wizard.keys import Intent, KeyAction
 from app.wording import use_language
 from app.workers.background import Report
 from core.samples import Patient, Recording, RecordingKind, Session
@@ -284,6 +285,21 @@ def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_w
     assert wizard.visit.patient.told.code == SECRET_CODE
     wizard.leave()
     assert window.screens.currentWidget() is window.home
+
+
+def test_escape_in_the_wizard_reaches_the_step_that_is_in_sight(
+    qtbot: QtBot, open_window: Open, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window = open_window(folder)
+    logged_in(qtbot, window)
+    assert window.home is not None
+    QTest.keyClick(window.home.page.search, Qt.Key.Key_Return)
+    wizard = window.wizard
+    assert wizard is not None
+    heard: list[Intent] = []
+    monkeypatch.setattr(wizard, "act_on", heard.append)
+    QTest.keyClick(window, Qt.Key.Key_Escape)
+    assert heard == [Intent(KeyAction.LEAVE)]
 
 
 def test_settings_are_looked_at_amid_a_visit_and_lead_back_to_it(qtbot: QtBot, open_window: Open, folder: Path) -> None:
