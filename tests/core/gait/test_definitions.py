@@ -7,7 +7,7 @@ import pytest
 
 from core.body import Side, Site
 from core.calibration.rest import rest_of
-from core.gait.cycles import ANKLE_WINDOWS, KNEE_WINDOWS, find_peak
+from core.gait.cycles import ANKLE_WINDOWS, EXCURSIONS, KNEE_WINDOWS, Excursion, excursion_of_cycles, find_peak
 from core.gait.events import FootEvents
 from core.gait.phases import PHASES, phases_at
 from core.gait.shank import gait_of_shank
@@ -29,6 +29,27 @@ WINDOWS = [  # joint, peak, first and last percent of the stride, whether it is 
     ("ankle", "ankle_push_off_plantarflexion", 50, 80, False),
     ("ankle", "ankle_swing_dorsiflexion", 70, 95, True),
 ]
+
+EXTREMES = {  # percent of the stride between which an excursion has its highest and its lowest angle
+    "knee_while_loading": ((5, 30), (0, 0)),
+    "knee_straightening": ((5, 30), (25, 60)),
+    "knee_stance_to_swing": ((55, 90), (25, 60)),
+    "ankle_heel_rocker": ((0, 0), (0, 20)),
+    "ankle_rocker": ((20, 60), (0, 20)),
+    "ankle_push_off": ((20, 60), (50, 80)),
+    "ankle_toes_lifted": ((70, 95), (50, 80)),
+}
+KNEE_DEG = np.interp(PERCENT, [0, 15, 40, 72, 100], [4.0, 19.0, 6.0, 64.0, 4.0])
+ANKLE_DEG = np.interp(PERCENT, [0, 8, 46, 63, 84, 100], [-1.0, -6.0, 12.0, -14.0, 3.0, -1.0])
+SIZES_DEG = {  # counted on the corners of these curves
+    "knee_while_loading": 15.0,
+    "knee_straightening": 13.0,
+    "knee_stance_to_swing": 58.0,
+    "ankle_heel_rocker": 5.0,
+    "ankle_rocker": 18.0,
+    "ankle_push_off": 26.0,
+    "ankle_toes_lifted": 17.0,
+}
 
 
 def curve(peak_at: float, sign: float) -> FloatArray:
@@ -53,6 +74,40 @@ def test_a_peak_counts_within_its_part_of_the_stride_only(
 
 def test_every_peak_has_its_window() -> None:
     assert [w.name for w in (*KNEE_WINDOWS, *ANKLE_WINDOWS)] == [name for _, name, *_ in WINDOWS]
+
+
+def test_every_excursion_has_its_two_extremes() -> None:
+    found = {}
+    for one in EXCURSIONS:
+        high, low = ((w.first, w.last) if w is not None else (0, 0) for w in (one.high, one.low))
+        found[one.name] = high, low
+        assert one.high is None or one.high.is_maximum
+        assert one.low is None or not one.low.is_maximum
+    assert found == EXTREMES
+
+
+@pytest.mark.parametrize("excursion", EXCURSIONS, ids=lambda one: one.name)
+def test_an_excursion_needs_no_zero_and_is_none_on_a_mirrored_curve(excursion: Excursion) -> None:
+    angle = (KNEE_DEG if excursion.name.startswith("knee") else ANKLE_DEG)[None].repeat(3, axis=0)
+    for offset in (-7.0, 0.0, 7.0):
+        found = excursion_of_cycles(angle + offset, excursion)
+        np.testing.assert_allclose(found, SIZES_DEG[excursion.name], atol=1e-9)
+    assert not np.any(np.abs(excursion_of_cycles(-angle, excursion) - SIZES_DEG[excursion.name]) < 1.0)
+
+
+@pytest.mark.parametrize(("passing", "is_known"), [(1, True), (2, False)])
+def test_an_excursion_is_none_where_half_of_the_strides_pass_through_its_extreme(passing: int, is_known: bool) -> None:
+    loading = next(one for one in EXCURSIONS if one.name == "knee_while_loading")
+    angle = KNEE_DEG[None].repeat(4, axis=0)
+    angle[:passing] = PERCENT  # rises through the whole window
+    assert np.isfinite(excursion_of_cycles(angle, loading)).all() == is_known
+
+
+def test_a_stride_that_is_not_known_has_no_excursion_and_takes_none_from_the_others() -> None:
+    angle = ANKLE_DEG[None].repeat(3, axis=0)
+    angle[1] = np.nan
+    push_off = next(one for one in EXCURSIONS if one.name == "ankle_push_off")
+    np.testing.assert_allclose(excursion_of_cycles(angle, push_off), [26.0, np.nan, 26.0], atol=1e-9)
 
 
 def test_curves_differ_by_their_mean_absolute_distance_and_score_by_the_root_mean_square() -> None:

@@ -12,6 +12,7 @@ from core.verdicts.model import NOT_MEASURED, READ, Assessment, JointVerdicts, L
 from core.verdicts.quantities import (
     OF_BOTH,
     PARAMETERS,
+    QUANTITIES,
     assessment_of,
     assessment_of_both,
     both_sides,
@@ -35,9 +36,12 @@ ANKLE_HEIGHTS = {
         *("push_off_plantarflexion", "swing_dorsiflexion"),
     )
 }
-KNEE_SIGNED = {*KNEE_HEIGHTS, "knee_swing_peak_percent"}
+KNEE_EXCURSIONS = {f"knee_{name}_deg" for name in ("while_loading", "straightening", "stance_to_swing")}
+ANKLE_EXCURSIONS = {f"ankle_{name}_deg" for name in ("heel_rocker", "rocker", "push_off", "toes_lifted")}
+KNEE_SIGNED = {*KNEE_HEIGHTS, *KNEE_EXCURSIONS, "knee_swing_peak_percent"}
 KNEE = {*KNEE_SIGNED, "knee_range_deg"}
-ANKLE = {*ANKLE_HEIGHTS, "ankle_range_deg"}
+ANKLE_SIGNED = {*ANKLE_HEIGHTS, *ANKLE_EXCURSIONS}
+ANKLE = {*ANKLE_SIGNED, "ankle_range_deg"}
 TIMING = {"stride_time_s", "step_time_s", "stance_percent", "swing_percent"}
 DISTANCE = {"stride_length_m", "speed_m_s", "clearance_m"}
 
@@ -57,7 +61,7 @@ def with_verdicts(found: Verdicts) -> RecordingAnalysis:
 
 
 def withheld_on(side: Side, found: Verdicts) -> set[str]:
-    return {name for name in PARAMETERS if assessment_of(found, side, name).verdict is Verdict.WITHHELD}
+    return {name for name in QUANTITIES if assessment_of(found, side, name).verdict is Verdict.WITHHELD}
 
 
 CASES = [
@@ -68,6 +72,7 @@ CASES = [
     (verdicts({Joint.LEFT_KNEE: {"sign": BAD}}), KNEE_SIGNED),
     (verdicts({Joint.LEFT_ANKLE: {"shape": BAD, "height": BAD}}), ANKLE),
     (verdicts({Joint.LEFT_ANKLE: {"height": BAD}}), ANKLE_HEIGHTS),
+    (verdicts({Joint.LEFT_ANKLE: {"sign": BAD}}), ANKLE_SIGNED),
     (verdicts(timing=BAD), TIMING),
     (verdicts(distance=BAD), DISTANCE),
     (verdicts(between=BAD), {"step_time_s"}),
@@ -75,7 +80,8 @@ CASES = [
 
 
 def test_every_column_is_in_one_class_of_these() -> None:
-    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(PARAMETERS)
+    assert {*KNEE, *ANKLE, *TIMING, *DISTANCE} == set(QUANTITIES)
+    assert set(QUANTITIES) - set(PARAMETERS) == {*KNEE_EXCURSIONS, *ANKLE_EXCURSIONS}  # strides.csv keeps its columns
 
 
 @pytest.mark.parametrize(("found", "expected"), CASES)

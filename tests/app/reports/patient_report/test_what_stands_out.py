@@ -274,3 +274,49 @@ def test_a_range_and_the_movement_that_makes_it_are_told_once(request_of_demonst
 
 def lines(request: ReportRequest, analysis: Analysis) -> list[str]:
     return findings(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)), None)
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "words"),
+    [
+        ("knee_stance_to_swing_rad", -20.0, "less from stance to swing than the right: "),
+        ("knee_stance_to_swing_rad", 20.0, "more from stance to swing than the right: "),
+        ("knee_while_loading_rad", -20.0, "less while loading than the right: "),
+        ("knee_while_loading_rad", 20.0, "more while loading than the right: "),
+        ("knee_straightening_rad", -20.0, "less in stance than the right: "),
+        ("knee_straightening_rad", 20.0, "more in stance than the right: "),
+        ("knee_range_rad", 20.0, "more over the stride than the right: "),
+        ("step_time_s", -0.2, "less left than right: "),
+        ("step_time_s", 0.2, "more left than right: "),
+    ],
+)
+def test_each_measure_and_direction_has_a_sentence_that_comes_beyond_the_error_only(
+    request_of_demonstration: ReportRequest, name: str, more: float, words: str
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    told = lines(request_of_demonstration, with_more(analysis, Side.LEFT, name, more))
+    assert sum(words in sentence for sentence in told) == 1
+    within = lines(request_of_demonstration, with_more(analysis, Side.LEFT, name, 0.15 * more))
+    assert not any(words in sentence for sentence in within)
+
+
+def test_an_excursion_of_a_joint_without_a_sign_is_told_in_no_sentence(request_of_demonstration: ReportRequest) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
+    unsure = recalibrated(analysis, [Joint.LEFT_KNEE], is_sign_certain=False, clinical_sign_margin=0.1)
+    assert any("from stance to swing" in one for one in lines(request_of_demonstration, analysis))
+    assert not any("from stance to swing" in one for one in lines(request_of_demonstration, unsure))
+
+
+def test_of_excursions_as_large_against_their_errors_the_swing_is_told_first(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    for name, more in (("knee_while_loading_rad", 20.0), ("knee_stance_to_swing_rad", -20.0)):
+        analysis = with_more(analysis, Side.LEFT, name, more)
+    told = lines(request_of_demonstration, analysis)
+    assert "from stance to swing" in told[0]
+    assert "while loading" in told[1]
+
+
+def test_between_the_legs_no_height_is_compared() -> None:
+    assert not any(QUANTITIES[column] is QuantityClass.HEIGHT for column in BETWEEN_LEGS)
