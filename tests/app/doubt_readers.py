@@ -72,7 +72,7 @@ def said_in_report(pdf: bytes) -> Doubts:
         match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|withheld|not measured) ", times)
         assert match is not None, f"page one has no row {name}"
         found |= {(side, column): _in_report(match[1]) for side in Side}
-    knee, _, ankle = pages[2].partition("Ankle (dorsiflexion +)")
+    knee, _, ankle = pages[2].partition("Ankle: how far it moves")
     for kind, group in (("knee", knee), ("ankle", ankle)):
         for name, column in PEAKS[kind].items() if group else ():
             found |= _row(group, rf"{re.escape(name)} {CELL} {AT} {CELL} {AT} ", column)

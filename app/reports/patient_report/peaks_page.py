@@ -1,6 +1,7 @@
-"""What are the peaks and ranges, how do the legs differ, and where do both lie against the band?"""
+"""What are the excursions, ranges and peaks, how do the legs differ, and where do both lie against the band?"""
 
 import math
+from collections.abc import Sequence
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.charts.drawing import MM, Picture
@@ -25,7 +26,7 @@ from app.reports.patient_report.numbers_in_words import (
     signed_error,
     spread,
 )
-from app.reports.patient_report.panels import peak_name
+from app.reports.patient_report.panels import excursion_name, peak_name
 from app.reports.walk_figures import by_hand_in_words
 from app.wording import capitalised, tr
 from core.body import Side
@@ -33,15 +34,29 @@ from core.gait.spatiotemporal import MeanAndSd
 from core.norms import KNEE_OVERREAD
 from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import WINDOWS
+from core.verdicts.quantities import EXCURSIONS_BY_COLUMN, WINDOWS
 
-COLUMNS = {
+SHAPES = {  # what needs no zero
+    "knee": (
+        "knee_stance_to_swing_deg",
+        "knee_while_loading_deg",
+        "knee_straightening_deg",
+        "knee_range_deg",
+    ),
+    "ankle": (
+        "ankle_push_off_deg",
+        "ankle_rocker_deg",
+        "ankle_heel_rocker_deg",
+        "ankle_toes_lifted_deg",
+        "ankle_range_deg",
+    ),
+}
+HEIGHTS = {
     "knee": (
         "knee_at_initial_contact_deg",
         "knee_loading_peak_deg",
         "knee_stance_minimum_deg",
         "knee_swing_peak_deg",
-        "knee_range_deg",
     ),
     "ankle": (
         "ankle_at_initial_contact_deg",
@@ -49,7 +64,6 @@ COLUMNS = {
         "ankle_stance_dorsiflexion_deg",
         "ankle_push_off_plantarflexion_deg",
         "ankle_swing_dorsiflexion_deg",
-        "ankle_range_deg",
     ),
 }
 PLOT_WIDTH = 70 * MM
@@ -71,12 +85,15 @@ def peaks_page(facts: Facts) -> list[Block]:
     for kind in KINDS:
         if not facts.has_joint(kind):
             continue
-        rows.append(tr("Knee (flexion +)") if kind == "knee" else tr("Ankle (dorsiflexion +)"))
-        rows += [_row(facts, column) for column in COLUMNS[kind] if _is_any_told(facts, kind, column)]
+        rows.append(tr("Knee: how far it moves") if kind == "knee" else tr("Ankle: how far it moves"))
+        rows += [_row(facts, column) for column in SHAPES[kind]]
+        rows.append(tr("Knee: angles (flexion +)") if kind == "knee" else tr("Ankle: angles (dorsiflexion +)"))
+        rows += [_row(facts, column) for column in HEIGHTS[kind] if _is_any_told(facts, kind, column)]
         if facts.curves_group is not None and _is_any_told(facts, kind, f"{kind}_at_initial_contact_deg"):
             rows.append(_score_row(facts, kind))
             has_score = True
-    said = quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES]
+    said = [_movements(kinds)] if (kinds := [kind for kind in KINDS if facts.has_joint(kind)]) else []
+    said += quality.caveats(facts, (Verdict.WITHHELD,), is_of_joints=True)[: quality.MAX_SENTENCES]
     if len(facts.gait) == len(Side):
         judged = tr(
             "Differences are formed before rounding; in words: against the measurement error between legs, at least "
@@ -88,7 +105,7 @@ def peaks_page(facts: Facts) -> list[Block]:
         said.append(
             tr("GVS: root mean square distance of the mean curve from the band's mean; it contains any error of zero.")
         )
-    shown = [(side, column) for side in facts.gait for kind in KINDS for column in COLUMNS[kind]]
+    shown = [(side, column) for side in facts.gait for kind in KINDS for column in (*SHAPES[kind], *HEIGHTS[kind])]
     if any(math.isfinite(facts.away_sd(side, column)) for side, column in shown):
         judged = tr("Against the band: after laying it at each curve's height; knees as measured and divided by {by}.")
         said.append(judged.format(by=fixed(KNEE_OVERREAD, 2)))
@@ -101,7 +118,13 @@ def peaks_page(facts: Facts) -> list[Block]:
         "Windows in brackets are % of the stride."
     )
     found = [note(" ".join(said))] if said else []
-    return [heading(tr("Peaks and range")), note(opening), table(columns, rows), *found, *_where_found(facts)]
+    return [
+        heading(tr("Peaks and range")),
+        note(opening),
+        table(columns, rows, is_dense=True),
+        *found,
+        *_where_found(facts),
+    ]
 
 
 def _where_found(facts: Facts) -> list[Block]:
@@ -150,9 +173,26 @@ def measure(column: str) -> str:
         return tr("At initial contact")
     if column.endswith("_range_deg"):
         return tr("Range over the stride")
+    if column in EXCURSIONS_BY_COLUMN:
+        return capitalised(excursion_name(column))
     window = WINDOWS[column]
     name = capitalised(peak_name(column)).replace(", ", ",\n")  # else a line ends within the window
     return f"{name} ({window.first}–{window.last}\u00a0%)"
+
+
+def _movements(kinds: Sequence[str]) -> str:
+    """Between which parts of the stride each movement is measured."""
+    each = []
+    for column in (column for kind in kinds for column in SHAPES[kind] if column in EXCURSIONS_BY_COLUMN):
+        excursion = EXCURSIONS_BY_COLUMN[column]
+        ends = [f"{end.first}–{end.last}" if end is not None else "0" for end in (excursion.high, excursion.low)]
+        each.append(
+            tr("{movement} {high} less {low}").format(movement=excursion_name(column), high=ends[0], low=ends[1])
+        )
+    said = tr(
+        "How far a joint moves is the highest angle of one part of the stride less the lowest of another, in %: {each}."
+    )
+    return said.format(each=", ".join(each))
 
 
 def _verdict(facts: Facts, side: Side, column: str) -> Verdict:
@@ -191,7 +231,7 @@ def value_cell(facts: Facts, side: Side, column: str) -> Cell | str:
     if verdict in (Verdict.WITHHELD, Verdict.NOT_MEASURED):
         return verdict_word(verdict)
     if facts.is_no_peak(side, column):
-        return tr("no peak")
+        return NOTHING if column in EXCURSIONS_BY_COLUMN else tr("no peak")
     value = facts.value(side, column)
     return Cell(marked(spread(value, 1), verdict), is_grey=not is_spread_enough(value.n))
 

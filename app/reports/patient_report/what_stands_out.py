@@ -11,7 +11,7 @@ from app.reports.patient_report.blocks import Block, bullets, heading
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, signed
 from app.reports.patient_report.panels import peak_name
-from app.reports.patient_report.peaks_page import COLUMNS
+from app.reports.patient_report.peaks_page import HEIGHTS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.wording import capitalised, later, name_of, tr
 from core.body import Joint, Side
@@ -361,7 +361,7 @@ def _peaks(facts: Facts) -> Iterable[tuple[Side, str]]:
         for side in facts.gait
         for kind in KINDS
         if facts.is_measured(joint_of(kind, side))
-        for column in COLUMNS[kind]
+        for column in HEIGHTS[kind]
     ]
 
 

@@ -68,6 +68,8 @@ def known(results: Path, walk: str = "walk_1") -> set[str]:
         differences = table(results / "differences.csv")
         names = ("mean", "sd", "against_mean", "against_sd", "difference", "error")
         values += [number for name in names for number in column(differences, name)]
+    for line in table(results / "sides.csv") if (results / "sides.csv").exists() else []:
+        values += [float(line[name]) for name in ("difference", "error") if line[name]]
     values += numbers_in(json.loads((results / "summary.json").read_text())["walks"])
     values += [v for value in time_distance_classes()[1].values.values() for v in (value.mean, value.sd)]
     step, stance = (time_distance_classes()[1].values[name] for name in ("step_length", "stance"))
