@@ -117,8 +117,8 @@ def named(plain_visit: AnalysedVisit, name: str) -> ReportRequest:
 
 
 def numbers_and_figures(data: dict[str, Any]) -> list[Any]:
-    """Give what nobody typed: key numbers, every table's cells, every picture, the quality box but for its names."""
-    found: list[Any] = [data["key_numbers"], data["quality"]["heading"], data["quality"]["rows"]]
+    """Give what nobody typed: every table's cells, every picture, the quality box but for its names."""
+    found: list[Any] = [data["quality"]["heading"], data["quality"]["rows"]]
     for block in (*data["first_page"], *(block for page in data["pages"] for block in page)):
         if block["kind"] == "table":
             found.append(block)

@@ -15,7 +15,8 @@ from app.reports.patient_report.consistency_page import consistency_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.first_page import fields, key_numbers, measured, time_distance_table
+from app.reports.patient_report.first_page import fields, measured, time_distance_table
+from app.reports.patient_report.key_numbers import key_numbers
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.peaks_page import peaks_page
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, shortened, typed
@@ -136,9 +137,11 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
         "measured": measured(facts, comparison),
         "fields": [list(field) for field in fields(request, facts)],
         "quality": quality.box(facts),
-        "key_heading": tr("Key numbers"),
-        "key_numbers": key_numbers(facts),
-        "first_page": [*time_distance_table(facts), *what_stands_out(facts, comparison)],
+        "first_page": [
+            *key_numbers(facts, comparison),
+            *time_distance_table(facts),
+            *what_stands_out(facts, comparison),
+        ],
         "pages": pages,
     }
 

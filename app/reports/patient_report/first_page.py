@@ -1,7 +1,6 @@
-"""The page that stands alone: who, how good the recording is, three key numbers, time and distance."""
+"""The page that stands alone: who, how good the recording is, time and distance."""
 
 import math
-from collections.abc import Mapping
 
 from app.charts.cycles import is_mean_enough, is_spread_enough
 from app.gates_in_words import verdict_word
@@ -14,7 +13,6 @@ from app.reports.patient_report.numbers_in_words import (
     NOTHING,
     Band,
     against_band,
-    away_in_words,
     band_in_figures,
     fixed,
     marked,
@@ -24,9 +22,7 @@ from app.reports.patient_report.numbers_in_words import (
 )
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.reports.patient_report.request import ReportRequest
-from app.reports.patient_report.small_charts import gauge
 from app.reports.reference_bands import WHY_NO_BAND
-from app.reports.walk_figures import Figure
 from app.wording import capitalised, joined, name_of, side_name, tr, tr_n
 from core.body import Side
 from core.gait.spatiotemporal import MeanAndSd
@@ -90,95 +86,6 @@ def measured(facts: Facts, comparison: Comparison | None) -> str:
         compared = tr("Compared, {last} shown on this page: {parts}")
         said.append(compared.format(parts=parts, last=comparison.parts[-1].letter))
     return " ".join(said)
-
-
-def key_numbers(facts: Facts) -> list[dict[str, object]]:
-    """Three figures with their gauges; a leg whose figure is withheld says so and has no mark."""
-    knee = "knee_range_deg" if facts.has_no_zero("knee") else "knee_swing_peak_deg"
-    push_off = "ankle_push_off_plantarflexion_deg"
-    has_push_off = any(math.isfinite(facts.value(side, push_off).mean) for side in Side) and not any(
-        facts.is_no_peak(side, push_off) for side in Side
-    )
-    ankle = push_off if has_push_off and not facts.has_no_zero("ankle") else "ankle_range_deg"
-    titles = {
-        "knee_swing_peak_deg": tr("Peak knee flexion in swing"),
-        "knee_range_deg": tr("Knee range over the stride"),
-        "ankle_push_off_plantarflexion_deg": tr("Ankle push\u2011off (most plantarflexed)"),
-        "ankle_range_deg": tr("Ankle range over the stride"),
-    }
-    scales = {
-        "knee_swing_peak_deg": (20, 80, 20),
-        "knee_range_deg": (20, 80, 20),
-        "ankle_push_off_plantarflexion_deg": (-30, 10, 10),
-        "ankle_range_deg": (0, 40, 10),
-    }
-    found = []
-    for column in (knee, ankle):
-        kind = column.split("_")[0]
-        mean = facts.group_range_deg(kind) if column.endswith("_range_deg") else None
-        words = {side: away_in_words(away) for side in Side if math.isfinite(away := facts.away_sd(side, column))}
-        found.append(_key_number(facts, column, titles[column], "°", facts.band(column), mean, "[1]", words, scales))
-    stance = facts.time_distance[tr("Stance")]
-    words = _stance_in_words(facts, stance)
-    title = tr("Stance, share of the stride")
-    scales = {"stance_percent": (50, 75, 5)}
-    return [*found, _key_number(facts, "stance_percent", title, "\u00a0%", stance.band, None, "[2]", words, scales)]
-
-
-def _stance_in_words(facts: Facts, stance: Figure) -> dict[Side, str]:
-    """Where the legs that may be compared with other people's lie against band [2]."""
-    if stance.band is None:
-        return {}
-    judged = {side: value for side, value in stance.sides.items() if side in facts.sides_with_band}
-    return {side: against_band(v.mean, stance.band) for side, v in judged.items() if is_mean_enough(v.n)}
-
-
-def _key_number(
-    facts: Facts,
-    column: str,
-    title: str,
-    unit: str,
-    band: Band | None,
-    group_mean: float | None,
-    number: str,
-    words: Mapping[Side, str],
-    scales: Mapping[str, tuple[float, float, float]],
-) -> dict[str, object]:
-    values = {side: facts.value(side, column) for side in Side}
-    known = {s: v.mean for s, v in values.items() if is_mean_enough(v.n) and math.isfinite(v.mean)}
-    decimals = 1 if column == "stance_percent" else 0
-    parts = [(side[0].upper(), fixed(value, decimals) + unit) for side, value in known.items()]
-    verdicts = {side: facts.assessment(side, column).verdict for side in facts.gait if facts.is_worn(side, column)}
-    said = []
-    for side, verdict in verdicts.items():
-        is_care = verdict is Verdict.CARE and side in known
-        told = [verdict_word(verdict)] if verdict is Verdict.WITHHELD or is_care else []
-        told += [words[side]] if side in words and side in known else []
-        said += [(side[0].upper(), ", ".join(told))] if told else []
-    if not known:
-        band = group_mean = None
-    if band is not None:
-        source = f"{tr('Band')} {number}: {band_in_figures(band, 1)}{unit}{_whose_band(facts)}"
-    elif group_mean is not None:
-        source = f"{tr('Band')} {number}: {fixed(group_mean, 1)}{unit}{_whose_band(facts)}; {tr('band has no SD')}"
-    else:
-        source = tr("no band") if known else tr("not measured, or withheld")
-    shown = ", ".join(f"{letter} {value}" for letter, value in parts)
-    alt = f"{title}: {shown or NOTHING}. {source}."
-    return {
-        "title": title,
-        "values": parts,
-        "gauge": gauge(known, *scales[column], band, group_mean, alt).as_data(),
-        "words": said,
-        "source": source,
-    }
-
-
-def _whose_band(facts: Facts) -> str:
-    """Say which leg a band is for, where it is not for both."""
-    if facts.sides_with_band.issuperset(facts.gait):
-        return ""
-    return ", " + tr("for the {side} leg").format(side=joined([side_name(side) for side in facts.sides_with_band]))
 
 
 def time_distance_table(facts: Facts) -> list[Block]:

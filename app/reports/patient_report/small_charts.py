@@ -1,4 +1,4 @@
-"""Where does one number lie, and how does it go from stride to stride? The gauge and the strip of strides."""
+"""How does a number go from stride to stride? The strip of strides."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,61 +11,7 @@ from app.reports.patient_report.numbers_in_words import Band, fixed
 from app.wording import tr
 from core.body import Side
 
-GAUGE_WIDTH, GAUGE_HEIGHT = 55.7 * MM, 48.0
 STRIP_WIDTH, STRIP_HEIGHT = 175 * MM, 40 * MM
-
-
-def gauge(
-    values: Mapping[Side, float],
-    low: float,
-    high: float,
-    step: float,
-    band: Band | None,
-    group_mean: float | None,
-    alt: str,
-) -> Picture:
-    """One scale, the band in two greys, the left leg above it and the right leg below; never one over the other."""
-    left, right, top, height = 7.0, GAUGE_WIDTH - 7.0, 17.0, 9.0
-
-    def at(value: float) -> float:
-        return left + (right - left) * (min(max(value, low), high) - low) / (high - low)
-
-    parts = []
-    if band is not None:
-        mean, sd = (band[0] + band[1]) / 2, (band[1] - band[0]) / 2
-        for reach, fill, edge in (
-            (2 * sd, PAPER.band_2sd, PAPER.band_2sd_edge),
-            (sd, PAPER.band_1sd, PAPER.band_1sd_edge),
-        ):
-            parts.append(box(at(mean - reach), top, at(mean + reach) - at(mean - reach), height, fill, edge, 0.35))
-        group_mean = mean
-    if group_mean is not None:
-        parts.append(line(at(group_mean), top, at(group_mean), top + height, PAPER.note, 0.7))
-    parts.append(box(left, top, right - left, height, "none", PAPER.ink, 0.6))
-    for value in np.arange(low, high + step / 2, step):
-        parts.append(line(at(value), top + height, at(value), top + height + 2.5, PAPER.ink, 0.5))
-        parts.append(text(at(value), top + height + 20.5, fixed(float(value), 0), 6.6, anchor="middle"))
-    for side, value in values.items():
-        x = at(value)
-        y = top - 8.5 if side is Side.LEFT else top + height + 7.5
-        parts.append(
-            line(
-                x,
-                top - 4 if side is Side.LEFT else top,
-                x,
-                top + height + (0 if side is Side.LEFT else 3),
-                COLOURS[side],
-                2.0,
-            )
-        )
-        if not low <= value <= high:  # at the end of the scale, with an arrow to where it lies
-            way = 1 if value > high else -1
-            parts.append(
-                f'<polygon points="{x + 7 * way:.2f},{y:.2f} {x + 4.4 * way:.2f},{y - 2.4:.2f} '
-                f'{x + 4.4 * way:.2f},{y + 2.4:.2f}" fill="{COLOURS[side]}"/>'
-            )
-        parts.append(badge(x, y, side[0].upper(), side, COLOURS[side], 8.4))
-    return picture(parts, GAUGE_WIDTH, GAUGE_HEIGHT, alt)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,67 @@
+"""Which rows stand among the key numbers? What the findings tell, then the same for everybody, never the unknown."""
+
+import pytest
+
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.key_numbers import ALWAYS, MOST_ROWS, key_numbers, key_rows
+from app.reports.patient_report.request import AnalysedVisit, ReportRequest
+from core.body import Joint, Side
+from core.results import Analysis
+from tests.app.changed_analysis import recalibrated, walk_of
+from tests.app.reports.patient_report.test_what_stands_out import with_more
+
+
+def facts(request: ReportRequest, analysis: Analysis | None = None) -> Facts:
+    found = analysis or request.visit.analysis
+    return Facts(AnalysedVisit(request.visit.session, found), walk_of(found))
+
+
+def columns(shown: Facts) -> list[str]:
+    return [row.column for row in key_rows(shown, None)]
+
+
+def cells(shown: Facts, row: int) -> list[str]:
+    (table,) = (block for block in key_numbers(shown, None) if block["kind"] == "table")
+    rows = table["rows"]
+    assert isinstance(rows, list)
+    return [cell["said"] for cell in rows[row]["cells"]]
+
+
+def test_without_a_finding_the_same_measures_stand_for_everybody(request_of_demonstration: ReportRequest) -> None:
+    assert columns(facts(request_of_demonstration)) == list(ALWAYS)
+
+
+@pytest.mark.parametrize("name", ["knee_while_loading", "knee_straightening"])
+def test_the_measure_of_a_finding_stands_first(request_of_demonstration: ReportRequest, name: str) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, f"{name}_rad", -20.0)
+    found = columns(facts(request_of_demonstration, analysis))
+    assert found == [f"{name}_deg", *ALWAYS][:MOST_ROWS]
+
+
+def test_a_row_tells_both_legs_their_difference_its_error_and_whether_it_exceeds(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
+    said = cells(facts(request_of_demonstration, analysis), 0)
+    assert said[:4] == ["Knee bend from stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
+    assert 9.2 < float(said[4]) < 9.6
+    assert said[5:] == ["exceeds error\u00a0\u2020", "no band"]
+
+
+def test_the_band_of_stance_is_that_of_the_table_of_time(request_of_demonstration: ReportRequest) -> None:
+    place = ALWAYS.index("stance_percent")
+    assert cells(facts(request_of_demonstration), place)[-1] == "60.3 ± 1.1"
+
+
+def test_a_measure_withheld_on_one_leg_says_so_and_on_both_is_left_out(request_of_demonstration: ReportRequest) -> None:
+    analysis = request_of_demonstration.visit.analysis
+    one = recalibrated(analysis, [Joint.LEFT_KNEE], is_same_joint=False, sign_margin=1.05)
+    assert cells(facts(request_of_demonstration, one), 0)[1:4:2] == ["withheld", "–"]
+    both = recalibrated(analysis, [Joint.LEFT_KNEE, Joint.RIGHT_KNEE], is_same_joint=False, sign_margin=1.05)
+    assert not any(column.startswith("knee") for column in columns(facts(request_of_demonstration, both)))
+
+
+def test_one_leg_has_rows_without_a_difference(request_of_one_leg: ReportRequest) -> None:
+    shown = facts(request_of_one_leg)
+    assert columns(shown)[0] == "knee_stance_to_swing_deg"
+    assert cells(shown, 0)[2:6] == ["not measured", "–", "–", "–"]
