@@ -45,7 +45,7 @@ from core.verdicts.measurement_error import ComparisonKind, sigma_of
 from core.verdicts.model import Verdict
 from core.verdicts.quantities import EXCURSIONS_BY_COLUMN
 
-PLOT_WIDTH = 67 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
+PLOT_WIDTH = 53 * MM  # with the table of three parts, or a line more of words, this fills a Letter page
 
 
 def comparison_of(request: ReportRequest) -> Comparison | None:
@@ -146,7 +146,7 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
             curves.append(replace(curve, order=(k, len(comparison.parts)), angle_deg=angle_deg))
             alts.append(_alt(part, side, kind))
     chart = StrideChart(
-        title=panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean),
+        title=_title(shown, kind, side, is_about_mean=is_about_mean),
         axis=panels.axis_of(shown, kind, is_about_mean=is_about_mean),
         curves=tuple(curves),
         band=_band(comparison, shown, kind, side),
@@ -154,6 +154,15 @@ def _panel(comparison: Comparison, shown: Facts, side: Side, kind: str) -> Pictu
         alt=" ".join([tr("SIMULATED.")] * comparison.is_simulated + [panels.title_of(shown, kind) + ".", *alts]),
     )
     return draw(chart, PLOT_WIDTH)
+
+
+def _title(shown: Facts, kind: str, side: Side, *, is_about_mean: bool) -> str:
+    """Short, as the panels are narrow: the table below them takes the page."""
+    if is_about_mean or shown.has_no_zero(kind):
+        return panels.title_with_side(shown, kind, side, is_about_mean=is_about_mean)
+    said = tr("Left: {title}") if side is Side.LEFT else tr("Right: {title}")
+    title = tr("knee, degrees (flexion +)") if kind == "knee" else tr("ankle, degrees (dorsiflexion +)")
+    return said.format(title=title)
 
 
 def _alt(part: Part, side: Side, kind: str) -> str:

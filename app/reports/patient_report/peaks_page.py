@@ -66,7 +66,7 @@ HEIGHTS = {
         "ankle_swing_dorsiflexion_deg",
     ),
 }
-PLOT_WIDTH = 70 * MM
+PLOT_WIDTH = 60 * MM  # below the table this fills a Letter page
 
 
 def peaks_page(facts: Facts) -> list[Block]:

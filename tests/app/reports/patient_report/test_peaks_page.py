@@ -20,7 +20,8 @@ def groups(request: ReportRequest, analysis: Analysis) -> dict[str, dict[str, li
     """The table's rows by their names, under the heads of their groups."""
     blocks = peaks_page(Facts(AnalysedVisit(request.visit.session, analysis), walk_of(analysis)))
     (table,) = (block for block in blocks if block["kind"] == "table")
-    rows, found, head = table["rows"], {}, ""
+    rows, head = table["rows"], ""
+    found: dict[str, dict[str, list[str]]] = {}
     assert isinstance(rows, list)
     for row in rows:
         if "group" in row:
