@@ -21,7 +21,7 @@ from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.peaks_page import peaks_page
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, shortened, typed
 from app.reports.patient_report.request import ReportRequest
-from app.reports.patient_report.what_stands_out import what_stands_out
+from app.reports.patient_report.what_stands_out import in_short
 from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
@@ -135,12 +135,12 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "page": tr("Page {page} of {pages}"),
         },
         "measured": measured(facts, comparison),
+        "answer": in_short(facts, comparison),
         "fields": [list(field) for field in fields(request, facts)],
         "quality": quality.box(facts),
         "first_page": [
             *key_numbers(facts, comparison),
             *time_distance_table(facts),
-            *what_stands_out(facts, comparison),
         ],
         "pages": pages,
     }

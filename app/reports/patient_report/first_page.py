@@ -34,7 +34,7 @@ TOLD = ("stride_time_s", "stride_length_m")  # of these two kinds is the table, 
 
 
 def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
-    """Twelve things that the clinic typed or the program knows, as label and value."""
+    """What the clinic typed or the program knows, as label and value; what nobody stated is left out."""
     session, patient = request.visit.session, request.visit.session.patient
     is_prosthetic = patient.prosthetic_side not in NOT_STATED
     side = patient.prosthetic_side if is_prosthetic else patient.affected_side
@@ -43,7 +43,7 @@ def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
     aids = tr("no aids") if patient.aids == "none" else patient.aids
     born = str(patient.birth_year) if patient.birth_year is not None else ""
     condition = request.visit.recording(facts.walk.name).condition or facts.walk.name
-    return [
+    known = [
         (tr("Patient code"), typed(patient.code)),
         (tr("Birth year, sex"), typed(", ".join(filter(None, [born, _sex(patient.sex)])))),
         (tr("Height, mass"), typed(", ".join(filter(None, [height, mass])))),
@@ -60,6 +60,7 @@ def fields(request: ReportRequest, facts: Facts) -> list[tuple[str, str]]:
         (tr("Software"), typed(f"Gaitwright {request.software_version}")),
         (tr("Sensors"), _sensors(request, facts)),
     ]
+    return [(label, value) for label, value in known if value != tr("not stated")]
 
 
 def measured(facts: Facts, comparison: Comparison | None) -> str:

@@ -88,10 +88,10 @@ class Candidate:
         return self.rank, -round(self.ratio, 1), among
 
 
-def what_stands_out(facts: Facts, comparison: Comparison | None) -> list[Block]:
+def in_short(facts: Facts, comparison: Comparison | None) -> list[Block]:
     """At most three findings and one caveat; without any, that there is none."""
     said = findings(facts, comparison) or [" ".join(nothing_found(facts, comparison))]
-    return [heading(tr("What stands out")), bullets([*said, *caveat(facts, comparison)])]
+    return [heading(tr("In short")), bullets([*said, *caveat(facts, comparison)])]
 
 
 def findings(facts: Facts, comparison: Comparison | None) -> list[str]:

@@ -14,9 +14,9 @@ from app.reports.patient_report.what_stands_out import (
     BETWEEN_LEGS,
     MAX_FINDINGS,
     findings,
+    in_short,
     measure_in_words,
     unit_and_decimals,
-    what_stands_out,
 )
 from core.body import Joint, Side
 from core.results import Analysis, ZeroKind
@@ -33,7 +33,7 @@ def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
     """The sentences of a report, of another analysis where one is given."""
     if analysis is not None:
         request = replace(request, visit=AnalysedVisit(request.visit.session, analysis))
-    _, bullets = what_stands_out(facts_of(request), comparison_of(request))
+    _, bullets = in_short(facts_of(request), comparison_of(request))
     sentences = bullets["said"]
     assert isinstance(sentences, list)
     return [str(sentence).replace("\u00a0", " ").replace("\u2212", "-") for sentence in sentences]
