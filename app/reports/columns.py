@@ -234,17 +234,19 @@ def write_columns(folder: Path, recordings: list[str]) -> None:
 def _rows(folder: Path, recordings: list[str]) -> Iterator[tuple[str, ...]]:
     for file in KNOWN:
         places = [folder / file, *(folder / recording / file for recording in recordings)]
-        names = dict.fromkeys(name for place in places if place.is_file() for name in _header(place))
+        names = dict.fromkeys(name for place in places if place.is_file() for name in names_in(place))
         for name in names:
             column = column_of(file, name)
-            unit = _unit(name) if column.unit is None else column.unit
-            yield file, name, unit, column.sign, column.definition, column.needs
+            yield file, name, unit_of(file, name), column.sign, column.definition, column.needs
 
 
-def _header(path: Path) -> list[str]:
+def names_in(path: Path) -> list[str]:
+    """The columns of a table, as its first line names them."""
     with path.open(encoding="utf-8", newline="") as file:
         return next(csv.reader(file), [])
 
 
-def _unit(name: str) -> str:
-    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "")
+def unit_of(file: str, name: str) -> str:
+    """A column's unit; empty where it holds words or counts. Errors as of `column_of`."""
+    unit = column_of(file, name).unit
+    return next((unit for end, unit in UNITS.items() if name.endswith(end)), "") if unit is None else unit

@@ -14,6 +14,7 @@ from pathlib import Path, PurePosixPath
 from app.reports.columns import COLUMNS, write_columns
 from app.reports.comparison import Comparison, Contrast, conditions_of, first_and_second
 from app.reports.csv_report import write_angles, write_table
+from app.reports.csvw import METADATA, write_metadata
 from app.reports.differences import (
     COMPARED_CYCLES,
     DIFFERENCES,
@@ -41,7 +42,7 @@ TAKEN = tuple(
     (name,)
     for name in (
         *(SUMMARY, LOG, REPORT, OWN_SESSION),
-        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS),
+        *(PEAKS, DIFFERENCES, COMPARED_CYCLES, SIDES, VISITS, VISITS_CYCLES, COLUMNS, METADATA),
     )
 )
 
@@ -76,9 +77,11 @@ def describe_tables(analysis: Analysis, folder: Path) -> None:
     Raises
     ------
     OSError
-        A table cannot be read, or this one not written.
+        A table cannot be read, or one of these files not written.
     """
-    write_columns(folder, [recording.folder for recording in analysis.recordings])
+    recordings = [recording.folder for recording in analysis.recordings]
+    write_columns(folder, recordings)
+    write_metadata(folder, recordings)
 
 
 def _write_comparisons(session: Session, analysis: Analysis, folder: Path) -> None:

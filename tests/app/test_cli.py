@@ -83,6 +83,7 @@ def test_a_session_becomes_results_in_the_folders_of_its_recordings(session: Pat
     assert analyse(session, tmp_path / "out") == 0
     assert list(files_in(tmp_path / "out")) == [
         "columns.csv",
+        "csv-metadata.json",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "report.pdf",
@@ -285,6 +286,7 @@ def test_an_analysis_is_replaced_and_nothing_of_it_stays(session: Path, tmp_path
     assert analyse(session, tmp_path / "out", "--no-rrd", "--no-report") == 0
     assert list(files_in(tmp_path / "out")) == [
         "columns.csv",
+        "csv-metadata.json",
         *(f"free_motion/{table}" for table in TABLES),
         "peaks.csv",
         "summary.json",
