@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 
 from app.storage.stored import PlacedSensor
+from app.widgets.sensor_tile import SILENT_FROM_S
 from app.wording import filled, name_of, tr
 from app.workers.background import Background, Report, Work
 from core.body import Joint, Site
@@ -78,6 +79,12 @@ class WornSensors(QObject):
     @property
     def status(self) -> "Mapping[str, SensorStatus]":
         return {} if self.acquisition is None else self.acquisition.status()
+
+    @property
+    def are_silent(self) -> bool:
+        """Whether none of the sensors that are worn has been heard for a second or more."""
+        worn = [status for name, status in self.status.items() if name in self.site_of]
+        return bool(worn) and all(status.silent_s >= SILENT_FROM_S for status in worn)
 
     @property
     def joints(self) -> list[Joint]:

@@ -79,8 +79,8 @@ class ResultsStep(Step):
 
     @property
     def note(self) -> str:
-        kept = len(self._kept_walks)
-        return tr("{count} kept").format(count=kept) if kept else ""
+        kept = sum(one.told.is_kept and one.is_decided for one in self._visit.recordings.walks)
+        return tr("{count} kept").format(count=kept) if kept else ""  # of those that somebody kept
 
     @property
     def state(self) -> StepState:

@@ -55,6 +55,7 @@ class WalkingStep(Step):
         self._label = ""
         self._is_in_sight = self._is_ankle_asked = False
         self._ticks = 0
+        self._was_silent = False  # all sensors
         self._losses = Losses()
         self._is_troubled = False
         self._discarded: UUID | None = None
@@ -91,7 +92,7 @@ class WalkingStep(Step):
             return ""
         if self._asked is not None:
             return tr("keep or discard?")
-        kept = sum(recording.told.is_kept for recording in self._visit.recordings.walks)
+        kept = sum(one.told.is_kept and one.is_decided for one in self._visit.recordings.walks)
         return tr("{count} kept").format(count=kept) if kept else ""
 
     @property
@@ -122,6 +123,8 @@ class WalkingStep(Step):
             return self._visit.cannot_record
         if not sensors.site_of:
             return tr("Say first which sensor is worn where.")
+        if sensors.are_silent:
+            return tr("No sensor is heard. Switch them on, or bring the receiver nearer.")
         if self._visit.recordings.must_move:
             return tr("The sensors were re\N{NON-BREAKING HYPHEN}strapped. Stand still and move freely first.")
         return ""
@@ -340,6 +343,9 @@ class WalkingStep(Step):
         if acquisition is None:
             self.page.show_message(*self._message(0.0))
             return
+        if sensors.are_silent != self._was_silent:
+            self._was_silent = sensors.are_silent
+            self.changed.emit()  # a walk can be started again, or no more
         status = sensors.status
         silent_s = {site: status[name].silent_s for name, site in sensors.site_of.items() if name in status}
         news = self._losses.update(silent_s, acquisition.now_s)

@@ -1,6 +1,7 @@
 """The Walking step on the demonstration patient: Space starts and stops, walks are kept or not, losses are said."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 
 import pytest
 from PySide6.QtCore import QTimer
@@ -171,6 +172,31 @@ def test_sensors_strapped_anew_go_back_to_standing(qtbot: QtBot, step: WalkingSt
     assert visit.recordings.is_restrapped
     assert step.cannot_enter
     assert not step.on_intent(Intent(KeyAction.KEEP))
+
+
+def test_while_no_sensor_is_heard_no_walk_is_started(
+    qtbot: QtBot, step: WalkingStep, visit: Visit, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    primary = step.bar().primary
+    assert primary is not None
+    assert (primary.text, primary.is_enabled) == ("Start walk", True)
+    acquisition = visit.sensors.acquisition
+    assert acquisition is not None
+    silent = {name: replace(status, silent_s=4.0) for name, status in acquisition.status().items()}
+    monkeypatch.setattr(acquisition, "status", lambda: silent)
+    with qtbot.waitSignal(step.changed, timeout=5000):
+        pass
+    primary = step.bar().primary
+    assert primary is not None
+    assert not primary.is_enabled
+    assert step.bar().note.startswith("No sensor is heard.")
+    one_heard = {**silent, next(iter(silent)): replace(next(iter(silent.values())), silent_s=0.0)}
+    monkeypatch.setattr(acquisition, "status", lambda: one_heard)
+    with qtbot.waitSignal(step.changed, timeout=5000):
+        pass
+    primary = step.bar().primary
+    assert primary is not None
+    assert primary.is_enabled
 
 
 def test_without_sensors_it_cannot_be_entered(look: Look, visit: Visit) -> None:
