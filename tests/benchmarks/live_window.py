@@ -287,7 +287,8 @@ def _bench_page(window: "MainWindow", wizard: "Wizard") -> Any:
             curves += [LiveTrace(block.time_s, block.gyr_rad_s[:, axis]) for axis in range(3)]
         for k, strip in enumerate(strips):
             left, right = curves[2 * k : 2 * k + 2]
-            strip.show_traces(float(left.time_s[-1]), {Side.LEFT: left, Side.RIGHT: right})
+            if len(left.time_s):  # nothing is there before the first sample
+                strip.show_traces(float(left.time_s[-1]), {Side.LEFT: left, Side.RIGHT: right})
 
     timer = QTimer(page)
     timer.timeout.connect(show)
