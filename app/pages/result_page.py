@@ -425,7 +425,6 @@ class ResultPage(Themed):
             frame.set_narrow(self._room.is_narrow)
         self.charts.phases.set_narrow(self._room.is_narrow)
         self.cycles.set_room(self._room.has_two_charts)
-        self.cycles.charts.set_brief(self._room.is_compact)
         self.legs.set_brief(self._room.is_compact)
         stacked = QBoxLayout.Direction.TopToBottom if self._room.is_narrow else QBoxLayout.Direction.LeftToRight
         self._tables.setDirection(stacked)
@@ -499,6 +498,7 @@ class ResultPage(Themed):
             self.cycles.charts.show_cursor({})
         is_beside = self._room.has_two_charts and view == ANSWER and (self._room.is_spacious or not has_legs)
         self.cycles.charts.set_side_by_side(is_beside)
+        self.cycles.charts.set_brief(self._room.is_compact or view == STRIDES)
         self.cycles.set_notes_shown(is_answer)
         self.strides.setVisible(view == STRIDES)
         self._show_strides()

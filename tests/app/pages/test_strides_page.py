@@ -207,7 +207,7 @@ def test_without_room_for_charts_every_line_draws_its_own_curves(page: ResultPag
 @pytest.mark.endurance
 def test_no_word_is_cut_in_any_room(page: ResultPage) -> None:
     """Where charts have no room beside the list, the list stands alone."""
-    for width, height in ((736.0, 432.0), (1064.0, 592.0), (1680.0, 900.0)):
+    for width, height in ((736.0, 432.0), (1000.0, 592.0), (1680.0, 900.0)):
         page.set_room(width, height)
         QApplication.processEvents()
         page.resize(round(width), max(round(height), page.minimumSizeHint().height()))
