@@ -95,11 +95,11 @@ class NamelessFormatter(logging.Formatter):
         lines = [f"{head} {logger} line {record.lineno}: {text}"]
         error = record.exc_info[1] if isinstance(record.exc_info, tuple) else None
         if error is not None:
-            lines += [f"    {line}" for line in nameless(error)]
+            lines += [f"    {line}" for line in pseudonymised(error)]
         return "\n".join(lines)
 
 
-def nameless(error: BaseException) -> Iterator[str]:
+def pseudonymised(error: BaseException) -> Iterator[str]:
     """An exception, and what it came from, as kinds and places, without what they say."""
     told: BaseException | None = error
     for _ in range(LONGEST_CHAIN):

@@ -30,7 +30,7 @@ from app.library_commands import default_folder
 from app.logs import log_qt_messages
 from app.settings import Scheme, Settings
 from app.storage.idle_lock import IdleLock
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.focus_ring import FocusRing
 from app.workers.background import Background
 from app.workers.garbage import GarbageCollector
@@ -71,7 +71,9 @@ class MainWindow(QWidget):
     `seen` is where this computer remembers how far a library had come.
     """
 
-    def __init__(self, look: Look, settings: Settings, library: Path | None = None, seen: Path | None = None) -> None:
+    def __init__(
+        self, look: ThemeNotifier, settings: Settings, library: Path | None = None, seen: Path | None = None
+    ) -> None:
         super().__init__()
         self._look, self._settings = look, settings
         self.controller = LibraryController(self, seen)
@@ -462,7 +464,7 @@ class MainWindow(QWidget):
 class _DropFrame(QWidget):
     """The edge round the window while a folder is held over it."""
 
-    def __init__(self, look: Look, window: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, window: QWidget) -> None:
         super().__init__(window)
         self._look, self._window = look, window
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
@@ -498,7 +500,7 @@ def open_window(argv: list[str]) -> int:
     app.setStyle("Fusion")
     load_fonts()
     library = default_folder()
-    window = MainWindow(Look(app), Settings(own_settings()), library, library.with_name("seen"))
+    window = MainWindow(ThemeNotifier(app), Settings(own_settings()), library, library.with_name("seen"))
     window.show()
     garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
     window.preparing.done.connect(garbage.pass_over_imported)

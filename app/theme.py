@@ -17,7 +17,7 @@ POINTS_PER_INCH = 72.0
 SCALES = (0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0)
 
 
-class Look(QObject):
+class ThemeNotifier(QObject):
     """The theme in force. Widgets are given it, draw with `theme`, and draw anew on `changed`."""
 
     changed = Signal()

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from uuid import UUID, uuid4
 
-from app.exports.nameless import Row, nameless, nameless_once, once, what_leaves
+from app.exports.pseudonymised import Row, once, pseudonymised, pseudonymised_once, what_leaves
 from app.storage.audit import about
 from app.storage.exchange import READ_BACK, session_with_samples
 from app.storage.journal.decoding import Decoders
@@ -73,7 +73,7 @@ def export_from_folder(
     """
     check_formats(formats)
     if not is_identified:
-        session, analysis = nameless_once(session, analysis, kept)
+        session, analysis = pseudonymised_once(session, analysis, kept)
     _write(session, analysis, formats, folder)
 
 
@@ -114,7 +114,7 @@ def export_from_library(
     analysis = analysed(session)
     if not is_identified:
         pseudonyms = Pseudonyms(opened.library.pseudonyms_key)
-        session, analysis = nameless(pseudonyms, visit.patient_id, session, analysis, kept)
+        session, analysis = pseudonymised(pseudonyms, visit.patient_id, session, analysis, kept)
     report(1.0, "writing")
     _write(session, analysis, formats, folder)
 

@@ -19,7 +19,7 @@ from openpyxl.styles import Font
 from openpyxl.worksheet._write_only import WriteOnlyWorksheet
 
 from app.exports.figures import RESEARCH, SIMULATED, reason_of, software, unit_of, walk_figures
-from app.exports.nameless import what_is_said
+from app.exports.pseudonymised import what_is_said
 from app.reports.gait_csv import gait_tables
 from app.reports.status import WITHHELD, all_that_is_said, why
 from app.wording import sentence

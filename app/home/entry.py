@@ -12,7 +12,7 @@ from app.pages.first_start_page import FirstStartPage
 from app.pages.log_in_page import LogInPage
 from app.settings import Settings
 from app.storage.layout import KEYS
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.start_pages import WorkingPage
 from app.wording import tr
 from app.workers.library_controller import LibraryController
@@ -36,7 +36,7 @@ class Entry(QObject):
     shown = Signal(object)  # the page that is wanted now
 
     def __init__(
-        self, look: Look, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
+        self, look: ThemeNotifier, controller: LibraryController, settings: Settings, folder: Path, parent: QObject
     ) -> None:
         super().__init__(parent)
         self._controller, self._settings, self._folder = controller, settings, folder

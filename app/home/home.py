@@ -22,7 +22,7 @@ from app.pages.settings_page import SettingsPage
 from app.patient_words import patient_line, person, session_line
 from app.settings import Scheme, Settings
 from app.storage.exchange import import_session
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar, BarAction, BarState
 from app.widgets.banner import Banner
 from app.widgets.folder_dialog import ask_for_folder
@@ -73,7 +73,7 @@ class Home(Themed):
     help_wished = Signal(str)
     settings_left = Signal()
 
-    def __init__(self, look: Look, controller: LibraryController, settings: Settings) -> None:
+    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
         self._state: OpenedState | None = None

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.banner import Banner
 from app.widgets.button import Button, ButtonKind
 from app.widgets.folder_dialog import ask_for_folder
@@ -64,7 +64,7 @@ class SessionScreen(Themed):
     left = Signal()
     demonstration_wished = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._background, self._looking, self._saving = (Background(self) for _ in range(3))
@@ -295,7 +295,7 @@ class SessionScreen(Themed):
 class _ActionBar(Themed):
     """The ways on from a result. Where they do not all fit, the demonstration, which has its key, is left out."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

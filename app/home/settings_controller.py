@@ -20,7 +20,7 @@ from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.operators import CLINIC
 from app.storage.stored import Operator, Role
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.folder_dialog import ask_for_folder
 from app.wording import tr
 from app.workers.background import Report
@@ -40,7 +40,7 @@ class SettingsController(QObject):
     told = Signal(str, str)
     restored = Signal()  # something that was deleted
 
-    def __init__(self, look: Look, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings, parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._controller, self._settings = look, controller, settings
         self._state: OpenedState | None = None

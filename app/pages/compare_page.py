@@ -40,7 +40,7 @@ from app.reports.comparison import (
 )
 from app.reports.reference_bands import NOBODY, bands_of, reference_curves, sides_with_band
 from app.reports.visits import ComparedVisits, condition_in_words
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.chips import Chips
@@ -89,7 +89,7 @@ class ComparePage(Themed):
 
     visits_wished = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._conditions: tuple[Part, ...] = ()

@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -58,7 +58,7 @@ class CorrectPage(Themed):
     sides_swapped = Signal()
     closed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.walk_rows: dict[str, _WalkRow] = {}
@@ -173,7 +173,7 @@ class CorrectPage(Themed):
 
 
 class _WalkRow(QWidget):
-    def __init__(self, look: Look, line: WalkLine) -> None:
+    def __init__(self, look: ThemeNotifier, line: WalkLine) -> None:
         super().__init__()
         self._line = line
         self._name = Text(look, line.name, size=15, weight=SEMIBOLD)
@@ -206,7 +206,7 @@ class _WalkRow(QWidget):
 
 
 class _JointRow(QWidget):
-    def __init__(self, look: Look, joint: Joint) -> None:
+    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
         super().__init__()
         self.turned = Toggle(look, tr("This joint bends the wrong way"), "", is_on=False)
         name = capitalised(name_of(joint))

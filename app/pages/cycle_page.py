@@ -18,7 +18,7 @@ from app.reports.walk_figures import (
     strides_used,
     time_distance_figures,
 )
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.figures_table import CARE_MARK, figure_columns, figure_rows
 from app.widgets.table import CellTable
@@ -45,7 +45,7 @@ CARE = later("{mark} read with care.")
 class CyclePage(QWidget):
     """The charts, and whose band it is; `peaks` and `time_distance` are cards that the page places."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.band_words = ""
@@ -133,7 +133,7 @@ def _only_for(sides_with_band: frozenset[Side], recording: RecordingAnalysis) ->
 class FiguresCard(Card):
     """A table under its title, with what must be known to read it."""
 
-    def __init__(self, look: Look, title: str, what: str) -> None:
+    def __init__(self, look: ThemeNotifier, title: str, what: str) -> None:
         super().__init__(look, padding=12)
         head = QHBoxLayout()
         head.setSpacing(8)

@@ -8,7 +8,7 @@ from app.icons import Icon
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, fixed, in_words, judged_in_words, signed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.figures_table import CARE_MARK
@@ -28,7 +28,7 @@ EDGES = 12  # px: the card's padding above and below
 class DiffersCard(Card):
     """As many rows as there is room for, judged ones first."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, padding=16)
         self._facts: Facts | None = None
         self._rows: Sequence[LegsRow] = ()

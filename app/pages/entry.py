@@ -4,7 +4,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.banner import Banner
 from app.widgets.header import ProductMark
 from app.widgets.text import SEMIBOLD, Text
@@ -17,7 +17,7 @@ ABOVE = 48
 class EntryPage(Themed):
     """`column` is what a page fills, under the program's mark and name."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._name = Text(look, "Gaitwright", size=18, weight=SEMIBOLD)

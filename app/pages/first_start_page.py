@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QWidget
 from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.field import Field
@@ -36,7 +36,7 @@ class FirstStartPage(EntryPage):
     demonstration_wished = Signal()
     look_wished = Signal()  # whether the library that is missing is there now
 
-    def __init__(self, look: Look, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
+    def __init__(self, look: ThemeNotifier, shortest: int, is_same_key: Callable[[str, str], bool]) -> None:
         super().__init__(look)
         self._shortest, self._is_same_key, self.recovery_key = shortest, is_same_key, ""
         self._missing = ""

@@ -24,7 +24,7 @@ from app.plots.cost_map import CostMap
 from app.plots.projected_rates_plot import ProjectedRatesPlot
 from app.plots.two_ways_chart import TwoWaysChart
 from app.reports.diagnostics import MARGIN_BEYOND, FoundFigure, figures_of
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -63,7 +63,7 @@ class FoundPage(Themed):
     joint_chosen = Signal(str)
     save_wished = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._width = look, 0.0
         self.back = Button(look, tr("Back to the results"), ButtonKind.SECONDARY, Icon.BACK)
@@ -210,7 +210,7 @@ _IN_ORDER = (Joint.LEFT_KNEE, Joint.RIGHT_KNEE, Joint.LEFT_ANKLE, Joint.RIGHT_AN
 class _Head(QHBoxLayout):
     """A picture's title, the figure of the paper that it is, the leg, and whether it is simulated."""
 
-    def __init__(self, look: Look, title: str, figure: str) -> None:
+    def __init__(self, look: ThemeNotifier, title: str, figure: str) -> None:
         super().__init__()
         self._look = look
         self._chips = {side: Chip(look, side) for side in Side}
@@ -231,7 +231,7 @@ class _Head(QHBoxLayout):
 class _AxisCard(Card):
     """Figure 3: the cost over the sphere, for both sensors."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
         self.head = _Head(look, tr("Where the joint axis lies"), tr("Figure 3"))
         self.maps = (CostMap(look), CostMap(look))
@@ -286,7 +286,7 @@ def _why_apart(found: JointDiagnostics) -> str:
 class _PairingCard(Card):
     """Figure 4: the projected rates, as paired and with one axis reversed."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
         self.head = _Head(look, tr("Whether both axes point the same way"), tr("Figure 4"))
         self.plot = ProjectedRatesPlot(look)
@@ -344,7 +344,7 @@ def _decided(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
 class _AngleCard(Card):
     """Figure 6: the gyroscopes' angle, the accelerometers', and both together."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look)
         self.head = _Head(look, tr("The angle, found in two ways"), tr("Figure 6"))
         self.stretch = Segmented(
@@ -408,7 +408,7 @@ def _drifted(found: JointDiagnostics, figures: dict[str, FoundFigure]) -> str:
 class _FiguresCard(Card):
     """All figures of the joint as a list of names and values."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._grid = QGridLayout()
         super().__init__(look)
         self._figures: Sequence[FoundFigure] = ()

@@ -22,7 +22,7 @@ from PySide6.QtWidgets import (
 from app.icons import Icon
 from app.pages.help_reader import HelpReader
 from app.pages.help_topics import Topic, markdown_of, plain_words_of, topic_title
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -42,7 +42,7 @@ class HelpPage(Themed):
 
     closed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_compact = look, False
         self._topic = Topic.HOME
@@ -189,7 +189,7 @@ class _TopicList(QWidget):
 
     chosen = Signal(object)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setAccessibleName(tr("Topics"))
@@ -225,7 +225,7 @@ class _TopicList(QWidget):
 
 
 class _TopicRow(QAbstractButton):
-    def __init__(self, look: Look, title: str) -> None:
+    def __init__(self, look: ThemeNotifier, title: str) -> None:
         super().__init__()
         self._look = look
         self._count: int | None = None

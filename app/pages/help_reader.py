@@ -21,7 +21,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QFrame, QTextBrowser, QTextEdit
 
 from app.pages.help_topics import FOLDER
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.text import MEDIUM, SEMIBOLD
 
 PICTURE = re.compile(r"!\[[^\]]*\]\(([^)]+)\)")
@@ -35,7 +35,7 @@ BODY = 16
 class HelpReader(QTextBrowser):
     """The text of a topic in the type of the house, with pictures in the theme that is in force."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._markdown = look, ""
         self._wanted = ""

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QPainter, QResizeEvent
 from PySide6.QtWidgets import QStyle, QStyleOptionViewItem
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.table import CellTable, Index, TableColumn, TableRow
 from app.widgets.table_cells import EMPTY, TableCell
@@ -200,7 +200,7 @@ class LineList(CellTable):
     `chosen` and `opened` tell the id of a line.
     """
 
-    def __init__(self, look: Look, name: str, is_opened_by_click: bool = False) -> None:
+    def __init__(self, look: ThemeNotifier, name: str, is_opened_by_click: bool = False) -> None:
         super().__init__(look, name, row=ROW, head=0, padding=PAD, edge=PAD, is_list=True)
         self.lines: tuple[Line, ...] = ()
         self._longest: list[LineCell] = []

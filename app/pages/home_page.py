@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, Q
 
 from app.icons import Icon, paint_icon
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -35,7 +35,7 @@ class HomePage(Themed):
     patient_deleted = Signal(object)  # UUID: by key or button
     session_deleted = Signal(object)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._patients: Sequence[PatientLine] | None = None  # not read yet
@@ -245,7 +245,7 @@ class HomePage(Themed):
 class _Empty(Themed):
     """What stands in the list's place: nobody yet, or nobody who is searched for."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._sentence = Text(look, size=16, weight=SEMIBOLD, wraps=True)
@@ -281,7 +281,7 @@ class _Empty(Themed):
 class _Search(QLineEdit):
     """The search, with its sign and its key inside."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setAccessibleName(tr("Search patients"))

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.field import Field
 from app.widgets.findings_list import FindingsList
@@ -18,7 +18,7 @@ from core.findings import Finding
 class ImportPage(Themed):
     code_changed = Signal(str)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._title = Text(look, tr("Import recordings"), size=26, weight=SEMIBOLD, wraps=True)

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QHBoxLayout, QVBoxLayout, QWidget
 from app.icons import Icon
 from app.pages.entry import EntryPage
 from app.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -32,7 +32,7 @@ class LogInPage(EntryPage):
     left = Signal()  # another operator, from the cover
     demonstration_wished = Signal()
 
-    def __init__(self, look: Look, shortest: int) -> None:
+    def __init__(self, look: ThemeNotifier, shortest: int) -> None:
         super().__init__(look)
         self._shortest, self._left_s = shortest, 0.0
         self._is_cover = self._is_recording = self._is_recovering = self._is_busy = self._can_remember = False

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QSizePolicy, QVB
 from app.gates_in_words import verdict_word
 from app.icons import VERDICT_ICONS, Icon, paint_icon
 from app.reports.patient_report.data_quality import DataQuality, QualityLine
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -38,7 +38,7 @@ class QualityPage(Themed):
 
     repeat_wished = Signal(object)  # Side
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._lines: tuple[QualityLine, ...] = ()
@@ -186,7 +186,7 @@ class QualityPage(Themed):
 class LineCard(Themed):
     """One thing that stands against a figure: yellow where it withholds one."""
 
-    def __init__(self, look: Look, line: QualityLine, *, can_repeat: bool) -> None:
+    def __init__(self, look: ThemeNotifier, line: QualityLine, *, can_repeat: bool) -> None:
         super().__init__()
         self._look, self._line = look, line
         is_grave = line.is_grave
@@ -234,7 +234,7 @@ class LineCard(Themed):
 class JointsFigure(BodyFigure):
     """The legs with their sensors, and beside each joint that was measured what may be read of it."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, legs_only=True)
         self._joints: dict[Joint, Verdict] = {}
 

@@ -28,7 +28,7 @@ from app.reports.patient_report.marks_on_curves import deviations_of, gaps_of
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, sides_with_band
 from app.review.mean_legs import mean_legs
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets import grid
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
@@ -106,7 +106,7 @@ class Behind(Enum):
 class ResultParts:
     """The parts of a result page that take long to be made: one at a time before they are wanted, or else when."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._look = look
 
     @cached_property
@@ -148,7 +148,7 @@ class ResultPage(Themed):
 
     told = Signal()
 
-    def __init__(self, look: Look, parts: ResultParts | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, parts: ResultParts | None = None) -> None:
         super().__init__()
         parts = parts or ResultParts(look)
         self._look = look

@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
 from app.passphrases import REFUSED, strength_in_words, strength_of
-from app.theme import SCALES, Look
+from app.theme import SCALES, ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -64,7 +64,7 @@ class SettingsPage(Themed):
     clinic_named = Signal(str)
     restore_wished = Signal(object, bool)  # id, whether it is a patient's
 
-    def __init__(self, look: Look, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, look: ThemeNotifier, shortest: int, roles: Sequence[tuple[str, str]]) -> None:
         super().__init__()
         self._look, self._shortest, self._roles = look, shortest, roles
         self._own: tuple[str, ...] = ()
@@ -440,7 +440,7 @@ class SettingsPage(Themed):
 class _OperatorRow(QWidget):
     switched = Signal(object)  # OperatorLine
 
-    def __init__(self, look: Look, operator: OperatorLine) -> None:
+    def __init__(self, look: ThemeNotifier, operator: OperatorLine) -> None:
         super().__init__()
         self._operator = operator
         row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
@@ -468,7 +468,7 @@ class _OperatorRow(QWidget):
 class _DeletedRow(QWidget):
     restored = Signal(object, bool)
 
-    def __init__(self, look: Look, line: DeletedLine) -> None:
+    def __init__(self, look: ThemeNotifier, line: DeletedLine) -> None:
         super().__init__()
         self._line = line
         row = QHBoxLayout(self)

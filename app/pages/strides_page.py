@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QWidget
 
 from app.icons import Icon
 from app.reports.walk_figures import by_hand_in_words
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, StrideLine, StrideList
@@ -28,7 +28,7 @@ class StridesPage(Card):
     all_wanted = Signal(str)
     chosen = Signal(object)  # curves in degrees by joint, of the stride in force
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, padding=12)
         self._recording: RecordingAnalysis | None = None
         self.list = StrideList(look, tr("Strides"))

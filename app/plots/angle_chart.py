@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.thinning import envelope, thin
-from app.theme import Look
+from app.theme import ThemeNotifier
 from core.body import Side
 from core.samples import FloatArray
 
@@ -47,7 +47,7 @@ class AngleChart(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no typ
 
     view_moved = Signal()
 
-    def __init__(self, look: Look, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
+    def __init__(self, look: ThemeNotifier, lowest_deg: float, highest_deg: float, has_times: bool = True) -> None:
         super().__init__(useOpenGL=False)
         self._has_times = has_times
         self._look = look
@@ -191,7 +191,7 @@ class _TimeAxis(pg.AxisItem):  # type: ignore[misc]  # pyqtgraph has no types
 class _CurveItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
     """Band and curves of one leg in one item: pyqtgraph's own curves join their bands across gaps."""
 
-    def __init__(self, look: Look, side: Side) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look, self._side = look, side
         self.time_s: FloatArray = np.zeros(0)

@@ -11,7 +11,7 @@ from app.charts.axes import degrees_in_words, part_in_words, range_for, range_in
 from app.charts.stride_chart import StrideCurve
 from app.icons import Icon
 from app.plots.cycle_chart import CycleChart
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import Chip
 from app.widgets.icons import IconMark
@@ -40,7 +40,7 @@ class ComparedChart(CycleChart):
 class ComparedFrame(Card):
     """A chart under its leg, joint and sign, with what must be known to read it."""
 
-    def __init__(self, look: Look, chart: ComparedChart, side: Side, is_knee: bool) -> None:
+    def __init__(self, look: ThemeNotifier, chart: ComparedChart, side: Side, is_knee: bool) -> None:
         self._side, self._is_knee = side, is_knee
         self.chart = chart
         self._mark = IconMark(look, Icon.WARNING, size=18)

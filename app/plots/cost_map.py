@@ -11,7 +11,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize
 from PySide6.QtGui import QColor, QFont, QImage, QPainter, QPaintEvent, QPolygonF, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording import tr
@@ -33,7 +33,7 @@ X_REACH, Y_REACH = 2 * math.sqrt(2), math.sqrt(2)  # half axes of Hammer's ellip
 class CostMap(Themed):
     """One sensor of one joint."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._side = Side.LEFT

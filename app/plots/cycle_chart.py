@@ -37,7 +37,7 @@ from app.charts.stride_chart import (
 )
 from app.icons import Icon
 from app.reports.walk_figures import MAY_BE_MIRRORED, NO_HEIGHT, NO_ZERO, WITHHELD, doubt_in, verdict_of, why_in_words
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS
 from app.widgets.icons import IconMark
@@ -64,7 +64,7 @@ class CycleCharts(Themed):
 
     picked = Signal(bool, float, float)  # whether of the knee; percent of the stride, degrees
 
-    def __init__(self, look: Look, reference: ReferenceCurves) -> None:
+    def __init__(self, look: ThemeNotifier, reference: ReferenceCurves) -> None:
         super().__init__()
         self._look = look
         knee, ankle = CycleChart(look, is_knee=True), CycleChart(look, is_knee=False)
@@ -155,7 +155,7 @@ class CycleCharts(Themed):
 class CycleFrame(Card):
     """A chart with its title, its sign in words, the key to its curves and what must be known to read them."""
 
-    def __init__(self, look: Look, chart: "CycleChart", is_knee: bool) -> None:
+    def __init__(self, look: ThemeNotifier, chart: "CycleChart", is_knee: bool) -> None:
         self._is_knee = is_knee
         self.chart = chart
         self.chips = {side: VerdictChip(look, side) for side in Side}
@@ -305,7 +305,7 @@ class CycleChart(Themed):
 
     picked = Signal(float, float)  # percent of the stride, degrees
 
-    def __init__(self, look: Look, *, is_knee: bool) -> None:
+    def __init__(self, look: ThemeNotifier, *, is_knee: bool) -> None:
         super().__init__()
         self._look, self._is_knee = look, is_knee
         self.range_deg = usual_range_deg(is_knee=is_knee, is_about_mean=False)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.on_screen import DOT, paint_letter
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import SEMIBOLD
@@ -60,7 +60,7 @@ class DifferenceGroup:
 class DifferencePlot(Themed):
     """As high as its rows."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.groups: tuple[DifferenceGroup, ...] = ()

@@ -21,7 +21,7 @@ from app.charts.axes import (
 from app.icons import Icon
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.phase_lanes import PhaseFrame
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import SideKey
 from app.widgets.icons import IconMark
@@ -45,7 +45,7 @@ class JointCharts(Themed):
 
     view_changed = Signal(bool, str)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._time_s: FloatArray = np.zeros(0)
@@ -224,7 +224,7 @@ class JointCharts(Themed):
 class ChartFrame(Card):
     """A chart with its title, its sign in words, and what stands at the reading line."""
 
-    def __init__(self, look: Look, chart: AngleChart, is_knee: bool) -> None:
+    def __init__(self, look: ThemeNotifier, chart: AngleChart, is_knee: bool) -> None:
         self.is_knee = is_knee
         self.chart = chart
         self._is_narrow = False

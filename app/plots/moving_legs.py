@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.icons import Icon
 from app.review.mean_legs import MeanLegs
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, LETTERS, paint_chip
@@ -40,7 +40,7 @@ class MovingLegs(Card):
 
     moved = Signal(float)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, padding=16)
         self._legs: MeanLegs | None = None
         self._is_brief = False
@@ -154,7 +154,7 @@ class _LegsPicture(Themed):
 
     pointed = Signal(float)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._legs: MeanLegs | None = None

@@ -13,7 +13,7 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QWheelEven
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.card import Card
 from app.widgets.chip import CHIP, Chip, paint_chip
@@ -81,7 +81,7 @@ class Lane:
 class PhaseFrame(Card):
     """Both lanes with their legend, and what stands at the reading line."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self.lanes = PhaseLanes(look)
         self._simulated = Text(look, tr("SIMULATED"), size=12, weight=SEMIBOLD)
         self._chips = {side: Chip(look, side) for side in Side}
@@ -186,7 +186,7 @@ class PhaseLanes(QWidget):
     zoomed = Signal(float)  # share of the time in sight to keep
     dragged = Signal(float)  # share of the time in sight to go on by
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.lanes: Mapping[Side, Lane] = {}
@@ -301,7 +301,7 @@ class PhaseLanes(QWidget):
 class Swatch(QWidget):
     """How one phase looks, in grey."""
 
-    def __init__(self, look: Look, phase: Phase) -> None:
+    def __init__(self, look: ThemeNotifier, phase: Phase) -> None:
         super().__init__()
         self._look, self._phase = look, phase
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QFont, QPainter, QPaintEvent, QPen, QPolygonF,
 from PySide6.QtWidgets import QSizePolicy
 
 from app.reports.diagnostics import parts_deg_s
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_text import CENTRE, PaintedText
 from app.widgets.text import MEDIUM
 from app.widgets.themed import Themed
@@ -27,7 +27,7 @@ STEPS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000)
 class ProjectedRatesPlot(Themed):
     """Two panels of one size and one scale."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._side = Side.LEFT

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QSizePolicy
 from app.charts.axes import ANKLE_DEG, AXIS_WIDTH, KNEE_DEG, RIGHT_MARGIN, angle_in_words, range_for
 from app.plots.angle_chart import DENSE_FROM, runs
 from app.plots.thinning import thin
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_text import CENTRE, RIGHT, PaintedText
 from app.widgets.themed import Themed
 from app.wording import tr
@@ -31,7 +31,7 @@ T = TypeVar("T", float, FloatArray)
 class TwoWaysChart(Themed):
     """Degrees over seconds; the axis widens for drift, while the accelerometers' spikes are cut at its ends."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._side = Side.LEFT

@@ -63,7 +63,7 @@ class Pseudonyms:
         """`session` without what may say whose it is; of what was typed freely only what is `kept`."""
         sensors, conditions = _numbered(session), _conditions(session, is_kept=Typed.CONDITIONS in kept)
         clocks = _numbers("clock", (info.clock for info in session.sensors.values()))
-        nameless = replace(
+        pseudonymised = replace(
             session,
             recordings=(),
             patient=self._patient(patient_id, session, kept),
@@ -77,10 +77,10 @@ class Pseudonyms:
             unknown={},
         )
         for recording in session.recordings:
-            own = self._recording(patient_id, recording, free_name(nameless, recording.kind), sensors)
+            own = self._recording(patient_id, recording, free_name(pseudonymised, recording.kind), sensors)
             own = replace(own, condition=conditions.get(recording.condition, ""))
-            nameless = replace(nameless, recordings=(*nameless.recordings, own))
-        return nameless
+            pseudonymised = replace(pseudonymised, recordings=(*pseudonymised.recordings, own))
+        return pseudonymised
 
     def _patient(self, patient_id: UUID, session: Session, kept: Collection[Typed]) -> Patient:
         told, age = session.patient, age_in_words(session)

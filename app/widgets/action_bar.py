@@ -19,7 +19,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import HEIGHT, Button, ButtonKind
 from app.widgets.grid import LEAST, NARROW_BELOW, side_margin
 from app.widgets.painted_text import PaintedText
@@ -80,7 +80,7 @@ class ActionBar(Themed):
     sound_pressed = Signal()
     recording_changed = Signal(bool)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._state = BarState()
@@ -291,7 +291,7 @@ class ActionBar(Themed):
 class VerbButton(Button):
     """A button whose word, key and kind follow what can be done now; hidden while it is nothing."""
 
-    def __init__(self, look: Look, parent: QWidget, is_primary: bool = False) -> None:
+    def __init__(self, look: ThemeNotifier, parent: QWidget, is_primary: bool = False) -> None:
         super().__init__(look, "", parent=parent)
         self._is_primary = is_primary
         self._verb = BarAction("")
@@ -338,7 +338,7 @@ class VerbButton(Button):
 class _Clock(QWidget):
     """The dot of a recording and its time. The dot does not blink."""
 
-    def __init__(self, look: Look, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._time = look, "00:00"
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

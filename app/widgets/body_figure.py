@@ -7,7 +7,7 @@ from PySide6.QtCore import QPointF, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QTransform
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.body_shapes import BARE_LEGS, LEGS, WHOLE, body_shapes
 from app.widgets.chip import LETTERS
@@ -70,7 +70,7 @@ def paint_legs(
 class BodyFigure(QWidget):
     """The whole person with large R and L, or the legs alone with their joints marked."""
 
-    def __init__(self, look: Look, legs_only: bool = False) -> None:
+    def __init__(self, look: ThemeNotifier, legs_only: bool = False) -> None:
         super().__init__()
         self._look, self._is_legs_only = look, legs_only
         self._is_from_behind = False

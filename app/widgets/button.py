@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QPushButton, QSizePolicy, QStyle, QStyleOptionButt
 from app.icons import Icon
 from app.style import ButtonFace
 from app.style import ButtonKind as ButtonKind
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wording import tr
 
 HEIGHT = 48
@@ -22,7 +22,7 @@ class Button(QPushButton):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         text: str,
         kind: ButtonKind = ButtonKind.SECONDARY,
         icon: Icon | None = None,

@@ -4,13 +4,13 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QVBoxLayout
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS
 from app.widgets.themed import Themed
 
 
 class Card(Themed):
-    def __init__(self, look: Look, padding: float = 16, spacing: float = 8) -> None:
+    def __init__(self, look: ThemeNotifier, padding: float = 16, spacing: float = 8) -> None:
         super().__init__()
         self._look, self._padding, self._spacing = look, padding, spacing
         self.column = QVBoxLayout(self)

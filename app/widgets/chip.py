@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, Theme
 from app.widgets.text import SEMIBOLD
 from app.wording import tr
@@ -43,7 +43,7 @@ def paint_chip(painter: QPainter, rect: QRectF, side: Side, theme: Theme) -> Non
 class Chip(QWidget):
     """The chip alone, before words about that leg."""
 
-    def __init__(self, look: Look, side: Side) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
@@ -60,7 +60,7 @@ class Chip(QWidget):
 class SideKey(QWidget):
     """Chip and line of one leg: the key to the curves."""
 
-    def __init__(self, look: Look, side: Side) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look, self._side = look, side
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, QSize, Qt, Signal
 from PySide6.QtGui import QKeyEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.themed import Themed
 
@@ -27,7 +27,7 @@ class Chips(Themed):
     turned = Signal()  # by the user
 
     def __init__(
-        self, look: Look, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None
+        self, look: ThemeNotifier, name: str, options: Iterable[tuple[str, str]], rivals: tuple[str, str] | None = None
     ) -> None:
         super().__init__()
         self._look, self._rivals = look, rivals
@@ -127,7 +127,7 @@ def flow(wanted: Iterable[int], width: int, gap: int, height: int) -> list[QRect
 
 
 class _Chip(Button):
-    def __init__(self, look: Look, word: str, group: Chips) -> None:
+    def __init__(self, look: ThemeNotifier, word: str, group: Chips) -> None:
         super().__init__(look, word, ButtonKind.CHIP, height=HEIGHT, parent=group)
         self._group = group
         self.setCheckable(True)

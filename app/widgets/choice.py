@@ -4,11 +4,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QComboBox, QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 
 
 class Choice(QComboBox):
-    def __init__(self, _look: Look, name: str) -> None:
+    def __init__(self, _look: ThemeNotifier, name: str) -> None:
         super().__init__()
         self.setAccessibleName(name)
         self.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)

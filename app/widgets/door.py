@@ -7,7 +7,7 @@ from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
 from app.icons import VERDICT_ICONS, Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_button import PaintedButton
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
@@ -35,7 +35,7 @@ class DoorWords:
 class Door(PaintedButton):
     """What does not fit is cut short on the screen, and heard whole."""
 
-    def __init__(self, look: Look, key: str) -> None:
+    def __init__(self, look: ThemeNotifier, key: str) -> None:
         super().__init__(look)
         self._key, self._shown = key, DoorWords(Verdict.READ, "")
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)

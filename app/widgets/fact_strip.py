@@ -7,7 +7,7 @@ from PySide6.QtCore import QRectF, QSize
 from PySide6.QtGui import QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import SEMIBOLD
 from app.widgets.themed import Themed
@@ -33,7 +33,7 @@ class KeyFigure:
 class FactStrip(Themed):
     """As wide as its figures need; a hairline stands before each."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.figures: Sequence[KeyFigure] = ()

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout
 
 from app.icons import Icon
 from app.style import IS_WRONG
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.chip import paint_chip
 from app.widgets.icons import IconMark
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD, Text
@@ -56,7 +56,7 @@ class Field(Themed):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         label: str,
         *,
         unit: str = "",
@@ -193,7 +193,7 @@ class NumberField(Field):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         label: str,
         *,
         low: float,
@@ -253,7 +253,7 @@ class NumberField(Field):
 class _Box(QLineEdit):
     """The line itself. It is as large as its frame, so that the ring round the focus goes round the frame."""
 
-    def __init__(self, look: Look, side: Side | None, is_code: bool) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side | None, is_code: bool) -> None:
         super().__init__()
         self._look, self._side, self._is_code = look, side, is_code
         self.unit = ""

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
 from app.icons import SEVERITY_ICONS, Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.icons import IconMark
 from app.widgets.text import SEMIBOLD, Text
 from app.wording import later, sentence, tr
@@ -24,7 +24,7 @@ USUAL = frozenset({"not_a_hinge"})  # of living joints: a figure of theirs, whic
 
 
 class FindingsList(QScrollArea):
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setWidgetResizable(True)
@@ -62,7 +62,7 @@ class FindingsList(QScrollArea):
 class FindingRow(QWidget):
     """What happened in bold, what follows below it."""
 
-    def __init__(self, look: Look, icon: Icon, severity: Severity, text: str) -> None:
+    def __init__(self, look: ThemeNotifier, icon: Icon, severity: Severity, text: str) -> None:
         super().__init__()
         what, then = _in_two(text)
         self.setAccessibleName(f"{tr(SEVERITY_WORDS[severity])}: {text}")

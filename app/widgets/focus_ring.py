@@ -5,7 +5,7 @@ from PySide6.QtGui import QPainter, QPaintEvent, QRegion
 from PySide6.QtWidgets import QApplication, QWidget
 from shiboken6 import isValid
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 
 DISTANCE = 3
@@ -16,7 +16,7 @@ NO_RING = "has_no_focus_ring"  # property of a region that is read and not worke
 class FocusRing(QWidget):
     """Lies over all of `window` and follows the focus inside it."""
 
-    def __init__(self, look: Look, window: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, window: QWidget) -> None:
         super().__init__(window)
         self._look, self._window = look, window
         self._chain: list[QWidget] = []

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import joint_name
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS
 from app.widgets.chip import paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
@@ -122,7 +122,7 @@ def _steps(share: float) -> float:
 class Gauge(QWidget):
     """One joint's card. The ring lies on the side of the figure: a right leg's at the right."""
 
-    def __init__(self, look: Look, joint: Joint) -> None:
+    def __init__(self, look: ThemeNotifier, joint: Joint) -> None:
         super().__init__()
         self._look, self._joint = look, joint
         self._face = GaugeFace()

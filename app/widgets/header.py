@@ -4,7 +4,7 @@ from PySide6.QtCore import QPoint, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
 from app.widgets.grid import LEAST, side_margin
 from app.widgets.stopwatch import Stopwatch
@@ -25,7 +25,7 @@ class Header(Themed):
     Where all does not fit into one line, what is at the right moves to a second.
     """
 
-    def __init__(self, look: Look, has_mark: bool = True) -> None:
+    def __init__(self, look: ThemeNotifier, has_mark: bool = True) -> None:
         super().__init__()
         self._look, self._has_mark, self._is_compact = look, has_mark, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -142,7 +142,7 @@ class Header(Themed):
 class ProductMark(QWidget):
     """The program's mark: two legs, left solid, right dashed."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
@@ -169,7 +169,7 @@ class ProductMark(QWidget):
 class _Tag(Text):
     """A word that must not be overlooked, on yellow."""
 
-    def __init__(self, look: Look, text: str) -> None:
+    def __init__(self, look: ThemeNotifier, text: str) -> None:
         super().__init__(look, text, size=13, weight=SEMIBOLD, tone="caution_ink")
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
 

@@ -7,7 +7,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QColor, QFo
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS
 from app.widgets.text import MEDIUM, SEMIBOLD
 from app.wording import tr
@@ -28,7 +28,7 @@ class Hint:
 
 
 class HintBand(QWidget):
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._hint = Hint("")

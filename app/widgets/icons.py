@@ -5,13 +5,13 @@ from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 
 
 class IconMark(QWidget):
     """An icon beside words. The words say what it says, so a reader of screens passes over it."""
 
-    def __init__(self, look: Look, icon: Icon, size: float = 20, tone: str = "ink") -> None:
+    def __init__(self, look: ThemeNotifier, icon: Icon, size: float = 20, tone: str = "ink") -> None:
         super().__init__()
         self._look, self._icon, self._size, self._tone = look, icon, size, tone
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

@@ -6,14 +6,14 @@ from PySide6.QtCore import QSize
 from PySide6.QtGui import QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.text import Text
 
 KEY = 28
 
 
 class LineKeys(QWidget):
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._row = QHBoxLayout(self)
@@ -35,7 +35,7 @@ class LineKeys(QWidget):
 class _Line(QWidget):
     """A piece of a line as it is drawn in the picture."""
 
-    def __init__(self, look: Look, pen_of: Callable[[], QPen]) -> None:
+    def __init__(self, look: ThemeNotifier, pen_of: Callable[[], QPen]) -> None:
         super().__init__()
         self._look, self._pen_of = look, pen_of
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Preferred)

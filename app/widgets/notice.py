@@ -5,7 +5,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QPainter, Q
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QVBoxLayout
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
 
@@ -16,7 +16,7 @@ PADDING = 10
 class Notice(Themed):
     """Keeps its place while it has nothing to say, unless it is hidden. `padding`: above and below, px."""
 
-    def __init__(self, look: Look, size: float = 18, padding: int = PADDING) -> None:
+    def __init__(self, look: ThemeNotifier, size: float = 18, padding: int = PADDING) -> None:
         super().__init__()
         self._look, self._padding = look, padding
         self._icon: Icon | None = None

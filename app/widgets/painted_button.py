@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QKeyEvent, QPainter
 from PySide6.QtWidgets import QAbstractButton, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 
 
@@ -13,7 +13,7 @@ class PaintedButton(QAbstractButton):
 
     pressing_keys: tuple[Qt.Key, ...] = (Qt.Key.Key_Return, Qt.Key.Key_Enter)
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._look = look
         self.setAttribute(Qt.WidgetAttribute.WA_Hover)

@@ -17,7 +17,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.painted_text import CENTRE, PaintedText, height_for
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -69,7 +69,7 @@ class RailButton(QAbstractButton):
     moved = Signal(int)  # by so many rows, with the arrows
     looked_at = Signal(bool)  # it got the focus or the mouse, or lost it
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._form = look, RailForm.USUAL
         self._row, self._number, self._count = RailRow(""), 0, 0

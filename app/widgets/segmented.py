@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, Signal
 from PySide6.QtGui import QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QButtonGroup, QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52
@@ -18,7 +18,7 @@ class Segmented(QWidget):
 
     chosen = Signal(str)
 
-    def __init__(self, look: Look, name: str, options: Sequence[tuple[str, str, str]]) -> None:
+    def __init__(self, look: ThemeNotifier, name: str, options: Sequence[tuple[str, str, str]]) -> None:
         super().__init__()
         self._look = look
         self.setAccessibleName(name)
@@ -86,7 +86,7 @@ class Segmented(QWidget):
 
 
 class _Segment(Button):
-    def __init__(self, look: Look, word: str, note: str, height: float, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, word: str, note: str, height: float, parent: QWidget) -> None:
         super().__init__(look, word, ButtonKind.SEGMENT, height=height, parent=parent)
         self._note, self._reason, self._is_brief = note, "", False
         self.setCheckable(True)

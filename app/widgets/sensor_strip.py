@@ -6,7 +6,7 @@ from PySide6.QtCore import QElapsedTimer, QRect, QRectF, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.body_figure import paint_legs
 from app.widgets.chip import LETTERS
 from app.widgets.grid import LEAST, side_margin
@@ -32,7 +32,7 @@ class SensorStrip(Themed):
     turned_bad = Signal()
     tiles_changed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_compact, self._is_from_behind = look, False, False
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

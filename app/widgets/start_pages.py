@@ -4,7 +4,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QProgressBar, QVBoxLayout
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
@@ -16,7 +16,7 @@ SENTENCE = later("No session is open.")
 class EmptyPage(Themed):
     """One sentence and the two ways on."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.open_folder = Button(look, tr("Open a session folder"), ButtonKind.PRIMARY, Icon.FOLDER, tr("Ctrl O"))
@@ -55,7 +55,7 @@ class WorkingPage(Themed):
 
     stop_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._title = Text(look, size=26, weight=SEMIBOLD, wraps=True)

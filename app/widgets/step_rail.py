@@ -11,7 +11,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 from app.widgets.header import ProductMark
 from app.widgets.rail_row import BelowRow, RailButton, RailForm, RailRow
@@ -42,7 +42,7 @@ class StepRail(Themed):
     step_pressed = Signal(int)
     below_pressed = Signal(str)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._form = look, RailForm.USUAL
         self._below_names: list[str] = []
@@ -196,7 +196,7 @@ class StepRail(Themed):
 class _NameTag(Text):
     """What a row is called, beside it, where the rail has no room for words."""
 
-    def __init__(self, look: Look, rail: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, rail: QWidget) -> None:
         super().__init__(look, size=14, weight=REGULAR, tone="inv_ink", parent=rail)
         self._rail = rail
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 
 from app.body_words import segment_name
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.text import MEDIUM, REGULAR, SEMIBOLD
@@ -42,7 +42,7 @@ class RingFace:
 class CountRing(QWidget):
     """As large as its place; the figure is read from six metres."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._face = look, RingFace()
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
@@ -141,7 +141,7 @@ class MovementBars(QWidget):
     A row is painted anew only when its figure or its mark changes.
     """
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._is_compact = False

@@ -4,7 +4,7 @@ from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import clock_time
 from app.widgets.painted_text import RIGHT, PaintedText
 from app.widgets.text import SEMIBOLD
@@ -18,7 +18,7 @@ THICK = 5
 class Stopwatch(QWidget):
     """Passive: it shows what it is told."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_compact, self._elapsed_s = look, False, 0
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

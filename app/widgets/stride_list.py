@@ -9,7 +9,7 @@ from PySide6.QtCore import QModelIndex, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QColor, QFontMetrics, QKeyEvent, QPainter, QPolygonF
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import Theme
 from app.widgets.chip import CHIP, paint_chip
 from app.widgets.table import CellTable, TableColumn, TableRow
@@ -159,7 +159,7 @@ class StrideList(CellTable):
 
     turned = Signal(object)
 
-    def __init__(self, look: Look, name: str) -> None:
+    def __init__(self, look: ThemeNotifier, name: str) -> None:
         super().__init__(look, name, row=ROW, head=HEAD, padding=PADDING, edge=PADDING, is_list=True)
         self.lines: tuple[StrideLine, ...] = ()
         self._can_turn = True

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.body_figure import paint_legs
 from app.widgets.painted_text import PaintedText
 from app.widgets.sensor_tile import SensorTile, marks, sentence
@@ -19,7 +19,7 @@ class StripButton(QAbstractButton):
 
     resized = Signal()  # its words have another length
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_compact = look, False
         self._tiles: dict[Site, SensorTile] = {}

@@ -26,7 +26,7 @@ from PySide6.QtWidgets import (
     QTableView,
 )
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.table_cells import EMPTY, TableCell
 
 ROW, HEAD, PADDING = 28, 32, 6
@@ -134,7 +134,7 @@ class CellTable(QTableView):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         name: str,
         *,
         row: int = ROW,

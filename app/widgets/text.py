@@ -4,7 +4,7 @@ from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QColor, QFont, QPalette
 from PySide6.QtWidgets import QLabel, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 
 REGULAR = QFont.Weight.Normal
 MEDIUM = QFont.Weight.Medium
@@ -16,7 +16,7 @@ class Text(QLabel):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         text: str = "",
         size: float = 14,
         weight: QFont.Weight = REGULAR,

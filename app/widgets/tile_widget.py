@@ -5,7 +5,7 @@ from PySide6.QtGui import QColor, QFont, QFontMetrics, QKeyEvent, QPainter, QPai
 from PySide6.QtWidgets import QWidget
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 from app.widgets.battery import WIDTH as BATTERY_WIDTH
 from app.widgets.battery import paint_battery
@@ -25,7 +25,7 @@ class TileWidget(QWidget):
 
     moved = Signal(int)  # by so many tiles, with the arrows
 
-    def __init__(self, look: Look, site: Site, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, site: Site, parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._is_compact, self._is_tight = look, False, False
         self._tile = SensorTile(site, "", None, 0.0, 0.0, 0.0, is_moving=False, is_worn=False)

@@ -11,7 +11,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, VerbButton
 from app.widgets.button import ButtonKind
 from app.widgets.text import Text
@@ -28,7 +28,7 @@ class Toast(Themed):
 
     undone = Signal()
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._look, self._room = look, 10_000
         self.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)

@@ -2,14 +2,14 @@
 
 from PySide6.QtCore import QSignalBlocker
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 
 HEIGHT = 52  # as high as the controls beside it
 
 
 class Toggle(Button):
-    def __init__(self, look: Look, text: str, key: str, is_on: bool) -> None:
+    def __init__(self, look: ThemeNotifier, text: str, key: str, is_on: bool) -> None:
         super().__init__(look, text, ButtonKind.TOGGLE, key=key, height=HEIGHT)
         self.setCheckable(True)
         self.setChecked(is_on)

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.gates_in_words import verdict_word
 from app.icons import VERDICT_ICONS, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.chip import CHIP, LINE, leg_name, paint_chip
 from app.widgets.painted_text import LEFT, PaintedText
 from app.widgets.text import SEMIBOLD
@@ -30,7 +30,7 @@ BRIEF = {
 class VerdictChip(Themed):
     """Brief, it leaves out the curve's line and says the verdict in a word."""
 
-    def __init__(self, look: Look, side: Side) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look, self._side = look, side
         self._verdict = Verdict.READ

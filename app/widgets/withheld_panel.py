@@ -5,7 +5,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPaintEvent
 from PySide6.QtWidgets import QHBoxLayout, QSizePolicy
 
 from app.gates_in_words import verdict_word
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CONTROL_RADIUS
 from app.widgets.chip import Chip
 from app.widgets.text import SEMIBOLD, Text
@@ -21,7 +21,7 @@ LEAST_WIDTH = 260  # narrower, its sentences have no room in height
 class WithheldPanel(Themed):
     """Hidden while there is nothing to say."""
 
-    def __init__(self, look: Look, side: Side) -> None:
+    def __init__(self, look: ThemeNotifier, side: Side) -> None:
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)

@@ -7,7 +7,7 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QRect, Qt, QTimer, QVariantA
 from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPixmap, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import ActionBar
 from app.widgets.banner import Banner
 from app.widgets.grid import COMPACT_BELOW, CONTENT, LEAST, WIDE_FROM, side_margin
@@ -48,7 +48,7 @@ class WizardShell(Themed):
 
     room_changed = Signal(bool, float, float)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._strip_mode, self._is_compact = look, StripMode.HIDDEN, False
         self._is_low = False

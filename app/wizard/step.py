@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtWidgets import QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent
@@ -40,7 +40,7 @@ class Step(QObject):
     offered = Signal(str)
     demonstration_wanted = Signal()
 
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(parent)
         self._look, self._visit = look, visit
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QVBoxLayout, QWidget
 from app import sounds
 from app.patient_words import about_and_device
 from app.settings import Settings
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarState
 from app.widgets.rail_row import RailRow, StepState
 from app.widgets.sensor_tile import SensorTile
@@ -63,7 +63,7 @@ class Wizard(QWidget):
     help_wanted = Signal(str)
     settings_wanted = Signal()
 
-    def __init__(self, look: Look, controller: LibraryController, settings: Settings) -> None:
+    def __init__(self, look: ThemeNotifier, controller: LibraryController, settings: Settings) -> None:
         super().__init__()
         self._look, self._controller, self._settings = look, controller, settings
         self._visit: Visit | None = None

@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import ResultPage
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wording import use_language
 from tests.app.watchdog import Watchdog
 
@@ -34,7 +34,7 @@ def pseudo_language() -> Iterator[None]:
 def result_page(qtbot: QtBot, qapp: QApplication) -> ResultPage:
     """The results by themselves, in the light theme."""
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     page = ResultPage(look)
     qtbot.addWidget(page)

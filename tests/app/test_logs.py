@@ -19,7 +19,7 @@ from uuid import UUID
 import pytest
 
 from app import logs
-from app.logs import FILE_NAME, NamelessFormatter, error_report, nameless, start_logging
+from app.logs import FILE_NAME, NamelessFormatter, error_report, pseudonymised, start_logging
 from app.storage.journal.disk import Trouble
 
 ROOT = Path(__file__).parents[2]
@@ -128,7 +128,7 @@ def test_an_exception_keeps_its_kind_and_where_in_our_source_it_was_raised() -> 
 
     with pytest.raises(FileNotFoundError) as caught:
         read_header(Path("Anna.journal"))
-    told = list(nameless(caught.value))
+    told = list(pseudonymised(caught.value))
     assert told[0] == f"builtins.FileNotFoundError {errno.errorcode[errno.ENOENT]}"
     assert any("at app.storage.journal.header line" in line and line.endswith("read_header") for line in told)
 

@@ -32,7 +32,7 @@ from app.storage.library import Library
 from app.storage.login_delay import LoginDelay
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wording import use_language
 from app.workers.background import Report
@@ -62,9 +62,9 @@ def folder(untouched: Path, tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.fixture
@@ -76,7 +76,7 @@ Open = Callable[[Path | None], MainWindow]
 
 
 @pytest.fixture
-def open_window(qtbot: QtBot, look: Look, settings: Settings) -> Open:
+def open_window(qtbot: QtBot, look: ThemeNotifier, settings: Settings) -> Open:
     """Open a window with the library in a folder, or without any."""
 
     def end(window: MainWindow) -> None:
@@ -465,7 +465,9 @@ def test_escape_stops_an_analysis(qtbot: QtBot, window: MainWindow, monkeypatch:
     assert window.session.pages.currentWidget() is window.session.empty
 
 
-def test_keys_change_the_size_of_everything_and_it_is_kept(window: MainWindow, look: Look, settings: Settings) -> None:
+def test_keys_change_the_size_of_everything_and_it_is_kept(
+    window: MainWindow, look: ThemeNotifier, settings: Settings
+) -> None:
     for _ in range(9):
         QTest.keyClick(window, Qt.Key.Key_Plus, Qt.KeyboardModifier.ControlModifier)
     assert look.theme.scale == settings.scale == 2.0
@@ -476,7 +478,7 @@ def test_keys_change_the_size_of_everything_and_it_is_kept(window: MainWindow, l
     assert look.theme.scale == settings.scale == 0.8
 
 
-def test_light_and_dark_follow_what_is_set(window: MainWindow, look: Look, settings: Settings) -> None:
+def test_light_and_dark_follow_what_is_set(window: MainWindow, look: ThemeNotifier, settings: Settings) -> None:
     settings.scheme = Scheme.DARK
     assert look.theme.colours is DARK
     settings.scheme = Scheme.LIGHT
@@ -506,7 +508,7 @@ def test_every_word_fits(
     qapp: QApplication,
     open_window: Open,
     folder: Path,
-    look: Look,
+    look: ThemeNotifier,
     language: str,
     size: tuple[int, int],
     scale: float,

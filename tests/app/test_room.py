@@ -5,7 +5,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtWidgets import QLineEdit, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.widgets.painted_text import PaintedText
 from app.widgets.segmented import Segmented
@@ -15,11 +15,11 @@ from tests.app.room import words_cut
 
 class Painted(QWidget):
     def painted_texts(self) -> list[PaintedText]:
-        font = Look().theme.font(14)
+        font = ThemeNotifier().theme.font(14)
         return [PaintedText("Left knee", QRectF(0, 0, self.width(), self.height()), font)]
 
 
-def parts(look: Look) -> list[QWidget]:
+def parts(look: ThemeNotifier) -> list[QWidget]:
     field = QLineEdit()
     field.setPlaceholderText("kept out of exports")
     options = [("mean", "Mean cycle", "all strides"), ("walk", "Whole walk", "second by second")]
@@ -34,13 +34,13 @@ def parts(look: Look) -> list[QWidget]:
 
 
 @pytest.fixture
-def look(qtbot: QtBot) -> Look:
+def look(qtbot: QtBot) -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.mark.parametrize("kind", range(6))
-def test_what_has_its_room_passes_and_what_has_not_is_named(look: Look, qtbot: QtBot, kind: int) -> None:
+def test_what_has_its_room_passes_and_what_has_not_is_named(look: ThemeNotifier, qtbot: QtBot, kind: int) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     page.resize(600, 300)
@@ -53,7 +53,7 @@ def test_what_has_its_room_passes_and_what_has_not_is_named(look: Look, qtbot: Q
     assert words_cut(page) != []
 
 
-def test_lines_that_have_no_room_below_are_named(look: Look, qtbot: QtBot) -> None:
+def test_lines_that_have_no_room_below_are_named(look: ThemeNotifier, qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     text = Text(look, "Recording goes on. Right ankle and right phases are missing until it is back.", wraps=True)
@@ -63,7 +63,7 @@ def test_lines_that_have_no_room_below_are_named(look: Look, qtbot: QtBot) -> No
     assert "height" in words_cut(page)[0]
 
 
-def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(look: Look, qtbot: QtBot) -> None:
+def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(look: ThemeNotifier, qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     page.resize(300, 200)
@@ -83,7 +83,7 @@ def test_what_sticks_out_of_the_page_is_named_but_not_what_scrolls(look: Look, q
     assert words_cut(page) == []
 
 
-def test_what_is_hidden_is_not_looked_at(look: Look, qtbot: QtBot) -> None:
+def test_what_is_hidden_is_not_looked_at(look: ThemeNotifier, qtbot: QtBot) -> None:
     page = QWidget()
     qtbot.addWidget(page)
     text = Text(look, "The patient faces you", parent=page)

@@ -20,7 +20,7 @@ from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
 from app.style import IS_WRONG
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -31,9 +31,9 @@ from app.widgets.toggle import Toggle
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     look.set_scale(1.0)
     yield look
@@ -50,7 +50,7 @@ def name(token: str) -> str:
     return QColor(token).name()
 
 
-def test_a_larger_scale_reaches_every_kind_of_control(qtbot: QtBot, look: Look) -> None:
+def test_a_larger_scale_reaches_every_kind_of_control(qtbot: QtBot, look: ThemeNotifier) -> None:
     field, choice = Field(look, "Code"), Choice(look, "Size")
     choice.addItems(["80 %", "100 %"])
     segmented = Segmented(look, "Legs", [("l", "Left", ""), ("r", "Right", "")])
@@ -70,7 +70,7 @@ def test_a_larger_scale_reaches_every_kind_of_control(qtbot: QtBot, look: Look) 
     assert all(then.width() >= 1.8 * now.width() for now, then in zip(before, after, strict=True))
 
 
-def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: Look) -> None:
+def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: ThemeNotifier) -> None:
     button = Button(look, "Go", ButtonKind.PRIMARY)
     line = QLineEdit("P-0147")
     for widget in (button, line):
@@ -85,7 +85,7 @@ def test_the_dark_theme_reaches_what_is_shown_already(qtbot: QtBot, look: Look) 
     assert name(light.surface) not in colours_in(line.grab().toImage(), line.rect().adjusted(8, 4, -8, -4))
 
 
-def test_what_cannot_be_pressed_is_not_painted_as_wished(qtbot: QtBot, look: Look) -> None:
+def test_what_cannot_be_pressed_is_not_painted_as_wished(qtbot: QtBot, look: ThemeNotifier) -> None:
     button = Button(look, "Go", ButtonKind.PRIMARY)
     qtbot.addWidget(button)
     button.setEnabled(False)
@@ -94,7 +94,7 @@ def test_what_cannot_be_pressed_is_not_painted_as_wished(qtbot: QtBot, look: Loo
     assert name(look.theme.colours.track) in found
 
 
-def test_a_button_that_is_on_is_framed_in_ink(qtbot: QtBot, look: Look) -> None:
+def test_a_button_that_is_on_is_framed_in_ink(qtbot: QtBot, look: ThemeNotifier) -> None:
     toggle = Toggle(look, "", "", is_on=False)
     qtbot.addWidget(toggle)
     toggle.resize(toggle.sizeHint())
@@ -104,7 +104,7 @@ def test_a_button_that_is_on_is_framed_in_ink(qtbot: QtBot, look: Look) -> None:
     assert off.lightness() > 100 > 64 > on.lightness()  # half of the line lies on the pixel beside it
 
 
-def test_a_field_with_what_does_not_fit_is_yellow_and_else_is_not(qtbot: QtBot, look: Look) -> None:
+def test_a_field_with_what_does_not_fit_is_yellow_and_else_is_not(qtbot: QtBot, look: ThemeNotifier) -> None:
     line = QLineEdit()
     qtbot.addWidget(line)
     line.resize(200, 48)
@@ -114,7 +114,7 @@ def test_a_field_with_what_does_not_fit_is_yellow_and_else_is_not(qtbot: QtBot, 
 
 
 @pytest.mark.qt_log_ignore("This plugin does not support")
-def test_every_line_of_a_menu_can_be_hit_and_the_one_in_force_has_a_check(qtbot: QtBot, look: Look) -> None:
+def test_every_line_of_a_menu_can_be_hit_and_the_one_in_force_has_a_check(qtbot: QtBot, look: ThemeNotifier) -> None:
     menu = QMenu()
     qtbot.addWidget(menu)
     one, other = menu.addAction("One"), menu.addAction("Other")
@@ -130,7 +130,7 @@ def test_every_line_of_a_menu_can_be_hit_and_the_one_in_force_has_a_check(qtbot:
 
 
 @pytest.mark.qt_log_ignore("This plugin does not support")
-def test_an_open_box_of_choices_has_lines_as_high_as_a_menu(qtbot: QtBot, look: Look) -> None:
+def test_an_open_box_of_choices_has_lines_as_high_as_a_menu(qtbot: QtBot, look: ThemeNotifier) -> None:
     choice = Choice(look, "Size")
     qtbot.addWidget(choice)
     choice.addItems(["80 %", "100 %"])
@@ -142,7 +142,7 @@ def test_an_open_box_of_choices_has_lines_as_high_as_a_menu(qtbot: QtBot, look: 
     choice.hidePopup()
 
 
-def test_a_bar_is_filled_as_far_as_the_work_is(qtbot: QtBot, look: Look) -> None:
+def test_a_bar_is_filled_as_far_as_the_work_is(qtbot: QtBot, look: ThemeNotifier) -> None:
     bar = QProgressBar()
     qtbot.addWidget(bar)
     bar.setTextVisible(False)
@@ -153,7 +153,7 @@ def test_a_bar_is_filled_as_far_as_the_work_is(qtbot: QtBot, look: Look) -> None
     assert picture.pixelColor(60, 4).name() == name(look.theme.colours.track)
 
 
-def test_a_bar_of_unknown_length_shows_that_something_is_done(qtbot: QtBot, look: Look) -> None:
+def test_a_bar_of_unknown_length_shows_that_something_is_done(qtbot: QtBot, look: ThemeNotifier) -> None:
     bar = QProgressBar()
     qtbot.addWidget(bar)
     bar.setTextVisible(False)
@@ -163,7 +163,7 @@ def test_a_bar_of_unknown_length_shows_that_something_is_done(qtbot: QtBot, look
     assert {name(look.theme.colours.ink), name(look.theme.colours.track)} <= set(row)
 
 
-def test_enter_belongs_to_the_page_and_not_to_a_chip_or_segment(qtbot: QtBot, look: Look) -> None:
+def test_enter_belongs_to_the_page_and_not_to_a_chip_or_segment(qtbot: QtBot, look: ThemeNotifier) -> None:
     button, chips = Button(look, "Go"), Chips(look, "Aids", [("cane", "Cane")])
     segmented = Segmented(look, "Legs", [("l", "Left", ""), ("r", "Right", "")])
     pressed: list[str] = []
@@ -176,7 +176,7 @@ def test_enter_belongs_to_the_page_and_not_to_a_chip_or_segment(qtbot: QtBot, lo
     assert (pressed, chips.chosen, segmented.choice) == (["button"], (), "l")
 
 
-def test_a_notice_that_is_told_before_it_is_shown_has_the_ink_of_a_caution(qtbot: QtBot, look: Look) -> None:
+def test_a_notice_that_is_told_before_it_is_shown_has_the_ink_of_a_caution(qtbot: QtBot, look: ThemeNotifier) -> None:
     look.set_dark(True)
     notice = Notice(look)
     qtbot.addWidget(notice)
@@ -186,7 +186,7 @@ def test_a_notice_that_is_told_before_it_is_shown_has_the_ink_of_a_caution(qtbot
     assert name(look.theme.colours.caution_ink) in colours_in(notice.grab().toImage())
 
 
-def test_the_corner_between_two_scroll_bars_is_as_empty_as_the_page(qtbot: QtBot, look: Look) -> None:
+def test_the_corner_between_two_scroll_bars_is_as_empty_as_the_page(qtbot: QtBot, look: ThemeNotifier) -> None:
     look.set_scale(2.0)
     window, area, content = QWidget(), QScrollArea(), QWidget()
     window.setPalette(QColor(look.theme.colours.ground))

@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
 from app.pages.help_reader import HelpReader
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.free_motion.page import FreeMotionPage
 from app.wizard.patient.cards import LastVisitCard
 from app.wizard.sensors.columns_form import ColumnsForm
@@ -21,13 +21,13 @@ from app.wizard.walking.live_strip import LiveStrip
 from app.wizard.walking.walk_list import ActionRow
 
 
-def a_topic(look: Look) -> HelpReader:
+def a_topic(look: ThemeNotifier) -> HelpReader:
     reader = HelpReader(look)
     reader.show_markdown("# Walking\n\nPress the space bar.\n\n- once\n- twice", "Walking")
     return reader
 
 
-Make = Callable[[Look], QWidget]
+Make = Callable[[ThemeNotifier], QWidget]
 PARTS: tuple[Make, ...] = (
     lambda look: ActionRow(look, Icon.REPEAT, "Sensors strapped anew", "Stand still and move freely again"),
     lambda look: LiveStrip(look, (-20.0, 80.0), 20),
@@ -45,7 +45,7 @@ PARTS: tuple[Make, ...] = (
 
 @pytest.mark.parametrize("make", PARTS)
 def test_a_part_that_another_size_reaches_later_looks_as_one_made_at_it(qtbot: QtBot, make: Make) -> None:
-    look = Look()
+    look = ThemeNotifier()
     told = make(look)
     qtbot.addWidget(told)
     told.resize(900, 700)

@@ -34,7 +34,7 @@ from app.storage.library import Library
 from app.storage.opened import OpenedLibrary, open_library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.wizard import Wizard
 from app.workers.library_controller import LibraryController
 from core.samples import Session
@@ -136,7 +136,7 @@ def main() -> None:
     times = parser.parse_args().times
     application = QApplication(sys.argv[:1])
     load_fonts()
-    look, controller = Look(application), LibraryController()
+    look, controller = ThemeNotifier(application), LibraryController()
     with tempfile.TemporaryDirectory(prefix="gaitwright-") as folder:
         session_id = library_with(three_walks(), Path(folder))
         controller.open(Path(folder), PASSPHRASE)

@@ -32,7 +32,7 @@ from PySide6.QtWidgets import QApplication
 
 from app.settings import Settings
 from app.storage.journal.header import JournalHeader
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.recordings import SessionRecording
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
@@ -160,7 +160,7 @@ class WindowSession:
         self.controller.create(folder / "library", "PT", "Port Tester", "seven quiet herons cross")
         self.wait(lambda: self.controller.state is not None, "library")
         settings = Settings(QSettings(str(folder / "settings.ini"), QSettings.Format.IniFormat))
-        self.wizard = Wizard(Look(application), self.controller, settings)
+        self.wizard = Wizard(ThemeNotifier(application), self.controller, settings)
         self.wizard.resize(1280, 800)
         self.wizard.show()
         self.wizard.activateWindow()

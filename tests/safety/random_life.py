@@ -39,7 +39,7 @@ from app.settings import Settings
 from app.storage.keys import KeyRefusedError, KeySlots
 from app.storage.layout import KEYS
 from app.storage.opened import OpenedLibrary
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
@@ -330,7 +330,7 @@ def main() -> int:
     load_fonts()
     chance = random.Random(wanted.seed)
     settings = Settings(QSettings(str(wanted.place / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(Look(application), settings, wanted.place / "library")
+    window = MainWindow(ThemeNotifier(application), settings, wanted.place / "library")
     dog = Watchdog()
     user = RandomUser(window, chance, wanted.place)
     life = RandomLife(window, user, dog, chance, wanted.end)

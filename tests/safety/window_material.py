@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.sensors import sources
 from app.wizard.worn_sensors import SourceChoice
 from app.workers.garbage import GarbageCollector
@@ -95,7 +95,7 @@ def opened_window(open_sensors: Callable[[], Acquisition]) -> Iterator[tuple[QAp
     load_fonts()
     with tempfile.TemporaryDirectory() as folder:
         settings = Settings(QSettings(f"{folder}/settings.ini", QSettings.Format.IniFormat))
-        window = MainWindow(Look(application), settings, Path(folder) / "library")
+        window = MainWindow(ThemeNotifier(application), settings, Path(folder) / "library")
         garbage = GarbageCollector(window, lambda: window.preparing.is_busy)
         window.preparing.done.connect(garbage.pass_over_imported)
         window.show()

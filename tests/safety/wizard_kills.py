@@ -25,7 +25,7 @@ from PySide6.QtWidgets import QApplication
 from app.acquisition.acquisition import Acquisition
 from app.main_window import SWITCH_S, MainWindow
 from app.settings import Settings
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.step import ReportStep
 from app.wizard.results.step import ResultsStep
@@ -203,7 +203,7 @@ def main() -> int:
     application.setStyle("Fusion")
     load_fonts()
     settings = Settings(QSettings(str(wanted.library.parent / "settings.ini"), QSettings.Format.IniFormat))
-    window = MainWindow(Look(application), settings, wanted.library)
+    window = MainWindow(ThemeNotifier(application), settings, wanted.library)
     window.show()
     guide = Guide(application, window)
     guide.begin(wanted.library, wanted.passphrase)

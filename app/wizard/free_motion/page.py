@@ -8,7 +8,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.body_figure import BodyFigure, SensorMark
 from app.widgets.button import Button, ButtonKind
 from app.widgets.gauge import Gauge, GaugeFace
@@ -44,7 +44,7 @@ class FreeMotionPage(Themed):
 
     answered = Signal(int)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._is_compact = False
@@ -145,7 +145,7 @@ class _Question(Themed):
 
     answered = Signal(int)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._is_understood = False

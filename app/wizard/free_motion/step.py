@@ -11,7 +11,7 @@ from app.acquisition.live_sensors import live_sensors
 from app.icons import Icon
 from app.sounds import Sound
 from app.storage.stored import RecordingState
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionEstimator, UnplacedFreeMotionEstimator
@@ -61,7 +61,7 @@ class FreeMotionStep(Step):
     Whoever leaves it before its end loses nothing: what has moved counts, unless another is in force already.
     """
 
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: FreeMotionPage | None = None
         self._estimator: FreeMotionEstimator | UnplacedFreeMotionEstimator | None = None

@@ -7,7 +7,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QSizePolicy, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.icons import IconMark
@@ -29,7 +29,7 @@ class LastVisit:
 class BandCard(Card):
     """The group that the patient's curves will lie on, and whether the patient is like them."""
 
-    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+    def __init__(self, look: ThemeNotifier, curves: ReferenceCurves) -> None:
         self._advice = QHBoxLayout()
         super().__init__(look, padding=20, spacing=6)
         self._ages_years = curves.ages_years
@@ -66,7 +66,7 @@ class BandCard(Card):
 class _BandDrawing(QWidget):
     """The knee of the group over one stride: one and two standard deviations in two greys."""
 
-    def __init__(self, look: Look, curves: ReferenceCurves) -> None:
+    def __init__(self, look: ThemeNotifier, curves: ReferenceCurves) -> None:
         super().__init__()
         self._look, self._curves = look, curves
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
@@ -119,7 +119,7 @@ class _BandDrawing(QWidget):
 class TakenCard(Card):
     """The patient who has the code that was typed."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__(look, padding=20, spacing=12)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self.open = Button(look, tr("Open this patient"), ButtonKind.SECONDARY, Icon.FOLDER)
@@ -134,7 +134,7 @@ class TakenCard(Card):
 class LastVisitCard(Card):
     """What was worn and recorded last time, and the way to have the same again."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._facts = QGridLayout()
         super().__init__(look, padding=20, spacing=10)
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.reports.reference_bands import reference_curves
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.field import Field, NumberField
@@ -67,7 +67,7 @@ class PatientPage(Themed):
     open_pressed = Signal(str)
     same_set_up_pressed = Signal()
 
-    def __init__(self, look: Look, today: date | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, today: date | None = None) -> None:
         super().__init__()
         self._look = look
         self._year = (today or date.today()).year
@@ -343,7 +343,7 @@ class PatientPage(Themed):
 class _Captioned(Themed):
     """A control under its label, as a field has it, with a few words at the label's right."""
 
-    def __init__(self, look: Look, content: QWidget, caption: str, note: str = "") -> None:
+    def __init__(self, look: ThemeNotifier, content: QWidget, caption: str, note: str = "") -> None:
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Maximum)
@@ -370,7 +370,7 @@ class _Captioned(Themed):
 class _FieldLine(QWidget):
     """A hairline between who it is and what it is about."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

@@ -8,7 +8,7 @@ import numpy as np
 from PySide6.QtCore import QObject
 
 from app.patient_words import date
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.patient.cards import LastVisit
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 class PatientStep(Step):
     """Goes on once the library has the patient, not before: what is recorded next belongs to somebody."""
 
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: PatientPage | None = None
         self._shown_id: UUID | None = None  # whose facts fill the page

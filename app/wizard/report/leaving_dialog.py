@@ -6,7 +6,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QColor, QPalette
 from PySide6.QtWidgets import QDialog, QFrame, QGridLayout, QHBoxLayout, QScrollArea, QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.chips import Chips
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -21,7 +21,7 @@ class LeavingDialog(QDialog):
 
     confirmed = Signal(object)  # frozenset of keys: what was typed freely and leaves
 
-    def __init__(self, look: Look, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, previews: Mapping[frozenset[str], Rows], parent: QWidget) -> None:
         super().__init__(parent)
         self._look, self._previews = look, previews
         self.setWindowTitle(tr("What leaves without the name"))

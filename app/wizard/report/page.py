@@ -7,7 +7,7 @@ from PySide6.QtCore import QBuffer, QEvent, QObject, QRectF, QSignalBlocker, QSi
 from PySide6.QtGui import QImage, QImageReader, QKeyEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QBoxLayout, QFrame, QPlainTextEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chips import Chips
 from app.widgets.choice import Choice
@@ -45,7 +45,7 @@ class ReportPage(Themed):
     options_changed = Signal()
     sharper_wanted = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
         self.sheets = _Sheets(look)
@@ -208,7 +208,7 @@ class _Sheets(QWidget):
 
     sharper_wanted = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._pages: list[_Sheet] = []

@@ -22,7 +22,7 @@ from app.storage.audit import about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
 from app.storage.stored import Action, LibraryError
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -58,7 +58,7 @@ def folder_name(code: str, started: str) -> str:
 
 class ReportStep(Step):
     def __init__(
-        self, look: Look, visit: "Visit", controller: LibraryController, parent: QObject | None = None
+        self, look: ThemeNotifier, visit: "Visit", controller: LibraryController, parent: QObject | None = None
     ) -> None:
         super().__init__(look, visit, parent)
         self._controller = controller
@@ -383,7 +383,7 @@ def _words_of(line: "SessionSummary") -> str:
 class _ReportFrame(QStackedWidget):
     """The report, or what stands in its place."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self.sentence = SentencePage(look)
         self.report = ReportPage(look)

@@ -13,7 +13,7 @@ from app.icons import Icon
 from app.pages.correct_page import CorrectPage, JointLine, WalkLine
 from app.pages.sentence_page import SentencePage
 from app.reports.visits import conditions_in_words, visits_by_condition
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.page_stack import PageStack
 from app.widgets.rail_row import StepState
@@ -50,7 +50,7 @@ class Shown(Enum):
 
 
 class ResultsStep(Step):
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._frame: _ResultsFrame | None = None
         self._shown: Analysis | None = None
@@ -394,7 +394,7 @@ def _are_same(evaluated: "Sequence[Recording]", recordings: "Sequence[Recording]
 class _ResultsFrame(PageStack):
     """The results, or what stands in their place."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.sentence = SentencePage(look)

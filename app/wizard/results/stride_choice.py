@@ -51,14 +51,14 @@ class StrideChoice(QObject):
         self._set(recording.id, left_out_s)
         self.offered.emit(told[:1].upper() + told[1:], self._undoing(recording.id, before))
 
-    def _undoing(self, take_id: UUID, before: LeftOut) -> Callable[[], None]:
-        return lambda: self._set(take_id, before)
+    def _undoing(self, recording_id: UUID, before: LeftOut) -> Callable[[], None]:
+        return lambda: self._set(recording_id, before)
 
-    def _set(self, take_id: UUID, left_out_s: LeftOut) -> None:
-        recording = next((recording for recording in self._recordings.walks if recording.id == take_id), None)
+    def _set(self, recording_id: UUID, left_out_s: LeftOut) -> None:
+        recording = next((recording for recording in self._recordings.walks if recording.id == recording_id), None)
         if recording is not None:
             wanted = {side: left_out_s[side] for side in Side if left_out_s.get(side)}
-            self._wanted[take_id] = wanted
+            self._wanted[recording_id] = wanted
             self._recordings.change(recording, lambda told: replace(told, left_out_s=wanted))
 
     def _recording(self, walk: str) -> "SessionRecording | None":

@@ -8,7 +8,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.choice import Choice
@@ -67,7 +67,7 @@ class ColumnsForm(Themed):
     changed = Signal()
     back_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._title = Text(look, tr("What do the numbers mean?"), 20, SEMIBOLD, wraps=True)

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.body_figure import SensorMark
 from app.widgets.choice import Choice
 from app.widgets.notice import Notice
@@ -71,7 +71,7 @@ class SensorsPage(Themed):
     reconnect_pressed = Signal(str)
     stop_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_compact = look, False
         self._sensors: tuple[SensorRow, ...] = ()

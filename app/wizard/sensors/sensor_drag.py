@@ -4,7 +4,7 @@ from PySide6.QtCore import QMimeData, QPoint, Qt
 from PySide6.QtGui import QColor, QDrag, QFontMetrics, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QApplication, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.painted_button import PaintedButton
 from app.widgets.text import SEMIBOLD
 
@@ -14,7 +14,7 @@ DRAGGED = "application/x-gaitwright-sensor"
 class DraggedButton(PaintedButton):
     """`dragged`: the sensor that the mouse takes away from it; empty: none."""
 
-    def __init__(self, look: Look, parent: QWidget | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, parent: QWidget | None = None) -> None:
         super().__init__(look, parent)
         self.dragged = ""
         self._pressed_at: QPoint | None = None
@@ -42,7 +42,7 @@ def sensor_in(data: QMimeData) -> str:
     return bytes(data.data(DRAGGED).data()).decode()
 
 
-def drag_sensor(source: QWidget, look: Look, sensor: str) -> None:
+def drag_sensor(source: QWidget, look: ThemeNotifier, sensor: str) -> None:
     """Let the mouse carry `sensor` until it is let go; returns then."""
     data = QMimeData()
     data.setData(DRAGGED, sensor.encode())
@@ -58,7 +58,7 @@ def drag_sensor(source: QWidget, look: Look, sensor: str) -> None:
 class _Carried(QWidget):
     """What hangs at the mouse while a sensor is dragged."""
 
-    def __init__(self, look: Look, sensor: str) -> None:
+    def __init__(self, look: ThemeNotifier, sensor: str) -> None:
         super().__init__()
         self._look, self._sensor = look, sensor
         width = QFontMetrics(look.theme.font(16, SEMIBOLD, is_code=True)).horizontalAdvance(sensor)

@@ -6,7 +6,7 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QVBoxLayout, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.battery import WIDTH as CELL_WIDTH
 from app.widgets.painted_text import LEFT, RIGHT, PaintedText
 from app.widgets.text import MEDIUM, SEMIBOLD
@@ -40,7 +40,7 @@ class SensorList(Themed):
     identify_pressed = Signal(str)
     reconnect_pressed = Signal(str)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
         self.selection = ""
@@ -199,7 +199,7 @@ class SensorList(Themed):
 class _Heading(QWidget):
     """The names of the columns."""
 
-    def __init__(self, look: Look, sensors: SensorList) -> None:
+    def __init__(self, look: ThemeNotifier, sensors: SensorList) -> None:
         super().__init__(sensors)
         self._look, self._list = look, sensors
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

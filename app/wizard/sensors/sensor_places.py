@@ -17,7 +17,7 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QSizePolicy, QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CARD_RADIUS, CONTROL_RADIUS
 from app.widgets.body_figure import SENTENCE_ROOM, BodyFigure, SensorMark
 from app.widgets.chip import LETTERS, paint_chip
@@ -67,7 +67,7 @@ class SensorPlaces(Themed):
     hovered = Signal(str, object)
     pressed = Signal(Site)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
         self._hovered: Site | None = None
@@ -224,7 +224,7 @@ class SensorPlaces(Themed):
 class _Lines(QWidget):
     """From each tile to its place on the figure; lies over both and takes no clicks."""
 
-    def __init__(self, look: Look, places: SensorPlaces) -> None:
+    def __init__(self, look: ThemeNotifier, places: SensorPlaces) -> None:
         super().__init__(places)
         self._look, self._places = look, places
         self.setAttribute(Qt.WidgetAttribute.WA_TransparentForMouseEvents)
@@ -250,7 +250,7 @@ class _Lines(QWidget):
 class _Tile(DraggedButton):
     """The place in two lines: which it is, and who is there. A sensor can be dragged away from it."""
 
-    def __init__(self, look: Look, site: Site, places: SensorPlaces) -> None:
+    def __init__(self, look: ThemeNotifier, site: Site, places: SensorPlaces) -> None:
         super().__init__(look, places)
         self.site, self._places = site, places
         self._place = PlaceShown()

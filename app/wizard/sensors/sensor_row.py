@@ -17,7 +17,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QSizePolicy, QWidget
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.battery import HEIGHT as CELL_HEIGHT
 from app.widgets.battery import LOW, paint_battery
@@ -115,7 +115,7 @@ class SensorRowView(DraggedButton):
 
     def __init__(
         self,
-        look: Look,
+        look: ThemeNotifier,
         name: str,
         columns: Callable[[int], Mapping[str, QRect]],
         second_line: Callable[[SensorRow], str],
@@ -297,7 +297,7 @@ class _WornOn(PaintedButton):
 
     pressing_keys = (*PaintedButton.pressing_keys, Qt.Key.Key_Down)
 
-    def __init__(self, look: Look, row: SensorRowView) -> None:
+    def __init__(self, look: ThemeNotifier, row: SensorRowView) -> None:
         super().__init__(look, row)
         self._row = row
         self._site: Site | None = None
@@ -338,7 +338,7 @@ class _WornOn(PaintedButton):
 class _Identify(PaintedButton):
     """Lights the sensor's LED; where the sensor is silent, looks for it again."""
 
-    def __init__(self, look: Look, row: SensorRowView) -> None:
+    def __init__(self, look: ThemeNotifier, row: SensorRowView) -> None:
         super().__init__(look, row)
         self._row = row
 
@@ -368,7 +368,7 @@ class _PlaceMenu(QMenu):
 
     chosen = Signal(object)
 
-    def __init__(self, look: Look, site: Site | None, parent: QWidget) -> None:
+    def __init__(self, look: ThemeNotifier, site: Site | None, parent: QWidget) -> None:
         super().__init__(parent)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setAccessibleName(tr("Worn on"))

@@ -5,7 +5,7 @@ from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.text import SEMIBOLD
 from app.wording import tr
 from core.samples import FloatArray
@@ -17,7 +17,7 @@ SPAN_DEG_S = 120.0  # what fills the trace's height, at least: a sensor at rest 
 class Trace(QWidget):
     """How a sensor turned in the last 5 s: flat at rest, and with a word where it has fallen silent."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._values: FloatArray = np.empty(0)

@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QStackedWidget, QVBoxLay
 
 from app.icons import Icon
 from app.pages.home_lists import LineList, PatientLine
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.notice import Notice
@@ -39,7 +39,7 @@ class SessionChooser(Themed):
     folder_pressed = Signal()
     back_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._title = Text(look, tr("Which session should be replayed?"), 20, SEMIBOLD, wraps=True)

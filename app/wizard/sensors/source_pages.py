@@ -7,7 +7,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QProgressBar, QVBoxLayout
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.notice import Notice
 from app.widgets.text import SEMIBOLD, Text
@@ -29,7 +29,7 @@ class NoSource(Themed):
 
     chosen = Signal(str)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.buttons: list[Button] = []
@@ -100,7 +100,7 @@ class NoSource(Themed):
 class Searching(Themed):
     """What is looked for or read, and the way out."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._sentence = Text(look, size=20, weight=SEMIBOLD, wraps=True)

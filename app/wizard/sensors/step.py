@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QFileDialog
 from app.icons import Icon
 from app.pages.home_lists import PatientLine
 from app.patient_words import when
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.folder_dialog import ask_for_folder
 from app.widgets.rail_row import StepState
@@ -54,7 +54,7 @@ class SensorsShown(Enum):
 class SensorsStep(Step):
     """The library is told who wears what when the step is left, and only if that is news."""
 
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: SensorsPage | None = None
         self._estimator: PlacingEstimator | None = None

@@ -10,7 +10,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QFrame, QGridLayout, QHBoxLayout, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button
 from app.widgets.card import Card
 from app.widgets.field import NumberField
@@ -90,7 +90,7 @@ class StandStillPage(Themed):
     cannot_stand_pressed = Signal()
     can_stand_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._view = StandStillView()
@@ -214,7 +214,7 @@ class _ZeroCard(Card):
 
     edited = Signal(object, object)
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._headings: list[QHBoxLayout] = []
         self._inside = QWidget()
         self._column, self._grid = QVBoxLayout(self._inside), QGridLayout()
@@ -334,7 +334,7 @@ class _ZeroField(NumberField):
 
     told = Signal(object, object)
 
-    def __init__(self, look: Look, joint: Joint, label: str, low: float, high: float) -> None:
+    def __init__(self, look: ThemeNotifier, joint: Joint, label: str, low: float, high: float) -> None:
         super().__init__(look, label, low=low, high=high, decimals=1, unit="°", side=joint.side, has_label=False)
         self._joint = joint
         self.committed.connect(self._on_committed)

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, QTimer
 from app import sounds
 from app.icons import Icon
 from app.sounds import Sound
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -33,7 +33,7 @@ SLACK_S = 0.1
 class StandStillStep(Step):
     """The movement is shown from the first moment; the count and its recording begin at a word."""
 
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: StandStillPage | None = None
         self._estimator: StandingEstimator | None = None

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QSizePolicy, QVBoxLayout
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
 from app.widgets.chip import Chip
@@ -26,7 +26,7 @@ ACROSS, DOWN = QBoxLayout.Direction.LeftToRight, QBoxLayout.Direction.TopToBotto
 class WalkFigures(Card):
     """Strides and cadence, to be read from across the room."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._strides = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._cadence = Text(look, NO_FIGURE, size=FIGURE, weight=SEMIBOLD)
         self._counts = {side: Text(look, "0", size=18, weight=MEDIUM) for side in Side}
@@ -120,7 +120,7 @@ class WalkFigures(Card):
 class StoppedCard(Card):
     """What was just recorded, and the one question about it."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._title = Text(look, size=16, weight=SEMIBOLD, wraps=True)
         self._facts = Text(look, size=14, tone="ink2", wraps=True)
         self.keep = Button(look, "", ButtonKind.PRIMARY, key="K")
@@ -167,7 +167,7 @@ class StoppedCard(Card):
 class EmptyCard(Card):
     """Before the first walk: what to do, and why to stand a moment."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._what = Text(look, tr("Choose a label, then press Space."), size=26, weight=SEMIBOLD, wraps=True)
         self._then = Text(
             look,
@@ -189,7 +189,7 @@ class EmptyCard(Card):
 class NextCard(Card):
     """What the next walk is called, beside the button that starts it."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._title = Text(look, size=14, weight=MEDIUM, tone="ink2")
         self.chooser = LabelChooser(look)
         super().__init__(look)

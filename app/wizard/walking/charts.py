@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QHBoxLayout, QSizePolicy, QSpacerItem, QWidget
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG, degrees_in_words
 from app.plots.phase_lanes import Swatch
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.card import Card
 from app.widgets.chip import LETTERS, SideKey
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
@@ -26,7 +26,7 @@ KNEE_SHARE, ANKLE_SHARE = 5, 4  # of the height: the knee's axis is half as long
 class WalkingCharts(Card):
     """Knee, ankle and phases in one frame."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self.knee = LiveStrip(look, KNEE_DEG, KNEE_TICK_DEG)
         self.ankle = LiveStrip(look, ANKLE_DEG, ANKLE_TICK_DEG)
         self.lanes = LiveLanes(look)
@@ -147,7 +147,7 @@ class WalkingCharts(Card):
 class Hairline(QWidget):
     """A line across, between things that belong together."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)

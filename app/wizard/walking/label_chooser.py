@@ -4,7 +4,7 @@ from PySide6.QtCore import QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QPainter, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import QAbstractButton, QSizePolicy
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
 from app.widgets.chips import flow
 from app.widgets.field import Field
@@ -25,7 +25,7 @@ class LabelChooser(Themed):
 
     chosen = Signal(str)  # by the user
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._options: list[_Option] = []
@@ -136,7 +136,7 @@ class LabelChooser(Themed):
 class _Option(QAbstractButton):
     """A label with the digit that chooses it."""
 
-    def __init__(self, look: Look, chooser: LabelChooser) -> None:
+    def __init__(self, look: ThemeNotifier, chooser: LabelChooser) -> None:
         super().__init__(chooser)
         self._look, self._chooser, self._digit = look, chooser, ""
         self.setCheckable(True)

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QSizePolicy
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN
 from app.plots.phase_lanes import BETWEEN, GAP_PX, LANE, paint_phase
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS
 from app.widgets.chip import CHIP, LETTERS, paint_chip
 from app.widgets.text import MEDIUM
@@ -34,7 +34,7 @@ LEAST_WIDTH = 320
 class LiveLanes(Themed):
     """Left above right over a time axis that ends now."""
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._between, self._axis_height = BETWEEN, AXIS_HEIGHT

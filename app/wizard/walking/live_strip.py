@@ -16,7 +16,7 @@ from PySide6.QtWidgets import QGraphicsView, QStyleOptionGraphicsItem, QWidget
 
 from app.charts.axes import AXIS_WIDTH, RIGHT_MARGIN, range_for
 from app.plots.angle_chart import AngleAxis
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.chip import LETTERS
 from app.widgets.text import MEDIUM
 from app.wizard.walking.readout import LiveTrace
@@ -53,7 +53,7 @@ class LiveStrip(pg.GraphicsView):  # type: ignore[misc]  # pyqtgraph has no type
     `tick_deg` is what two figures of the axis lie apart.
     """
 
-    def __init__(self, look: Look, fixed_deg: tuple[float, float], tick_deg: float) -> None:
+    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], tick_deg: float) -> None:
         super().__init__(useOpenGL=False)
         self._look, self._tick_deg = look, tick_deg
         only_what_moves = QGraphicsView.OptimizationFlag.DontAdjustForAntialiasing  # else the axes beside it too
@@ -233,7 +233,7 @@ class _Trace:
 class _HistoryItem(pg.GraphicsObject):  # type: ignore[misc]  # pyqtgraph has no types
     """The moving part, as large as the view it lies in. Nothing is drawn while it is out of sight."""
 
-    def __init__(self, look: Look, fixed_deg: tuple[float, float], view: pg.ViewBox) -> None:
+    def __init__(self, look: ThemeNotifier, fixed_deg: tuple[float, float], view: pg.ViewBox) -> None:
         super().__init__()
         self._look, self._view = look, view
         self._fixed = self.range_deg = fixed_deg

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.focus_ring import NO_RING
 from app.widgets.notice import Notice
 from app.widgets.segmented import Segmented
@@ -60,7 +60,7 @@ class WalkingPage(Themed):
 
     keeps_place_for_messages = True
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._is_compact = False

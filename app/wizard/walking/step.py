@@ -11,7 +11,7 @@ from app import sounds
 from app.icons import Icon
 from app.sounds import Sound
 from app.storage.stored import RecordingState
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
@@ -45,7 +45,7 @@ LOOKED_BACK_S = 29.0  # of a walk that goes on; the ring buffer holds a second m
 
 
 class WalkingStep(Step):
-    def __init__(self, look: Look, visit: "Visit", parent: QObject | None = None) -> None:
+    def __init__(self, look: ThemeNotifier, visit: "Visit", parent: QObject | None = None) -> None:
         super().__init__(look, visit, parent)
         self._page: WalkingPage | None = None
         self._estimator: WalkingEstimator | None = None

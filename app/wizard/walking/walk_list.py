@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from app.icons import Icon, paint_icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.tokens import CHIP_RADIUS, CONTROL_RADIUS
 from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
@@ -71,7 +71,7 @@ class WalkList(Card):
     undo_pressed = Signal(str)
     restrapped_pressed = Signal()
 
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         self._rows: list[_ListedWalk] = []
         self._is_compact = False
         self._title = Text(look, tr("Walks"), size=14, weight=MEDIUM, tone="ink2")
@@ -143,7 +143,7 @@ class WalkList(Card):
 
 
 class _ListedWalk(Themed):
-    def __init__(self, look: Look, owner: WalkList) -> None:
+    def __init__(self, look: ThemeNotifier, owner: WalkList) -> None:
         super().__init__()
         self._look, self._owner = look, owner
         self._walk = WalkRow("", "", "", WalkState.KEPT)
@@ -224,7 +224,7 @@ class _ListedWalk(Themed):
 class ActionRow(PaintedButton):
     """A row that does something: an icon, what was the case, and below what follows. Both wrap."""
 
-    def __init__(self, look: Look, icon: Icon, text: str, note: str) -> None:
+    def __init__(self, look: ThemeNotifier, icon: Icon, text: str, note: str) -> None:
         super().__init__(look)
         self._icon, self._note = icon, note
         self.setText(text)

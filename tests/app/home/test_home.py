@@ -33,7 +33,7 @@ from app.storage.recovery import adopt_home, find_interrupted, recover
 from app.storage.rollback import Rollback
 from app.storage.slots import Cost
 from app.storage.stored import LibraryError, Operator, PlacedSensor, Role, StoredJournal, StoredPatient
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.button import Button
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
@@ -80,7 +80,7 @@ def controller(qtbot: QtBot) -> Iterator[LibraryController]:
 @pytest.fixture
 def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, settings: Settings, folder: Path) -> Home:
     load_fonts()
-    home = Home(Look(), controller, settings)
+    home = Home(ThemeNotifier(), controller, settings)
     home.resize(1280, 800)
     qtbot.addWidget(home)
     with qtbot.waitActive(home):
@@ -344,7 +344,7 @@ def test_what_was_being_recorded_is_recovered_and_marked(
 ) -> None:
     session_id = leave_open(folder)
     load_fonts()
-    home = Home(Look(), controller, settings)
+    home = Home(ThemeNotifier(), controller, settings)
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)
@@ -405,7 +405,7 @@ def any_needs_look(home: Home) -> bool:
 
 def new_home(qtbot: QtBot, controller: LibraryController, settings: Settings) -> Home:
     load_fonts()
-    home = Home(Look(), controller, settings)
+    home = Home(ThemeNotifier(), controller, settings)
     qtbot.addWidget(home)
     home.show()
     return home
@@ -429,7 +429,7 @@ def test_what_the_library_did_not_answer_for_goes_into_its_session_or_out(
     leave_open(folder, has_row=False)
     leave_open(folder, has_row=False)
     load_fonts()
-    home = Home(Look(), controller, settings)
+    home = Home(ThemeNotifier(), controller, settings)
     qtbot.addWidget(home)
     home.show()
     open_library(qtbot, controller, home, folder)

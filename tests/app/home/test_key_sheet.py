@@ -9,14 +9,14 @@ from PySide6.QtWidgets import QAbstractButton, QApplication, QDialog, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.home.key_sheet import KeySheet
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="elsewhere the system's own dialog opens, not Qt's")
 def test_the_printers_properties_open_without_a_complaint_of_qt(qapp: QApplication, qtbot: QtBot) -> None:
     """Its drawn page takes a quarter of the font's size in points, of which a font in pixels has none."""
     load_fonts()
-    Look().set_scale(1.0)
+    ThemeNotifier().set_scale(1.0)
     window = QWidget()
     qtbot.addWidget(window)
     KeySheet(window).print("0000")

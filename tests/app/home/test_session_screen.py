@@ -29,7 +29,7 @@ from app.pages.result_page import (
     ResultPage,
 )
 from app.plots.angle_chart import AngleChart
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.findings_list import FindingRow
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
@@ -113,15 +113,15 @@ def opened(is_simulated: bool = False, has_orientation: bool = True) -> Opened:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def window(qtbot: QtBot, look: Look) -> SessionScreen:
+def window(qtbot: QtBot, look: ThemeNotifier) -> SessionScreen:
     def end_work(window: SessionScreen) -> None:
         window._background.stop()
         qtbot.waitUntil(lambda: window._background.is_idle)
@@ -410,7 +410,7 @@ def test_the_demonstration_is_analysed_and_shown(qtbot: QtBot, window: SessionSc
         assert lowest < np.nanmax(drawn_deg(page, joint)) < highest
 
 
-def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: Look, qapp: QApplication) -> None:
+def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: ThemeNotifier, qapp: QApplication) -> None:
     for is_dark, colours in ((True, DARK), (False, LIGHT)):
         look.set_dark(is_dark)
         assert qapp.palette().color(QPalette.ColorRole.Window).name().upper() == colours.ground
@@ -418,7 +418,7 @@ def test_dark_and_light_change_palette_and_charts(results: ResultPage, look: Loo
         assert picture.pixelColor(picture.width() - 2, 2).name().upper() == colours.surface
 
 
-def test_the_bundled_fonts_are_used(look: Look) -> None:
+def test_the_bundled_fonts_are_used(look: ThemeNotifier) -> None:
     assert QFontInfo(look.theme.font(14)).family() == "Inter"
     assert QFontInfo(look.theme.font(26)).family() == "Inter Display"
 
@@ -477,7 +477,7 @@ def test_every_word_fits(
     window: SessionScreen,
     open_work: OpenWork,
     walked: Opened,
-    look: Look,
+    look: ThemeNotifier,
     qapp: QApplication,
     size: tuple[int, int],
     scale: float,

@@ -27,7 +27,7 @@ from app.reports.differences import (
 )
 from app.reports.patient_report.request import AnalysedVisit
 from app.reports.visits import ComparedVisits, WalkedVisit, conditions_in_words, visits_by_condition
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table_cells import TextCell
 from app.widgets.text import SEMIBOLD
 from core.analysis import analyse
@@ -69,7 +69,7 @@ def parts(analysis: Analysis, session: Session) -> tuple[Part, ...]:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis, session: Session) -> ResultPage:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     page = ResultPage(look)
     qtbot.addWidget(page)

@@ -20,7 +20,7 @@ from app.reports.diagnostics import (
     names_of_files,
     write_diagnostics,
 )
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.text import Text
 from app.workers.background import Background
 from app.workers.diagnostics_controller import DiagnosticsController
@@ -64,15 +64,15 @@ def found(session: Session, analysis: Analysis) -> JointDiagnostics:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: Look) -> FoundPage:
+def page(qtbot: QtBot, look: ThemeNotifier) -> FoundPage:
     page = FoundPage(look)
     qtbot.addWidget(page)
     page.resize(1064, 592)
@@ -163,7 +163,7 @@ def test_ten_seconds_are_seen_closer_on_the_axis_that_they_need(page: FoundPage,
     page.grab()
 
 
-def test_every_word_has_its_room(page: FoundPage, look: Look, found: JointDiagnostics) -> None:
+def test_every_word_has_its_room(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics) -> None:
     assert cut_in(page, look, found, "1280 x 720 at 100 %") == []
 
 
@@ -171,7 +171,7 @@ def test_every_word_has_its_room(page: FoundPage, look: Look, found: JointDiagno
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("room", ROOMS)
 def test_every_word_of_a_longer_language_has_its_room(
-    qtbot: QtBot, look: Look, found: JointDiagnostics, room: str
+    qtbot: QtBot, look: ThemeNotifier, found: JointDiagnostics, room: str
 ) -> None:
     page = FoundPage(look)  # which is made in the language that it speaks
     qtbot.addWidget(page)
@@ -179,7 +179,7 @@ def test_every_word_of_a_longer_language_has_its_room(
     assert cut_in(page, look, found, room) == []
 
 
-def cut_in(page: FoundPage, look: Look, found: JointDiagnostics, room: str) -> list[str]:
+def cut_in(page: FoundPage, look: ThemeNotifier, found: JointDiagnostics, room: str) -> list[str]:
     """What is cut on the page, and on what is scrolled in it."""
     width, height, scale = ROOMS[room]
     look.set_scale(scale)

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic, topic_title
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from tests.app.watchdog import Watchdog
 
 FOLDER = Path(__file__).parents[3] / "resources" / "help"
@@ -24,15 +24,15 @@ FORBIDDEN = re.compile(
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: Look) -> HelpPage:
+def page(qtbot: QtBot, look: ThemeNotifier) -> HelpPage:
     page = HelpPage(look)
     page.resize(1064, 672)
     qtbot.addWidget(page)
@@ -157,7 +157,9 @@ def test_everything_that_takes_the_focus_has_a_name_and_a_place_in_the_order(pag
     assert set(takers) <= set(page.tab_order)
 
 
-def test_size_and_theme_change_what_is_shown_and_not_where(page: HelpPage, look: Look, qapp: QApplication) -> None:
+def test_size_and_theme_change_what_is_shown_and_not_where(
+    page: HelpPage, look: ThemeNotifier, qapp: QApplication
+) -> None:
     page.show_topic(Topic.KEYS)
     before = page.text.toPlainText()
     look.set_dark(True)
@@ -174,7 +176,7 @@ def test_searching_holds_up_nobody(page: HelpPage, watchdog: Watchdog, qtbot: Qt
         qtbot.wait(10)
 
 
-def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: Look) -> None:
+def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: ThemeNotifier) -> None:
     page.show_topic(Topic.REPORT)
     page.show()
     for is_dark in (False, True, False):
@@ -183,7 +185,7 @@ def test_an_open_page_of_the_manual_follows_the_theme(page: HelpPage, look: Look
         assert corner.name() == QColor(look.theme.colours.surface).name()
 
 
-def test_a_picture_is_as_wide_as_the_lines_and_follows_the_theme(page: HelpPage, look: Look) -> None:
+def test_a_picture_is_as_wide_as_the_lines_and_follows_the_theme(page: HelpPage, look: ThemeNotifier) -> None:
     page.show_topic(Topic.WALKING)
     pictures = []
     for is_dark in (False, True):

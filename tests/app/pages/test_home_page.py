@@ -12,22 +12,22 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.home_lists import TEXT_ROW, LineCell, PatientLine, SessionLine
 from app.pages.home_page import HomePage
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 
 MANY = 5000
 MOST_S = 0.1  # what the screen's thread may take for anything
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: Look) -> HomePage:
+def page(qtbot: QtBot, look: ThemeNotifier) -> HomePage:
     page = HomePage(look)
     page.set_room(1064)
     page.resize(1064, 728)
@@ -92,7 +92,7 @@ def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> Non
 
 @pytest.mark.parametrize(("width", "scale"), [(1064, 1.0), (736, 1.0), (736, 0.8), (1216, 2.0)])
 def test_no_word_of_a_line_is_cut_or_lies_on_another(
-    page: HomePage, look: Look, qapp: QApplication, width: int, scale: float
+    page: HomePage, look: ThemeNotifier, qapp: QApplication, width: int, scale: float
 ) -> None:
     look.set_scale(scale)
     page.set_room(width / scale)

@@ -16,7 +16,7 @@ from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
@@ -49,29 +49,29 @@ HEADER_AND_BAR = 128
 STRIP, COMPACT_STRIP = 72, 44  # on the steps that show it
 
 
-def first_start(look: Look) -> QWidget:
+def first_start(look: ThemeNotifier) -> QWidget:
     return FirstStartPage(look, 12, lambda _typed, _key: False)
 
 
-def recovery_key(look: Look) -> QWidget:
+def recovery_key(look: ThemeNotifier) -> QWidget:
     page = FirstStartPage(look, 12, lambda _typed, _key: False)
     page.show_recovery_key("-".join(["8K3F"] * 14))
     return page
 
 
-def log_in(look: Look) -> QWidget:
+def log_in(look: ThemeNotifier) -> QWidget:
     page = LogInPage(look, 12)
     page.show_operators(["hk", "mueller"], ["hk"], can_remember=True)
     return page
 
 
-def cover(look: Look) -> QWidget:
+def cover(look: ThemeNotifier) -> QWidget:
     page = LogInPage(look, 12)
     page.show_cover("mueller", is_recording=True)
     return page
 
 
-def home(look: Look) -> QWidget:
+def home(look: ThemeNotifier) -> QWidget:
     page = HomePage(look)
     lines = [
         PatientLine(
@@ -85,7 +85,7 @@ def home(look: Look) -> QWidget:
     return page
 
 
-def empty_home(look: Look) -> QWidget:
+def empty_home(look: ThemeNotifier) -> QWidget:
     page = HomePage(look)
     page.show_patients([])
     page.show_patient("", "")
@@ -93,21 +93,21 @@ def empty_home(look: Look) -> QWidget:
     return page
 
 
-def importing(look: Look) -> QWidget:
+def importing(look: ThemeNotifier) -> QWidget:
     page = ImportPage(look)
     finding = Finding("gaps", Severity.WARNING, "left_foot", {"count": 3, "missing_percent": 2.5, "longest_s": 0.4})
     page.show_session("session_2026", ["standing", "free motion", "walk 1"], "DEMO-1", [finding], is_simulated=True)
     return page
 
 
-def settings(look: Look) -> QWidget:
+def settings(look: ThemeNotifier) -> QWidget:
     page = SettingsPage(look, 12, [("clinician", tr("clinician")), ("administrator", tr("administrator"))])
     page.show_library(has_access=True, has_backup=True, has_operators=True)
     page.show_operators([OperatorLine("hk", "H. Keller", tr("administrator"), is_active=True, is_self=True)])
     return page
 
 
-def patient(look: Look) -> QWidget:
+def patient(look: ThemeNotifier) -> QWidget:
     page = PatientPage(look)
     known = Patient(
         code="P-0147", birth_year=1968, sex="male", height_m=1.81, prosthetic_side="left", device="C-Leg 4, Triton"
@@ -118,7 +118,7 @@ def patient(look: Look) -> QWidget:
     return page
 
 
-def sensors(look: Look) -> QWidget:
+def sensors(look: ThemeNotifier) -> QWidget:
     page = SensorsPage(look)
     page.show_sources([SourceOption("serial", tr("Serial ports"), "6"), SourceOption("replay", tr("Replay"))], "serial")
     rows = [SensorRow(f"0A0{k}", "x-IMU3", 100.0, 0.8, site) for k, site in enumerate(list(Site)[:4])]
@@ -130,7 +130,7 @@ def sensors(look: Look) -> QWidget:
     return page
 
 
-def stored_sessions(look: Look) -> QWidget:
+def stored_sessions(look: ThemeNotifier) -> QWidget:
     page = SensorsPage(look)
     lines = [
         PatientLine(UUID(int=k), f"P-01{k:02d}", "Alignment A, B, C", "20 Nov 2026", "3 recordings", "")
@@ -142,13 +142,13 @@ def stored_sessions(look: Look) -> QWidget:
     return page
 
 
-def no_stored_session(look: Look) -> QWidget:
+def no_stored_session(look: ThemeNotifier) -> QWidget:
     page = SensorsPage(look)
     page.show_stored()
     return page
 
 
-def no_sensors(look: Look) -> QWidget:
+def no_sensors(look: ThemeNotifier) -> QWidget:
     page = SensorsPage(look)
     page.show_sources([SourceOption("serial", tr("Serial ports"))])
     page.show_no_source()
@@ -161,8 +161,8 @@ def no_sensors(look: Look) -> QWidget:
     return page
 
 
-def standing(phase: StandPhase, **more: object) -> Callable[[Look], QWidget]:
-    def make(look: Look) -> QWidget:
+def standing(phase: StandPhase, **more: object) -> Callable[[ThemeNotifier], QWidget]:
+    def make(look: ThemeNotifier) -> QWidget:
         page = StandStillPage(look)
         page.show_zero({Joint.LEFT_KNEE: 12.0})
         page.show_state(StandStillView(phase, 1.2, movement_deg_s=dict.fromkeys(Site, 0.4), **more))  # type: ignore[arg-type]  # of a test
@@ -171,7 +171,7 @@ def standing(phase: StandPhase, **more: object) -> Callable[[Look], QWidget]:
     return make
 
 
-def free_motion(look: Look) -> QWidget:
+def free_motion(look: ThemeNotifier) -> QWidget:
     page = FreeMotionPage(look)
     open_face = GaugeFace(
         GaugeState.NOW, GaugeMeasure("11", "°", "1.5°", 0.4, False), GaugeMeasure("34", "mm", "10 mm", 0.3, False)
@@ -185,8 +185,8 @@ def free_motion(look: Look) -> QWidget:
     return page
 
 
-def walking(*rows: WalkRow) -> Callable[[Look], QWidget]:
-    def make(look: Look) -> QWidget:
+def walking(*rows: WalkRow) -> Callable[[ThemeNotifier], QWidget]:
+    def make(look: ThemeNotifier) -> QWidget:
         page = WalkingPage(look)
         page.show_labels(("Barefoot", "Alignment A", "AFO"), "AFO")
         page.show_walks(rows, "L 12, R 11")
@@ -201,7 +201,7 @@ def walking(*rows: WalkRow) -> Callable[[Look], QWidget]:
     return make
 
 
-def helping(look: Look) -> QWidget:
+def helping(look: ThemeNotifier) -> QWidget:
     page = HelpPage(look)
     page.show_topic(Topic.MESSAGES)
     page.search.line_edit.setText("sensor")
@@ -211,7 +211,7 @@ def helping(look: Look) -> QWidget:
 
 KEPT = WalkRow("1", "A", "Barefoot", WalkState.KEPT, 18)
 DISCARDED = WalkRow("2", "B", "Alignment A", WalkState.DISCARDED, 17)
-PAGES: dict[str, Callable[[Look], QWidget]] = {
+PAGES: dict[str, Callable[[ThemeNotifier], QWidget]] = {
     "first start": first_start,
     "recovery key": recovery_key,
     "log in": log_in,
@@ -250,9 +250,9 @@ BELOW_STRIP = {
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
@@ -260,7 +260,9 @@ def look(qapp: QApplication) -> Look:
 @pytest.mark.usefixtures("pseudo_language")
 @pytest.mark.parametrize("window", WINDOWS)
 @pytest.mark.parametrize("name", PAGES)
-def test_every_word_of_a_longer_language_has_its_room(qtbot: QtBot, look: Look, name: str, window: str) -> None:
+def test_every_word_of_a_longer_language_has_its_room(
+    qtbot: QtBot, look: ThemeNotifier, name: str, window: str
+) -> None:
     width, height, scale, is_compact = WINDOWS[window]
     width -= look.theme.px(scale * (COMPACT_RAIL if is_compact else RAIL))
     height -= look.theme.px(scale * HEADER_AND_BAR)

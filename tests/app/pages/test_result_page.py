@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.pages.cycle_page import NO_SIDE, NO_SPEED
 from app.pages.result_page import ANSWER, STRIDES, WHOLE, Beside, ResultPage
 from app.reports.reference_bands import NOBODY, OTHER_AGES, WHY_NO_BAND
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.table import CellTable
 from app.widgets.table_cells import TextCell
 from core.analysis import analyse
@@ -50,7 +50,7 @@ def show(page: ResultPage, analysis: Analysis, who: AgeAndHeight = NOBODY) -> No
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, analysis: Analysis) -> ResultPage:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     page = ResultPage(look)
     qtbot.addWidget(page)

@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.pages.result_page import ANSWER, STRIDES, ResultPage
 from app.reports.patient_report.request import AnalysedVisit
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.stride_list import ANKLE_SHAPE, KNEE_SHAPE, STATE, STRIDE, StrideLine
 from core.analysis import analyse
 from core.body import Joint, Side
@@ -38,7 +38,7 @@ def analysis(session: Session) -> Analysis:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication, session: Session, analysis: Analysis) -> ResultPage:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     page = ResultPage(look)
     qtbot.addWidget(page)

@@ -13,16 +13,16 @@ from app.charts.cycles import Band
 from app.charts.stride_chart import StrideCurve
 from app.plots.compared_chart import ComparedChart
 from app.reports.reference_bands import reference_curves
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from core.body import Side
 
 BAND = Band(*reference_curves().mean_and_sd_deg("knee"))
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     yield look
     look.set_scale(1.0)
@@ -32,7 +32,7 @@ def flat(letter: str, angle_deg: float) -> StrideCurve:
     return StrideCurve(letter, Side.LEFT, np.full(101, angle_deg))
 
 
-def chart_of(qtbot: QtBot, look: Look) -> ComparedChart:
+def chart_of(qtbot: QtBot, look: ThemeNotifier) -> ComparedChart:
     chart = ComparedChart(look, is_knee=True)
     qtbot.addWidget(chart)
     chart.resize(600, 500)
@@ -45,7 +45,7 @@ def colours_down(chart: ComparedChart, percent: float) -> list[QColor]:
     return [picture.pixelColor(x, y) for y in range(int(frame.top) + 1, int(frame.bottom))]
 
 
-def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: QtBot, look: Look) -> None:
+def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: QtBot, look: ThemeNotifier) -> None:
     chart = chart_of(qtbot, look)
     chart.band = BAND
     band = QColor(look.theme.colours.band_1sd)
@@ -58,7 +58,7 @@ def test_the_band_is_there_but_where_curves_are_drawn_about_their_mean(qtbot: Qt
 
 
 @pytest.mark.parametrize("scale", [1.0, 2.0])
-def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: Look, scale: float) -> None:
+def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: ThemeNotifier, scale: float) -> None:
     look.set_scale(scale)
     chart = chart_of(qtbot, look)
     chart.band = Band(np.full(101, 40.0), np.full(101, 60.0))  # under all of the chart, to see the casing on
@@ -69,7 +69,7 @@ def test_the_casing_grows_with_the_size_of_everything(qtbot: QtBot, look: Look, 
     assert len(others) == pytest.approx((2.75 + 2.0) * scale + zero_px + blurred_px, abs=2)
 
 
-def test_the_later_curve_is_the_thicker_one(look: Look, qtbot: QtBot) -> None:
+def test_the_later_curve_is_the_thicker_one(look: ThemeNotifier, qtbot: QtBot) -> None:
     chart = chart_of(qtbot, look)
     chart.show_curves([flat("A", 20.0), flat("B", 60.0)], is_simulated=False)
     colours = colours_down(chart, 10)
@@ -79,7 +79,7 @@ def test_the_later_curve_is_the_thicker_one(look: Look, qtbot: QtBot) -> None:
     assert [curve.letter for curve in chart.described.curves] == ["A", "B"]
 
 
-def test_curves_that_are_not_known_are_not_drawn(look: Look, qtbot: QtBot) -> None:
+def test_curves_that_are_not_known_are_not_drawn(look: ThemeNotifier, qtbot: QtBot) -> None:
     chart = chart_of(qtbot, look)
     chart.show_curves([flat("A", math.nan), flat("B", 60.0)], is_simulated=False)
     assert [curve.letter for curve in chart.described.curves] == ["B"]

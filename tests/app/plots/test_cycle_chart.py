@@ -14,7 +14,7 @@ from app.charts.marks import Deviation, Gap, Point
 from app.charts.stride_chart import toe_off_labels
 from app.plots.cycle_chart import CycleChart, CycleCharts
 from app.reports.reference_bands import reference_curves
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from core.body import Joint, Side
 from core.gait.cycles import mean_cycle
 from core.samples import FloatArray
@@ -32,15 +32,15 @@ def cycle(n: int, height_deg: float = 60.0, toe_off_percent: float = 60.0, shift
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: Look) -> CycleCharts:
+def charts(qtbot: QtBot, look: ThemeNotifier) -> CycleCharts:
     charts = CycleCharts(look, reference_curves())
     qtbot.addWidget(charts)
     charts.resize(420, 640)
@@ -76,14 +76,14 @@ def test_axes_are_the_same_for_everyone_unless_a_mean_leaves_them(charts: CycleC
     assert charts.knee.chart.range_deg == KNEE_DEG
 
 
-def test_each_mean_is_drawn_where_it_is_in_its_colour(charts: CycleCharts, look: Look) -> None:
+def test_each_mean_is_drawn_where_it_is_in_its_colour(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart = show(charts, left=cycle(12, 60), right=cycle(12, 40))
     assert is_like(colour_at(chart, 72, 60), look.theme.curve(Side.LEFT))
     right = [is_like(colour_at(chart, percent, 40), look.theme.curve(Side.RIGHT)) for percent in np.arange(70, 75, 0.5)]
     assert any(right)
 
 
-def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: Look) -> None:
+def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: ThemeNotifier) -> None:
     for side, is_whole in ((Side.LEFT, True), (Side.RIGHT, False)):
         chart = show(charts, **{str(side): cycle(12, 60)})
         picture, mean = chart.grab().toImage(), chart.cycles[side].mean.mean
@@ -95,7 +95,7 @@ def test_right_is_dashed_and_left_is_whole(charts: CycleCharts, look: Look) -> N
         assert any(seen)
 
 
-def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleCharts, look: Look) -> None:
+def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart = show(charts)
     group, c = reference_curves(), look.theme.colours
     at = 30
@@ -106,7 +106,7 @@ def test_the_band_is_there_in_two_greys_and_can_be_taken_away(charts: CycleChart
     assert colour_at(chart, at, mean + 0.6 * sd).name() == c.surface.lower()
 
 
-def test_the_spread_needs_ten_strides(charts: CycleCharts, look: Look) -> None:
+def test_the_spread_needs_ten_strides(charts: CycleCharts, look: ThemeNotifier) -> None:
     charts.set_band_shown(False)
     for n, has_spread in ((12, True), (9, False)):
         chart = show(charts, left=cycle(n))
@@ -126,7 +126,7 @@ SIGN = assess([GateReason("sign", Verdict.WITHHELD, 0.1, 0.25)])
 SLANTED = assess([GateReason("axis", Verdict.CARE, 8.0, 6.5, "deg")])
 
 
-def test_of_a_withheld_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look: Look) -> None:
+def test_of_a_withheld_joint_no_mean_is_drawn_but_why(charts: CycleCharts, look: ThemeNotifier) -> None:
     cycles = {Joint.LEFT_KNEE: cycle(12, 60), Joint.RIGHT_KNEE: cycle(12, 40)}
     charts.set_band_shown(False)
     charts.show_cycles(cycles, {Joint.LEFT_KNEE: judged_as(PAIRING, PAIRING)}, is_simulated=False)
@@ -155,7 +155,9 @@ def test_with_both_legs_withheld_the_panels_take_the_charts_place(charts: CycleC
     assert charts.knee.chart.isVisible()
 
 
-def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(charts: CycleCharts, look: Look) -> None:
+def test_of_fewer_than_three_strides_each_is_drawn_in_grey_and_no_mean(
+    charts: CycleCharts, look: ThemeNotifier
+) -> None:
     charts.set_band_shown(False)
     charts.show_cycles({Joint.LEFT_KNEE: cycle(2)}, {Joint.LEFT_KNEE: judged_as(FEW, FEW)}, is_simulated=False)
     chart = charts.knee.chart
@@ -179,7 +181,7 @@ def test_care_stands_in_the_key_of_its_leg(charts: CycleCharts) -> None:
 
 
 def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band(
-    charts: CycleCharts, look: Look
+    charts: CycleCharts, look: ThemeNotifier
 ) -> None:
     found = cycle(12, shift_deg=25.0)
     charts.show_cycles({Joint.LEFT_KNEE: found}, {Joint.LEFT_KNEE: judged_as(height=ZERO)}, is_simulated=False)
@@ -198,7 +200,7 @@ def test_without_a_height_curves_are_drawn_about_their_mean_and_without_the_band
     assert chart.range_deg[0] == KNEE_DEG[0]
 
 
-def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts, look: Look) -> None:
+def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart, mean_deg = show(charts), float(reference_curves().knee_mean_deg[30])
     charts.set_band(None)
     assert colour_at(chart, 30, mean_deg).name() == look.theme.colours.surface.lower()
@@ -206,7 +208,7 @@ def test_where_no_band_may_stand_none_is_drawn(charts: CycleCharts, look: Look) 
     assert colour_at(chart, 30, mean_deg).name() != look.theme.colours.surface.lower()
 
 
-def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: Look) -> None:
+def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: ThemeNotifier) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(5))
     highest = float(chart.cycles[Side.LEFT].strides_deg.max())
@@ -217,7 +219,7 @@ def test_single_strides_are_drawn_on_demand(charts: CycleCharts, look: Look) -> 
     assert colour_at(chart, 72, highest).name() == look.theme.colours.surface.lower()
 
 
-def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts, look: Look) -> None:
+def test_toe_off_is_named_at_its_line_the_earlier_one_in_full(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart = show(charts, left=cycle(12, toe_off_percent=58.7), right=cycle(12, toe_off_percent=63.2))
     assert toe_off_labels(chart.described.curves) == {Side.LEFT: "toe-off L 59 %", Side.RIGHT: "R 63 %"}
     assert any(is_like(colour_at(chart, percent, 75), look.theme.curve(Side.LEFT)) for percent in (58.6, 58.7, 58.8))
@@ -255,7 +257,7 @@ def test_the_mean_curves_are_told_in_words(charts: CycleCharts) -> None:
     assert charts.knee.chart.accessibleName() == "Knee over one stride"
 
 
-def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look: Look) -> None:
+def test_simulated_stands_on_both_charts_and_only_then(charts: CycleCharts, look: ThemeNotifier) -> None:
     inked = []
     for is_simulated in (False, True):
         charts.show_cycles({Joint.LEFT_KNEE: cycle(12), Joint.LEFT_ANKLE: cycle(12)}, {}, is_simulated)
@@ -275,7 +277,7 @@ LEFT_UNDER_RIGHT = Deviation(
 )
 
 
-def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts, look: Look) -> None:
+def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: CycleCharts, look: ThemeNotifier) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
     assert chart.places() == []
@@ -295,7 +297,7 @@ def test_a_difference_has_dots_at_its_ends_and_a_bar_in_free_space(charts: Cycle
     assert "L 20° under R" not in charts.ankle.in_words()
 
 
-def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: Look) -> None:
+def test_a_difference_inside_the_error_is_grey(charts: CycleCharts, look: ThemeNotifier) -> None:
     chart = show(charts, left=cycle(12, 40), right=cycle(12, 60))
     charts.show_marks([replace(LEFT_UNDER_RIGHT, is_larger_than_error=False)])
     (place,) = chart.places()
@@ -318,7 +320,7 @@ def test_marks_stand_on_curves_that_are_drawn_alone_two_at_most_and_for_one_walk
     assert [gap.joint for gap in charts.knee.chart.gaps] == [Joint.RIGHT_KNEE]
 
 
-def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCharts, look: Look) -> None:
+def test_a_gap_is_filled_up_to_its_limit_and_marked_on_the_axis(charts: CycleCharts, look: ThemeNotifier) -> None:
     charts.set_band_shown(False)
     chart = show(charts, left=cycle(9, 40))
     surface = look.theme.colours.surface.lower()

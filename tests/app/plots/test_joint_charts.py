@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
 from app.plots.angle_chart import AngleChart, Curve
 from app.plots.joint_charts import NO_VALUE, JointCharts
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from core.body import Joint, Side
 from core.samples import FloatArray
 
@@ -23,13 +23,13 @@ def angle(highest_deg: float) -> FloatArray:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: Look) -> JointCharts:
+def charts(qtbot: QtBot, look: ThemeNotifier) -> JointCharts:
     charts = JointCharts(look)
     qtbot.addWidget(charts)
     charts.resize(800, 500)
@@ -175,7 +175,7 @@ def test_a_recording_without_samples_is_no_trouble(charts: JointCharts) -> None:
     assert "Left knee has no values." in charts.accessibleDescription()
 
 
-def test_right_is_drawn_dashed_and_left_is_not(look: Look) -> None:
+def test_right_is_drawn_dashed_and_left_is_not(look: ThemeNotifier) -> None:
     for is_dark in (False, True):
         look.set_dark(is_dark)
         assert look.theme.side_pen(Side.RIGHT, 2).dashPattern()

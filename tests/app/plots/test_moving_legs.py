@@ -9,7 +9,7 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.moving_legs import MovingLegs
 from app.review.mean_legs import MeanLeg, MeanLegs
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from core.body import Side
 
 
@@ -24,7 +24,7 @@ def leg() -> MeanLeg:
 @pytest.fixture
 def legs(qtbot: QtBot, qapp: QApplication) -> MovingLegs:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     legs = MovingLegs(look)
     qtbot.addWidget(legs)

@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.plots.joint_charts import JointCharts
 from app.plots.phase_lanes import Lane, PhaseLanes
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from core.body import Side
 from core.gait.events import FootEvents
 from core.gait.phases import phases_at
@@ -36,15 +36,15 @@ def gait(first_s: float, count: int = STRIDES) -> SideGait:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def charts(qtbot: QtBot, look: Look) -> JointCharts:
+def charts(qtbot: QtBot, look: ThemeNotifier) -> JointCharts:
     charts = JointCharts(look)
     qtbot.addWidget(charts)
     charts.resize(1000, 640)
@@ -66,7 +66,7 @@ def grey(colour: str) -> int:
     return QColor(colour).lightness()
 
 
-def test_each_phase_has_its_look(charts: JointCharts, look: Look) -> None:
+def test_each_phase_has_its_look(charts: JointCharts, look: ThemeNotifier) -> None:
     lanes = charts.phases.lanes
     for side, shift in ((Side.LEFT, 0.0), (Side.RIGHT, 0.5)):
         full, pale = look.theme.curve(side).name(), look.theme.soft(side).name()
@@ -87,7 +87,7 @@ def test_the_looks_differ_without_colour(charts: JointCharts) -> None:
     assert middle[1] + 20 < middle[2]
 
 
-def test_where_the_phase_is_unknown_nothing_is_drawn(charts: JointCharts, look: Look) -> None:
+def test_where_the_phase_is_unknown_nothing_is_drawn(charts: JointCharts, look: ThemeNotifier) -> None:
     for at in (0.5, 9.5):
         assert set(colours_at(charts.phases.lanes, Side.LEFT, at)) == {look.theme.colours.surface.lower()}
 
@@ -160,7 +160,7 @@ def test_the_mouse_over_a_lane_reads_moves_and_zooms(qtbot: QtBot, charts: Joint
     assert charts.visible_s[0] == pytest.approx(first + (last - first) / 10, abs=0.05)
 
 
-def test_phases_too_narrow_to_tell_apart_ask_for_a_zoom(qtbot: QtBot, look: Look) -> None:
+def test_phases_too_narrow_to_tell_apart_ask_for_a_zoom(qtbot: QtBot, look: ThemeNotifier) -> None:
     lanes = PhaseLanes(look)
     qtbot.addWidget(lanes)
     lanes.show_lanes({Side.LEFT: Lane.of(TIME_S, gait(1.0))})

@@ -8,7 +8,7 @@ from pytestqt.qtbot import QtBot
 
 from app.colours import LIGHT
 from app.icons import Icon
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.action_bar import ActionBar, BarAction, BarState, RecordingNote, clock_time
 from tests.app.room import settle, words_cut
 
@@ -22,7 +22,7 @@ def recording(elapsed_s: float = 0.0, has_sound: bool = True) -> BarState:
 @pytest.fixture
 def bar(qtbot: QtBot) -> ActionBar:
     load_fonts()
-    bar = ActionBar(Look())
+    bar = ActionBar(ThemeNotifier())
     qtbot.addWidget(bar)
     bar.resize(1064, 72)
     bar.show()

@@ -7,16 +7,16 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.field import Field, NumberField
 from app.widgets.focus_ring import FocusRing
 from core.body import Side
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
@@ -39,12 +39,12 @@ def shown(qtbot: QtBot, window: QWidget, *fields: Field) -> None:
         window.activateWindow()
 
 
-def knee(look: Look) -> NumberField:
+def knee(look: ThemeNotifier) -> NumberField:
     return NumberField(look, "Knee flexion", low=-60, high=150, decimals=1, unit="°", side=Side.LEFT)
 
 
 def test_a_field_tells_side_label_unit_and_state_to_readers_of_screens(
-    qtbot: QtBot, window: QWidget, look: Look
+    qtbot: QtBot, window: QWidget, look: ThemeNotifier
 ) -> None:
     mass = Field(look, "Mass", unit="kg", is_optional=True)
     flexion = knee(look)
@@ -55,7 +55,7 @@ def test_a_field_tells_side_label_unit_and_state_to_readers_of_screens(
     assert flexion.line_edit.accessibleName() == "Left knee flexion, °, This is no angle. Type degrees."
 
 
-def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look: Look) -> None:
+def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
     field = Field(look, "Code", is_code=True)
     shown(qtbot, window, field)
     with qtbot.assertNotEmitted(field.edited), qtbot.assertNotEmitted(field.committed):
@@ -75,7 +75,7 @@ def test_what_the_program_writes_is_no_edit(qtbot: QtBot, window: QWidget, look:
     ],
 )
 def test_what_is_pasted_is_one_line_that_can_be_seen(
-    qtbot: QtBot, window: QWidget, look: Look, pasted: str, taken: str
+    qtbot: QtBot, window: QWidget, look: ThemeNotifier, pasted: str, taken: str
 ) -> None:
     field = Field(look, "Code", is_code=True)
     shown(qtbot, window, field)
@@ -88,7 +88,7 @@ def test_what_is_pasted_is_one_line_that_can_be_seen(
     assert field.line_edit.cursorPosition() == len(field.line_edit.text())
 
 
-def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: Look) -> None:
+def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
     field = Field(look, "Passphrase", is_secret=True)
     shown(qtbot, window, field)
     field.line_edit.setText("a\tb")
@@ -97,7 +97,7 @@ def test_a_secret_is_taken_as_it_is(qtbot: QtBot, window: QWidget, look: Look) -
 
 
 def test_what_has_no_room_is_told_and_what_was_written_elsewhere_is_kept_whole(
-    qtbot: QtBot, window: QWidget, look: Look
+    qtbot: QtBot, window: QWidget, look: ThemeNotifier
 ) -> None:
     field = Field(look, "Code", most=5)
     shown(qtbot, window, field)
@@ -110,7 +110,7 @@ def test_what_has_no_room_is_told_and_what_was_written_elsewhere_is_kept_whole(
     assert field.text == "P-0147 of another clinic"
 
 
-def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget, look: Look) -> None:
+def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
     one, other = Field(look, "Device"), Field(look, "Clinic number")
     shown(qtbot, window, one, other)
     one.setFocus()
@@ -128,7 +128,9 @@ def test_a_change_is_committed_by_leaving_or_by_enter(qtbot: QtBot, window: QWid
     ("typed", "value"),
     [("15", 15.0), ("7,5", 7.5), ("7.25", 7.2), ("-5", -5.0), ("\N{MINUS SIGN}5", -5.0), ("", None), ("x", None)],
 )
-def test_a_number_takes_comma_point_and_either_minus(look: Look, qtbot: QtBot, typed: str, value: float | None) -> None:
+def test_a_number_takes_comma_point_and_either_minus(
+    look: ThemeNotifier, qtbot: QtBot, typed: str, value: float | None
+) -> None:
     field = knee(look)
     qtbot.addWidget(field)
     field.set_text(typed)
@@ -137,7 +139,7 @@ def test_a_number_takes_comma_point_and_either_minus(look: Look, qtbot: QtBot, t
 
 @pytest.mark.parametrize("typed", ["151", "-61", "inf", "nan", "15°"])
 def test_a_number_that_does_not_fit_stays_and_says_what_fits(
-    qtbot: QtBot, window: QWidget, look: Look, typed: str
+    qtbot: QtBot, window: QWidget, look: ThemeNotifier, typed: str
 ) -> None:
     field = knee(look)
     shown(qtbot, window, field)
@@ -153,7 +155,7 @@ def test_a_number_that_does_not_fit_stays_and_says_what_fits(
     assert not field.is_wrong  # as soon as it is right
 
 
-def test_a_year_has_no_decimals(look: Look, qtbot: QtBot) -> None:
+def test_a_year_has_no_decimals(look: ThemeNotifier, qtbot: QtBot) -> None:
     year = NumberField(look, "Birth year", low=1900, high=2026)
     qtbot.addWidget(year)
     year.set_text("1968.5")
@@ -162,7 +164,7 @@ def test_a_year_has_no_decimals(look: Look, qtbot: QtBot) -> None:
     assert year.text == "1968"
 
 
-def test_the_value_of_a_number_is_written_without_noughts(look: Look, qtbot: QtBot) -> None:
+def test_the_value_of_a_number_is_written_without_noughts(look: ThemeNotifier, qtbot: QtBot) -> None:
     mass = NumberField(look, "Mass", low=1, high=400, decimals=1, unit="kg")
     qtbot.addWidget(mass)
     for value, written in ((82.0, "82"), (82.5, "82.5"), (100.0, "100"), (None, "")):
@@ -171,7 +173,7 @@ def test_the_value_of_a_number_is_written_without_noughts(look: Look, qtbot: QtB
         assert mass.value == value
 
 
-def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: Look) -> None:
+def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
     field = knee(look)
     field.set_value(15)
     shown(qtbot, window, field)
@@ -192,7 +194,7 @@ def test_the_wheel_changes_no_number(qtbot: QtBot, window: QWidget, look: Look) 
     assert not turn.isAccepted()  # what lies around it scrolls
 
 
-def test_the_ring_of_the_focus_goes_round_the_frame(qtbot: QtBot, window: QWidget, look: Look) -> None:
+def test_the_ring_of_the_focus_goes_round_the_frame(qtbot: QtBot, window: QWidget, look: ThemeNotifier) -> None:
     field = knee(look)
     ring = FocusRing(look, window)
     shown(qtbot, window, field)

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeState, gauge_face, two_digits
 from core.body import Joint
 from core.live.excitation import HUMAN, PROSTHESIS, ExcitationState
@@ -30,9 +30,9 @@ def state(axis_deg: float, centre_mm: float, floor_deg: float = 4.0, **told: boo
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
@@ -119,7 +119,7 @@ def test_a_prosthesis_that_turns_like_no_hinge_is_called_so() -> None:
     assert gauge_face(Joint.LEFT_KNEE, firm, PROSTHESIS, is_now=False).state is GaugeState.READY
 
 
-def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: Look) -> None:
+def test_a_gauge_is_told_to_readers_of_screens(qtbot: QtBot, look: ThemeNotifier) -> None:
     gauge = Gauge(look, Joint.LEFT_KNEE)
     qtbot.addWidget(gauge)
     gauge.show_face(gauge_face(Joint.LEFT_KNEE, state(11, 34), HUMAN, is_now=True))

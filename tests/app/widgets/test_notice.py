@@ -6,7 +6,7 @@ from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.notice import ICON, PADDING, Notice
 from core.samples import FloatArray
 
@@ -29,7 +29,7 @@ def middle_of(rows: FloatArray) -> float:
 @pytest.mark.parametrize("height", [44, 66, 120])
 @pytest.mark.parametrize("then", ["", "Drop it here."])
 def test_the_icon_stands_beside_the_first_line(qtbot: QtBot, height: int, then: str) -> None:
-    notice = Notice(Look(), size=16)
+    notice = Notice(ThemeNotifier(), size=16)
     qtbot.addWidget(notice)
     notice.tell(Icon.CHECK, "All six are worn and heard.", then)
     notice.resize(500, max(height, notice.minimumSizeHint().height()))

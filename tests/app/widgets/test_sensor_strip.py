@@ -9,7 +9,7 @@ from PySide6.QtTest import QTest
 from pytestqt.qtbot import QtBot
 
 from app.colours import LIGHT
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.sensor_strip import SensorStrip
 from app.widgets.sensor_tile import SensorTile, TileState, sentence
 from app.widgets.strip_button import StripButton
@@ -48,13 +48,13 @@ STATES = [
 
 
 @pytest.fixture
-def look() -> Look:
+def look() -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.fixture
-def strip(look: Look, qtbot: QtBot) -> SensorStrip:
+def strip(look: ThemeNotifier, qtbot: QtBot) -> SensorStrip:
     strip = SensorStrip(look)
     qtbot.addWidget(strip)
     strip.resize(1064, 72)
@@ -102,7 +102,7 @@ def test_the_right_leg_stands_at_the_left_and_turns_with_the_figure(strip: Senso
     assert from_left()[0] is Site.LEFT_THIGH
 
 
-def test_only_what_changed_is_painted(look: Look, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_only_what_changed_is_painted(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> None:
     painted: list[Site] = []
     paint = TileWidget.paintEvent
 
@@ -163,7 +163,7 @@ COMPACT_WIDTHS = [(736, 0.8), (736, 1.0), (1116, 1.0), (1152, 2.0), (672, 2.0)]
 )
 def test_no_word_is_cut_in_any_state(
     strip: SensorStrip,
-    look: Look,
+    look: ThemeNotifier,
     width: int,
     scale: float,
     is_compact: bool,
@@ -203,7 +203,7 @@ def test_the_button_says_in_one_sentence_how_the_sensors_are() -> None:
     assert sentence(fine() | {FOOT: foot, Site.LEFT_THIGH: thigh}) == "2 of 6 sensors want a look"
 
 
-def test_the_button_is_yellow_while_a_sensor_is_bad(look: Look, qtbot: QtBot) -> None:
+def test_the_button_is_yellow_while_a_sensor_is_bad(look: ThemeNotifier, qtbot: QtBot) -> None:
     button = StripButton(look)
     qtbot.addWidget(button)
     button.show()

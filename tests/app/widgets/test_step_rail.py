@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.step_rail import StepRail, home_below
 from tests.app.room import settle, words_cut
@@ -22,9 +22,9 @@ STEPS = (
 
 
 @pytest.fixture
-def look() -> Look:
+def look() -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def window(qtbot: QtBot) -> QWidget:
 
 
 @pytest.fixture
-def rail(look: Look, window: QWidget) -> StepRail:
+def rail(look: ThemeNotifier, window: QWidget) -> StepRail:
     rail = StepRail(look)
     rail.setParent(window)
     window.resize(500, 800)
@@ -140,7 +140,7 @@ def test_a_low_rail_scrolls_to_the_row_that_has_the_focus(rail: StepRail) -> Non
 @pytest.mark.parametrize("form", list(RailForm))
 @pytest.mark.usefixtures("pseudo_language")
 def test_longer_words_take_another_line_and_are_not_cut(
-    rail: StepRail, look: Look, scale: float, form: RailForm
+    rail: StepRail, look: ThemeNotifier, scale: float, form: RailForm
 ) -> None:
     look.set_scale(scale)
     rail.set_form(form)

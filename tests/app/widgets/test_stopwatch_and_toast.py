@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 from pytestqt.qtbot import QtBot
 
 from app.colours import LIGHT
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets import toast as toast_module
 from app.widgets.header import Header
 from app.widgets.stopwatch import Stopwatch
@@ -17,13 +17,13 @@ from tests.app.room import settle, words_cut
 
 
 @pytest.fixture
-def look() -> Look:
+def look() -> ThemeNotifier:
     load_fonts()
-    return Look()
+    return ThemeNotifier()
 
 
 @pytest.fixture
-def stopwatch(look: Look, qtbot: QtBot) -> Stopwatch:
+def stopwatch(look: ThemeNotifier, qtbot: QtBot) -> Stopwatch:
     stopwatch = Stopwatch(look)
     qtbot.addWidget(stopwatch)
     stopwatch.resize(stopwatch.sizeHint())
@@ -40,7 +40,7 @@ def window(qtbot: QtBot) -> QWidget:
 
 
 @pytest.fixture
-def toast(look: Look, window: QWidget) -> Toast:
+def toast(look: ThemeNotifier, window: QWidget) -> Toast:
     toast = Toast(look, window)
     toast.move(100, 100)  # not under the mouse, which is at 0, 0
     window.show()
@@ -132,7 +132,7 @@ def test_long_words_make_the_toast_higher(toast: Toast) -> None:
 @pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
 @pytest.mark.parametrize("width", [1064, 736, 500])
 @pytest.mark.usefixtures("pseudo_language")
-def test_the_header_has_room_for_all_it_says(look: Look, qtbot: QtBot, scale: float, width: int) -> None:
+def test_the_header_has_room_for_all_it_says(look: ThemeNotifier, qtbot: QtBot, scale: float, width: int) -> None:
     look.set_scale(scale)
     header = Header(look, has_mark=False)
     qtbot.addWidget(header)
@@ -147,7 +147,7 @@ def test_the_header_has_room_for_all_it_says(look: Look, qtbot: QtBot, scale: fl
     assert not any(one.intersects(other) for k, one in enumerate(boxes) for other in boxes[:k])
 
 
-def test_the_header_of_a_window_with_a_rail_has_neither_mark_nor_name(look: Look, qtbot: QtBot) -> None:
+def test_the_header_of_a_window_with_a_rail_has_neither_mark_nor_name(look: ThemeNotifier, qtbot: QtBot) -> None:
     for has_mark in (True, False):
         header = Header(look, has_mark)
         qtbot.addWidget(header)

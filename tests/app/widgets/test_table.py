@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.tokens import Theme
 from app.widgets.table import CellTable, TableColumn, TableRow
 from app.widgets.table_cells import CENTRE, EMPTY, LEFT, RIGHT, STRIP_WIDTH, ErrorStrip, TableCell, TextCell
@@ -28,9 +28,9 @@ COLUMNS = (
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
@@ -44,7 +44,7 @@ def row(name: str, difference: str, *, is_marked: bool = False, hint: str = "") 
     return TableRow((TextCell(name), figure, strip(-12.1)), key=name, hint=hint)
 
 
-def table_of(qtbot: QtBot, look: Look, rows: Sequence[TableRow], *, is_list: bool = False) -> CellTable:
+def table_of(qtbot: QtBot, look: ThemeNotifier, rows: Sequence[TableRow], *, is_list: bool = False) -> CellTable:
     table = CellTable(look, "Differences", is_list=is_list)
     qtbot.addWidget(table)
     table.show_rows(COLUMNS, rows)
@@ -78,7 +78,7 @@ def x_of(value_deg: float) -> float:
     return STRIP_WIDTH / 2 + value_deg / (1.8 * ERROR_DEG) * (STRIP_WIDTH - 11) / 2
 
 
-def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow(look: Look) -> None:
+def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow(look: ThemeNotifier) -> None:
     c = look.theme.colours
     outside, inside = painted(strip(-12.1), look.theme), painted(strip(7.0), look.theme)
     assert colour(outside, x_of(-12.1)) == c.ink
@@ -91,7 +91,7 @@ def test_a_dot_outside_the_error_is_filled_and_one_inside_is_hollow(look: Look) 
     assert not strip(7.0).exceeds
 
 
-def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot(look: Look) -> None:
+def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot(look: ThemeNotifier) -> None:
     c, cell = look.theme.colours, strip(-12.1, is_judged=False)
     image = painted(cell, look.theme)
     assert colour(image, x_of(-6.0)) == c.control
@@ -101,7 +101,7 @@ def test_what_is_not_judged_is_a_grey_bar_without_error_and_dot(look: Look) -> N
     assert not cell.exceeds
 
 
-def test_what_lies_beyond_the_strip_ends_there_in_an_arrow(look: Look) -> None:
+def test_what_lies_beyond_the_strip_ends_there_in_an_arrow(look: ThemeNotifier) -> None:
     """A dot at the edge would be read as a difference of that size."""
     beyond, at_edge = painted(strip(38.0), look.theme), painted(strip(1.8 * ERROR_DEG), look.theme)
     edge = x_of(1.8 * ERROR_DEG)
@@ -111,7 +111,7 @@ def test_what_lies_beyond_the_strip_ends_there_in_an_arrow(look: Look) -> None:
 
 
 @pytest.mark.parametrize("unknown", [(math.nan, ERROR_DEG, 16.0), (5.0, math.nan, math.nan), (0.0, 0.0, 0.0)])
-def test_a_strip_of_what_is_not_known_has_no_dot(look: Look, unknown: tuple[float, float, float]) -> None:
+def test_a_strip_of_what_is_not_known_has_no_dot(look: ThemeNotifier, unknown: tuple[float, float, float]) -> None:
     """Nothing is known of where it would lie; a difference of none, without error, is a dot at zero."""
     image = painted(ErrorStrip(*unknown, is_judged=True), look.theme)
     away_from_zero = [x for x in range(image.width()) if abs(x - STRIP_WIDTH / 2) > 8]
@@ -121,7 +121,7 @@ def test_a_strip_of_what_is_not_known_has_no_dot(look: Look, unknown: tuple[floa
 @pytest.mark.parametrize("scale", [1.0, 2.0])
 @pytest.mark.parametrize("align", [LEFT, RIGHT, CENTRE])
 def test_a_text_cell_paints_all_of_itself_into_the_width_that_it_asks_for(
-    look: Look, align: Qt.AlignmentFlag, scale: float
+    look: ThemeNotifier, align: Qt.AlignmentFlag, scale: float
 ) -> None:
     look.set_scale(scale)
     theme = look.theme
@@ -135,14 +135,14 @@ def test_a_text_cell_paints_all_of_itself_into_the_width_that_it_asks_for(
     assert len({x for x in range(tight.width()) if colour(tight, x) == theme.colours.left_text}) > 0
 
 
-def test_a_text_of_two_lines_asks_for_their_height(look: Look) -> None:
+def test_a_text_of_two_lines_asks_for_their_height(look: ThemeNotifier) -> None:
     one, two = TextCell("free motion"), TextCell("free motion,\nwalking")
     assert two.height(look.theme) > one.height(look.theme)
     assert two.width(look.theme) < TextCell("free motion, walking").width(look.theme)
     assert two.words == "free motion, walking"
 
 
-def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot, look: Look) -> None:
+def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot, look: ThemeNotifier) -> None:
     table = table_of(qtbot, look, [row("Knee range", "+2.0"), row("Knee swing peak", "−12.1", is_marked=True)])
     assert table.height() == 32 + 2 * 28
     widths = [table.columnWidth(column) for column in range(3)]
@@ -155,7 +155,7 @@ def test_a_table_is_as_high_as_its_rows_and_shares_all_of_its_width(qtbot: QtBot
     assert table.minimumWidth() == sum(table.needed_widths)
 
 
-def test_every_cell_is_said_with_its_row_and_column(qtbot: QtBot, look: Look) -> None:
+def test_every_cell_is_said_with_its_row_and_column(qtbot: QtBot, look: ThemeNotifier) -> None:
     table = table_of(qtbot, look, [row("Knee range", "+2.0", hint="Over the whole stride."), row("Swing", "−12.1")])
     model = table.model()
     said = Qt.ItemDataRole.AccessibleTextRole
@@ -170,7 +170,7 @@ def test_every_cell_is_said_with_its_row_and_column(qtbot: QtBot, look: Look) ->
 
 
 @pytest.mark.parametrize("is_dark", [False, True])
-def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: Look, is_dark: bool) -> None:
+def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: ThemeNotifier, is_dark: bool) -> None:
     """Qt fills what is chosen with the palette's dark highlight before a cell is painted in ink."""
     table = table_of(qtbot, look, [row("Knee range", "+2.0")])
     look.set_dark(is_dark)
@@ -181,7 +181,7 @@ def test_a_cell_that_was_clicked_stays_readable(qtbot: QtBot, look: Look, is_dar
     assert table.grab().toImage() == before
 
 
-def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: Look) -> None:
+def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: ThemeNotifier) -> None:
     heading = TextCell("A heading that is much longer than the names of the rows", span=3)
     table = table_of(qtbot, look, [row("Knee", "+2.0")])
     before = table.needed_widths
@@ -192,7 +192,7 @@ def test_a_heading_goes_over_all_columns_and_widens_none(qtbot: QtBot, look: Loo
     assert table.columnSpan(0, 0) == 1
 
 
-def test_a_list_is_worked_by_keys(qtbot: QtBot, look: Look) -> None:
+def test_a_list_is_worked_by_keys(qtbot: QtBot, look: ThemeNotifier) -> None:
     table = table_of(qtbot, look, [row(f"row {number}", "0.0") for number in range(40)], is_list=True)
     chosen: list[object] = []
     opened: list[object] = []
@@ -206,7 +206,7 @@ def test_a_list_is_worked_by_keys(qtbot: QtBot, look: Look) -> None:
     assert table.key == "row 1"
 
 
-def test_rows_that_stay_keep_the_focus_and_others_take_it(qtbot: QtBot, look: Look) -> None:
+def test_rows_that_stay_keep_the_focus_and_others_take_it(qtbot: QtBot, look: ThemeNotifier) -> None:
     table = table_of(qtbot, look, [row("knee", "1.0"), row("ankle", "2.0")], is_list=True)
     table.choose(1)
     table.show_rows(COLUMNS, [row("knee", "1.0"), row("ankle", "9.9")])
@@ -230,7 +230,9 @@ class Counted(TableCell):
         self.counts["painted"] += 1
 
 
-def test_of_thousands_of_rows_only_those_in_sight_are_painted_and_none_is_measured(qtbot: QtBot, look: Look) -> None:
+def test_of_thousands_of_rows_only_those_in_sight_are_painted_and_none_is_measured(
+    qtbot: QtBot, look: ThemeNotifier
+) -> None:
     counts = {"measured": 0, "painted": 0}
     table = CellTable(look, "Many", head=0, is_list=True)
     qtbot.addWidget(table)

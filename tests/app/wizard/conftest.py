@@ -17,7 +17,7 @@ from app.storage.layout import KEYS
 from app.storage.library import Library
 from app.storage.slots import Cost
 from app.storage.stored import Operator, Role
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from app.wizard.wizard import Wizard
@@ -79,7 +79,7 @@ def visit(controller: LibraryController, source: ReplaySource) -> Iterator[Visit
 def wizard(qtbot: QtBot, qapp: QApplication, controller: LibraryController, tmp_path: Path) -> Iterator[Wizard]:
     load_fonts()
     settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-    wizard = Wizard(Look(), controller, settings)
+    wizard = Wizard(ThemeNotifier(), controller, settings)
     qtbot.addWidget(wizard)
     wizard.resize(1280, 800)
     wizard.show()
@@ -99,7 +99,7 @@ def step(qtbot: QtBot, visit: Visit) -> Iterator[SensorsStep]:
     visit.patient.edit(Patient(code="DEMO-7"))
     with qtbot.waitSignal(visit.patient.changed, timeout=5000):
         visit.patient.commit()
-    step = SensorsStep(Look(), visit)
+    step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.page.resize(1064, 672)
     step.page.show()

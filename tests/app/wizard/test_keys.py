@@ -7,7 +7,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QLineEdit, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.button import Button
 from app.wizard.keys import Intent, KeyAction, Keys
 
@@ -15,7 +15,7 @@ Key, Held = Qt.Key, Qt.KeyboardModifier
 
 
 class Window(QWidget):
-    def __init__(self, look: Look) -> None:
+    def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self.field, self.words, self.button, self.plain = QLineEdit(), QPlainTextEdit(), Button(look, "Back"), QWidget()
         self.plain.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
@@ -40,7 +40,7 @@ class Window(QWidget):
 
 @pytest.fixture
 def window(qtbot: QtBot) -> Window:
-    window = Window(Look())
+    window = Window(ThemeNotifier())
     qtbot.addWidget(window)
     window.show()
     window.plain.setFocus()

@@ -19,7 +19,7 @@ from pytestqt.qtbot import QtBot
 from app.home.home import Home
 from app.settings import Settings
 from app.storage.stored import RecordingState
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.rail_row import StepState
 from app.wizard import wizard as wizard_module
 from app.wizard.report.step import ReportStep
@@ -75,7 +75,7 @@ def start_again(
 
     def start(session: str) -> tuple[Home, Wizard]:
         settings = Settings(QSettings(str(tmp_path / "again.ini"), QSettings.Format.IniFormat))
-        home, wizard = Home(Look(), controller, settings), Wizard(Look(), controller, settings)
+        home, wizard = Home(ThemeNotifier(), controller, settings), Wizard(ThemeNotifier(), controller, settings)
         made.append(wizard)
         for widget in (home, wizard):
             qtbot.addWidget(widget)

@@ -15,7 +15,7 @@ from app.storage.journal.disk import Trouble
 from app.storage.opened import OpenedLibrary
 from app.storage.recordings import Recordings
 from app.storage.stored import LibraryBusyError, LibraryError, RecordingState
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard import recordings as recordings_module
 from app.wizard import wizard as wizard_module
 from app.wizard.free_motion.step import FreeMotionStep
@@ -75,7 +75,9 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
     walk = record(qtbot, looked_at, RecordingKind.WALKING, 2.0)
-    monkeypatch.setattr(Recordings, "decide", failing(1, LibraryError("Changed meanwhile", "Look"), Recordings.decide))
+    monkeypatch.setattr(
+        Recordings, "decide", failing(1, LibraryError("Changed meanwhile", "ThemeNotifier"), Recordings.decide)
+    )
     with qtbot.waitSignals([recordings.refused, recordings.begun], timeout=WAIT_MS):
         recordings.keep(walk, is_kept=False)
         recordings.begin(acquisition, RecordingKind.WALKING)
@@ -141,7 +143,7 @@ def test_what_is_said_of_a_late_disk_follows_its_counters(
     """Amid a walk: first nothing is lost, then something is, then the disk answers again."""
     recordings, acquisition = looked_at.recordings, looked_at.sensors.acquisition
     assert acquisition is not None
-    step = WalkingStep(Look(), looked_at)
+    step = WalkingStep(ThemeNotifier(), looked_at)
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(recordings.begun, timeout=WAIT_MS):
@@ -212,7 +214,7 @@ def test_a_free_motion_that_is_refused_waits_for_a_word(
         return begin_for_real(*arguments)  # type: ignore[arg-type]  # whatever the caller gave
 
     monkeypatch.setattr(Recorder, "begin", refused_once)
-    step = FreeMotionStep(Look(), looked_at)
+    step = FreeMotionStep(ThemeNotifier(), looked_at)
     qtbot.addWidget(step.page)
     with qtbot.waitSignal(looked_at.recordings.refused, timeout=WAIT_MS):
         step.enter()
@@ -240,7 +242,7 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
     assert recordings.is_restrapped
     standing = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
     assert standing.told.is_restrapped_before
-    step = WalkingStep(Look(), looked_at)
+    step = WalkingStep(ThemeNotifier(), looked_at)
     assert not step.bar().others[0].is_enabled  # nobody has moved since
     assert "Stand still and move freely" in step.bar().note
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 1.0)
@@ -259,7 +261,7 @@ def test_strapping_anew_before_what_does_not_count_is_told_of_what_does(qtbot: Q
 
 
 def test_who_skips_the_free_motion_is_told_its_price(qtbot: QtBot, looked_at: Visit) -> None:
-    step = WalkingStep(Look(), looked_at)
+    step = WalkingStep(ThemeNotifier(), looked_at)
     assert step.bar().note == "Without a free motion, angles are poor or missing."
     record(qtbot, looked_at, RecordingKind.FREE_MOTION, 0.5)
     assert step.bar().note.startswith("Next:")
@@ -272,7 +274,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     again = Visit(controller, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(looked_at.session.id)
-    step = WalkingStep(Look(), again)
+    step = WalkingStep(ThemeNotifier(), again)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == ""
     step.enter()

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.sensors.step import SensorsStep
 from app.wizard.visit import Visit
 from core.body import Site
@@ -20,7 +20,7 @@ def sensors_step(
     """The page of a visit with sensors on, whose recordings nobody evaluates."""
     monkeypatch.setattr(visit, "evaluate", lambda: None)
     begin(qtbot, visit, worn)
-    step = SensorsStep(Look(), visit)
+    step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     yield step
     step.deleteLater()

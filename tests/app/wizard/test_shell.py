@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
 from app.pages.sentence_page import SentencePage
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.action_bar import BarAction, BarState, RecordingNote
 from app.widgets.rail_row import RailForm, RailRow, StepState
 from app.widgets.sensor_strip import SensorStrip
@@ -65,7 +65,7 @@ def reconnect() -> BarState:
     return BarState(wished, others=(BarAction(tr("Go on without right ankle")),))
 
 
-def filled(look: Look) -> WizardShell:
+def filled(look: ThemeNotifier) -> WizardShell:
     shell = WizardShell(look)
     rows = [
         ("Patient", "Left prosthetic", StepState.DONE),
@@ -93,12 +93,12 @@ def _fonts(qapp: object) -> Iterator[None]:
 
 
 @pytest.fixture
-def look() -> Look:
-    return Look()
+def look() -> ThemeNotifier:
+    return ThemeNotifier()
 
 
 @pytest.fixture
-def shell(look: Look, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
+def shell(look: ThemeNotifier, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardShell:
     monkeypatch.setattr(shell_module, "duration_ms", lambda _usual_ms: 0)
     shell = filled(look)
     qtbot.addWidget(shell)
@@ -121,7 +121,7 @@ def shell(look: Look, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch) -> WizardSh
     ],
 )
 def test_the_frame_takes_the_form_that_the_window_has_room_for(
-    shell: WizardShell, look: Look, size: tuple[int, int], scale: float, is_compact: bool, form: RailForm
+    shell: WizardShell, look: ThemeNotifier, size: tuple[int, int], scale: float, is_compact: bool, form: RailForm
 ) -> None:
     look.set_scale(scale)
     shell.resize(*size)
@@ -140,7 +140,7 @@ def test_the_content_is_no_wider_than_can_be_read_and_in_the_middle(shell: Wizar
     assert left == (2400 - shell.rail.width() - 1600) // 2
 
 
-def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: Look) -> None:
+def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: ThemeNotifier) -> None:
     told: list[tuple[bool, float, float]] = []
     shell.room_changed.connect(lambda *room: told.append(room))
     look.set_scale(2.0)
@@ -154,7 +154,7 @@ def test_a_page_is_told_its_room_in_px_of_the_design(shell: WizardShell, look: L
     assert told
 
 
-def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: Look) -> None:
+def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell, look: ThemeNotifier) -> None:
     page = FreeMotionPage(look)
     shell.show_page(7, page)
     page.ask("Both legs moved at once. Which one wears 0A31 on its shank?", "", ("Left", "Right"))
@@ -164,7 +164,7 @@ def test_a_question_above_the_gauges_pushes_none_out_of_sight(shell: WizardShell
     assert all(page.rect().contains(gauge.geometry()) for gauge in page.gauges.values())
 
 
-def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: Look) -> None:
+def test_a_page_with_nothing_to_press_leaves_the_focus_to_the_bar(shell: WizardShell, look: ThemeNotifier) -> None:
     page = SentencePage(look)
     page.show_sentence("The results are saved.")
     shell.show_page(7, page)
@@ -181,7 +181,7 @@ def test_a_page_comes_into_sight_with_the_focus_where_reading_starts(shell: Wiza
     assert shell.focusWidget() is page.first
 
 
-def test_the_page_that_was_there_fades_and_leaves_nothing(look: Look, qtbot: QtBot) -> None:
+def test_the_page_that_was_there_fades_and_leaves_nothing(look: ThemeNotifier, qtbot: QtBot) -> None:
     shell = filled(look)
     qtbot.addWidget(shell)
     shell.resize(900, 600)
@@ -298,7 +298,9 @@ def test_the_toast_stands_above_the_bar_at_its_left(shell: WizardShell) -> None:
     assert shell.toast.geometry().bottom() < shell.bar.mapTo(shell, QPoint(0, 0)).y()
 
 
-def test_a_window_too_low_for_all_scrolls_and_shows_the_bar_of_a_recording(shell: WizardShell, look: Look) -> None:
+def test_a_window_too_low_for_all_scrolls_and_shows_the_bar_of_a_recording(
+    shell: WizardShell, look: ThemeNotifier
+) -> None:
     look.set_scale(2.0)
     shell.resize(800, 560)
     settle()
@@ -330,7 +332,7 @@ SIZES = [
 @pytest.mark.parametrize(("size", "scale"), SIZES)
 @pytest.mark.parametrize("mode", [StripMode.SHOWN, StripMode.FOLDED])
 def test_no_word_of_the_frame_is_cut(
-    look: Look, qtbot: QtBot, size: tuple[int, int], scale: float, mode: StripMode, language: str
+    look: ThemeNotifier, qtbot: QtBot, size: tuple[int, int], scale: float, mode: StripMode, language: str
 ) -> None:
     use_language(language)
     look.set_scale(scale)

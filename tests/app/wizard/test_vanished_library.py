@@ -15,7 +15,7 @@ from app.acquisition.acquisition import Acquisition
 from app.main_window import MainWindow
 from app.settings import Settings
 from app.storage.stored import RecordingState
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard import wizard as wizard_module
 from app.wizard.recordings import SessionRecording
 from app.wizard.visit import Visit
@@ -145,7 +145,7 @@ def open_window(
 
     def open_it() -> MainWindow:
         settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
-        window = MainWindow(Look(), settings, tmp_path / "library")
+        window = MainWindow(ThemeNotifier(), settings, tmp_path / "library")
         qtbot.addWidget(window, before_close_func=end)
         window.resize(1280, 800)
         window.show()

@@ -3,7 +3,7 @@
 import pytest
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.losses import NOTHING
 from app.wizard.visit import Visit
 from app.wizard.walk_messages import clock, few_strides_message, no_angles_message, no_foot_message
@@ -53,7 +53,7 @@ def test_who_walks_without_foot_sensors_reads_why_nothing_is_counted(
     visit.sensors.assign_all({name: site for name, site in worn.items() if site not in FEET})
     for kind in (RecordingKind.STANDING, RecordingKind.FREE_MOTION):
         record(qtbot, visit, kind, 0.5)
-    step = WalkingStep(Look(), visit)
+    step = WalkingStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.enter()
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):

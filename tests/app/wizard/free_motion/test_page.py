@@ -9,7 +9,7 @@ from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QAccessible
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.gauge import Gauge, GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
 from app.wizard.free_motion.page import FreeMotionFace, FreeMotionPage
@@ -33,7 +33,7 @@ def view(**faces: GaugeFace) -> FreeMotionFace:
 @pytest.fixture
 def page(qtbot: QtBot, qapp: QApplication) -> Iterator[FreeMotionPage]:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     page = FreeMotionPage(look)
     qtbot.addWidget(page)

@@ -6,7 +6,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.storage.stored import Limits
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.gauge import GaugeState
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.estimator import FreeMotionView
@@ -33,7 +33,7 @@ def step(
 ) -> Iterator[FreeMotionStep]:
     monkeypatch.setattr(visit, "evaluate", lambda: None)  # a second each, and tried elsewhere
     begin(qtbot, visit, worn)
-    step = FreeMotionStep(Look(), visit)
+    step = FreeMotionStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.page.show()
     yield step

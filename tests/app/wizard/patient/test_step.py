@@ -10,7 +10,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import PlacedSensor, StoredPatient
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.patient.page import PatientDraft
 from app.wizard.patient.step import PatientStep
@@ -22,7 +22,7 @@ from core.samples import Patient, Recording, RecordingKind, SensorInfo, Session
 
 @pytest.fixture
 def step(qtbot: QtBot, visit: Visit) -> Iterator[PatientStep]:
-    step = PatientStep(Look(), visit)
+    step = PatientStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()

@@ -5,13 +5,13 @@ from PySide6.QtCore import QBuffer, QByteArray
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.report.page import PAPER_INCH, REBUILT_AFTER_MS, ReportPage
 
 
 @pytest.fixture
 def page(qtbot: QtBot) -> ReportPage:
-    page = ReportPage(Look())
+    page = ReportPage(ThemeNotifier())
     qtbot.addWidget(page)
     page.resize(1000, 600)
     page.show()

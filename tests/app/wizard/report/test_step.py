@@ -12,7 +12,7 @@ from pytestqt.qtbot import QtBot
 
 from app.storage.exchange import import_session
 from app.storage.operators import CLINIC
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
@@ -46,7 +46,7 @@ def step(
     """On its page, the library's earlier visits read."""
     begin(qtbot, visit, worn)
     visit.evaluation.session, visit.evaluation.analysis = simulated_session, analysis
-    step = ReportStep(Look(), visit, controller)
+    step = ReportStep(ThemeNotifier(), visit, controller)
     qtbot.addWidget(step.page)
     step.page.resize(1016, 600)
     step.page.show()
@@ -203,7 +203,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
 
 
 def test_ctrl_s_saves_as_its_cap_says(qtbot: QtBot, visit: Visit, monkeypatch: pytest.MonkeyPatch) -> None:
-    step = ReportStep(Look(), visit, visit.controller)
+    step = ReportStep(ThemeNotifier(), visit, visit.controller)
     qtbot.addWidget(step.page)
     primary = step.bar().primary
     assert primary is not None

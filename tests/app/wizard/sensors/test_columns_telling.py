@@ -8,7 +8,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app import known_columns as kept
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.sensors.columns_form import ColumnsForm, Meaning
 from app.wizard.sensors.sources import COLUMNS, SEARCH
 from app.wizard.sensors.step import SensorsStep
@@ -43,7 +43,7 @@ def step(qtbot: QtBot, visit: Visit, place: str) -> Iterator[SensorsStep]:
         SourceChoice(COLUMNS, "Lines of numbers", search, lines=lines),  # type: ignore[arg-type]  # it only refuses
         SourceChoice(SEARCH, "Search", search),  # type: ignore[arg-type]  # it only refuses
     )
-    step = SensorsStep(Look(), visit)
+    step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.enter()
     step.page.resize(1064, 672)

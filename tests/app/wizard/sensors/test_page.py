@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.sensors.page import SensorsPage, Way
 from app.wizard.sensors.sensor_drag import DRAGGED
 from app.wizard.sensors.sensor_row import SensorRow
@@ -42,7 +42,7 @@ def rows(*sites: Site | None, **changes: dict[str, object]) -> tuple[SensorRow, 
 
 @pytest.fixture
 def page(qtbot: QtBot) -> Iterator[SensorsPage]:
-    page = SensorsPage(Look())
+    page = SensorsPage(ThemeNotifier())
     qtbot.addWidget(page)
     page.resize(1064, 672)
     page.show_sources(OPTIONS, "serial")
@@ -246,7 +246,7 @@ def test_a_refusal_goes_before_all_else_and_is_seen_without_a_source(page: Senso
 
 
 def test_the_sources_take_the_focus_as_soon_as_they_are_offered(qtbot: QtBot) -> None:
-    page = SensorsPage(Look())
+    page = SensorsPage(ThemeNotifier())
     qtbot.addWidget(page)
     page.show()
     page.show_sources(OPTIONS)

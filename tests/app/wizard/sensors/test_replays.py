@@ -11,7 +11,7 @@ from pytestqt.qtbot import QtBot
 from app.storage.exchange import import_session
 from app.storage.opened import OpenedLibrary
 from app.storage.stored import LibraryError
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.wizard.sensors.replays import Replays, replay_of
 from app.wizard.sensors.step import REPLAY, SensorsStep
 from app.wizard.visit import Visit
@@ -133,7 +133,7 @@ def test_a_reading_is_stopped(qtbot: QtBot, visit: Visit, step: SensorsStep, fol
 
 def test_only_demonstration_patients_are_offered_a_replay(qtbot: QtBot, visit: Visit) -> None:
     visit.patient.edit(Patient(code="P-7"))
-    step = SensorsStep(Look(), visit)
+    step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     step.page.show()
     step.enter()

@@ -7,7 +7,7 @@ import pytest
 from pytestqt.qtbot import QtBot
 
 from app.acquisition.acquisition import Acquisition
-from app.theme import Look
+from app.theme import ThemeNotifier
 from app.widgets.rail_row import StepState
 from app.wizard.free_motion.step import FreeMotionStep
 from app.wizard.keys import Intent, KeyAction
@@ -148,7 +148,7 @@ def test_the_set_up_of_the_last_visit_is_worn_at_once(
 
 def test_a_real_patient_is_offered_no_simulated_sensors(qtbot: QtBot, visit: Visit) -> None:
     visit.known_choices = ()
-    step = SensorsStep(Look(), visit)
+    step = SensorsStep(ThemeNotifier(), visit)
     qtbot.addWidget(step.page)
     assert step.cannot_enter == "Type the patient's code first."
     step.enter()
@@ -221,7 +221,7 @@ def test_simulated_sensors_are_refused_at_once_on_a_patient_of_the_clinic(
     assert (bar.primary.text, bar.others[0].text) == ("Choose other sensors", "Begin with a demonstration patient")
     assert (step.state, step.note) == (StepState.ATTENTION, "not for this patient")
     for other in (StandStillStep, FreeMotionStep, WalkingStep):
-        assert other(Look(), visit).cannot_enter == bar.note
+        assert other(ThemeNotifier(), visit).cannot_enter == bar.note
     step.on_primary()
     assert visit.sensors.acquisition is None
     assert step.page.nothing.isVisible()

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.icons import Icon
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.widgets.stillness import MovementBars
 from app.wizard.standing.page import (
     StandPhase,
@@ -32,16 +32,16 @@ def counting(still_s: float = 1.2, **more: object) -> StandStillView:
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     yield look
     qapp.setStyleSheet("")
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: Look) -> StandStillPage:
+def page(qtbot: QtBot, look: ThemeNotifier) -> StandStillPage:
     page = StandStillPage(look)
     page.show_zero(dict.fromkeys(Joint, 0.0))
     qtbot.addWidget(page)
@@ -179,7 +179,7 @@ def test_a_joint_without_its_sensors_has_no_angle_and_says_so(page: StandStillPa
 
 
 def test_only_the_row_whose_figure_changed_is_painted(
-    qtbot: QtBot, look: Look, monkeypatch: pytest.MonkeyPatch
+    qtbot: QtBot, look: ThemeNotifier, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     painted: list[int] = []
     paint = MovementBars.paintEvent

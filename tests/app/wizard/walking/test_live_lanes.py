@@ -7,7 +7,7 @@ from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.walking.live_lanes import LiveLanes
 from app.wizard.walking.readout import LiveLane, PhaseSpan
 from core.body import Side
@@ -19,15 +19,15 @@ SHARES = ((LOADING, 0.0, 0.12), (FLAT, 0.12, 0.45), (PRE_SWING, 0.45, 0.6), (SWI
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def lanes(qtbot: QtBot, look: Look) -> LiveLanes:
+def lanes(qtbot: QtBot, look: ThemeNotifier) -> LiveLanes:
     lanes = LiveLanes(look)
     qtbot.addWidget(lanes)
     lanes.resize(780, 84)
@@ -69,7 +69,7 @@ def test_lanes_that_moved_on_look_as_if_drawn_anew(lanes: LiveLanes) -> None:
     assert picture(lanes) == moved
 
 
-def test_each_phase_has_its_look(lanes: LiveLanes, look: Look) -> None:
+def test_each_phase_has_its_look(lanes: LiveLanes, look: ThemeNotifier) -> None:
     walk(lanes, 20.0, 20.1)
     ago_s = 20.0 + 2 * FRAME_S - 16.0  # of the stride that began at 16
     assert colour_at(lanes, ago_s - 0.06, Side.LEFT) == look.theme.curve(Side.LEFT).name()
@@ -78,7 +78,7 @@ def test_each_phase_has_its_look(lanes: LiveLanes, look: Look) -> None:
     assert colour_at(lanes, ago_s - 0.5 - 0.06, Side.RIGHT) == look.theme.curve(Side.RIGHT).name()
 
 
-def test_a_phase_told_late_is_mended(lanes: LiveLanes, look: Look) -> None:
+def test_a_phase_told_late_is_mended(lanes: LiveLanes, look: ThemeNotifier) -> None:
     lanes.show_lanes(10.0, {Side.LEFT: LiveLane((PhaseSpan(FLAT, 7.0, None),))})
     assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
     mended = (PhaseSpan(FLAT, 7.0, 9.0), PhaseSpan(LOADING, 9.0, None))
@@ -87,7 +87,7 @@ def test_a_phase_told_late_is_mended(lanes: LiveLanes, look: Look) -> None:
     assert colour_at(lanes, 1.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
 
 
-def test_a_silent_foot_is_said_in_its_lane(lanes: LiveLanes, look: Look) -> None:
+def test_a_silent_foot_is_said_in_its_lane(lanes: LiveLanes, look: ThemeNotifier) -> None:
     silent = LiveLane((PhaseSpan(FLAT, 5.0, 9.8),), ((9.8, None),))
     lanes.show_lanes(10.0, {Side.LEFT: silent})
     assert colour_at(lanes, 0.7, Side.LEFT) == look.theme.colours.caution.lower()  # the words take the room they need
@@ -97,14 +97,14 @@ def test_a_silent_foot_is_said_in_its_lane(lanes: LiveLanes, look: Look) -> None
     assert colour_at(lanes, 0.5, Side.LEFT) == look.theme.soft(Side.LEFT).name()
 
 
-def test_a_leg_without_a_lane_stays_empty(lanes: LiveLanes, look: Look) -> None:
+def test_a_leg_without_a_lane_stays_empty(lanes: LiveLanes, look: ThemeNotifier) -> None:
     walk(lanes, 20.0, 20.1)
     lanes.show_lanes(20.2, {Side.LEFT: lane(20.2)})
     assert colour_at(lanes, 2.0, Side.RIGHT) == look.theme.colours.surface.lower()
 
 
 @pytest.mark.parametrize("change", ["size", "theme", "seconds"])
-def test_lanes_come_back_from_what_they_show(lanes: LiveLanes, look: Look, change: str) -> None:
+def test_lanes_come_back_from_what_they_show(lanes: LiveLanes, look: ThemeNotifier, change: str) -> None:
     walk(lanes, 20.0, 21.0)
     if change == "size":
         lanes.resize(1000, 84)

@@ -6,7 +6,7 @@ from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
 from app.charts.axes import ANKLE_DEG, KNEE_DEG
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.walking.live_strip import LiveStrip, _Trace
 from app.wizard.walking.readout import LiveTrace
 from core.body import Side
@@ -20,15 +20,15 @@ PERIOD_S = 1.1
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def strip(qtbot: QtBot, look: Look) -> LiveStrip:
+def strip(qtbot: QtBot, look: ThemeNotifier) -> LiveStrip:
     strip = LiveStrip(look, KNEE_DEG, 30)
     qtbot.addWidget(strip)
     strip.resize(780, 160)
@@ -79,7 +79,7 @@ def coloured(pixels: IntArray, colour: str) -> IntArray:
     return np.argwhere(np.abs(pixels - blue_green_red).max(axis=2) < 24)
 
 
-def test_a_strip_that_moved_on_looks_as_if_drawn_anew(strip: LiveStrip, look: Look) -> None:
+def test_a_strip_that_moved_on_looks_as_if_drawn_anew(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 13.0, gap_s=(8.0, 10.0))
     moved = picture(strip)
     look.changed.emit()  # everything is drawn from the history
@@ -87,7 +87,7 @@ def test_a_strip_that_moved_on_looks_as_if_drawn_anew(strip: LiveStrip, look: Lo
     assert len(coloured(moved, look.theme.colours.left)) > 1000
 
 
-def test_dashes_stand_still_in_time(strip: LiveStrip, look: Look) -> None:
+def test_dashes_stand_still_in_time(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 10.0)
     before = coloured(picture(strip), look.theme.colours.right)
     walk(strip, 10.0, 12.0)
@@ -102,7 +102,7 @@ def test_dashes_stand_still_in_time(strip: LiveStrip, look: Look) -> None:
     pytest.fail("the dashes of 2 s ago are not where they were drawn")
 
 
-def test_a_gap_stays_empty_and_is_said(strip: LiveStrip, look: Look) -> None:
+def test_a_gap_stays_empty_and_is_said(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 11.0, gap_s=(7.0, 9.0))
     assert rounded(strip) == [(Side.RIGHT, 7.0, 9.0)]
     pixels = picture(strip)
@@ -120,7 +120,7 @@ def test_a_leg_that_falls_silent_is_told_until_it_is_back(strip: LiveStrip) -> N
     assert rounded(strip) == [(Side.RIGHT, 4.0, 5.2)]
 
 
-def test_a_short_break_ends_the_line_without_words(strip: LiveStrip, look: Look) -> None:
+def test_a_short_break_ends_the_line_without_words(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 6.0, gap_s=(5.0, 5.3))
     assert rounded(strip) == []
     pixels = picture(strip)
@@ -128,7 +128,7 @@ def test_a_short_break_ends_the_line_without_words(strip: LiveStrip, look: Look)
     assert not len(coloured(pixels[:, x - 8 : x + 8], look.theme.colours.right))
 
 
-def test_what_is_provisional_is_thin(strip: LiveStrip, look: Look) -> None:
+def test_what_is_provisional_is_thin(strip: LiveStrip, look: ThemeNotifier) -> None:
     walk(strip, 0.0, 6.0)  # provisional for 3 s
 
     def ink(from_s: float) -> int:
@@ -139,7 +139,7 @@ def test_what_is_provisional_is_thin(strip: LiveStrip, look: Look) -> None:
 
 
 @pytest.mark.parametrize("change", ["size", "theme", "scale", "seconds", "hidden"])
-def test_the_strip_comes_back_from_its_history(strip: LiveStrip, look: Look, change: str) -> None:
+def test_the_strip_comes_back_from_its_history(strip: LiveStrip, look: ThemeNotifier, change: str) -> None:
     walk(strip, 0.0, 9.0)
     if change == "size":
         strip.resize(1000, 200)
@@ -161,7 +161,7 @@ def test_the_strip_comes_back_from_its_history(strip: LiveStrip, look: Look, cha
         assert columns.max() > strip.width() * 0.9
 
 
-def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot, look: Look) -> None:
+def test_axes_stay_until_a_walk_leaves_them_and_then_stay_wider(qtbot: QtBot, look: ThemeNotifier) -> None:
     strip = LiveStrip(look, ANKLE_DEG, 20)
     qtbot.addWidget(strip)
     time_s = np.arange(100) / RATE_HZ

@@ -10,7 +10,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.walking.page import WalkingPage
 from app.wizard.walking.readout import LiveLane, LiveTrace, PhaseSpan, WalkingReadout
 from app.wizard.walking.walk_list import WalkRow, WalkState
@@ -27,15 +27,15 @@ LABELS = ("Barefoot", "Shoes", "AFO")
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Look:
+def look(qapp: QApplication) -> ThemeNotifier:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     return look
 
 
 @pytest.fixture
-def page(qtbot: QtBot, look: Look, request: pytest.FixtureRequest) -> WalkingPage:
+def page(qtbot: QtBot, look: ThemeNotifier, request: pytest.FixtureRequest) -> WalkingPage:
     if "pseudo_language" in request.fixturenames:
         request.getfixturevalue("pseudo_language")  # before anything is said
     page = WalkingPage(look)
@@ -251,7 +251,13 @@ ROOMS = [(0.8, 850, 480, False), (1.0, 1064, 600, False), (1.0, 736, 388, True),
 @pytest.mark.parametrize(("scale", "width", "height", "is_compact"), ROOMS)
 @pytest.mark.parametrize("rows", [(KEPT, RECORDING), (KEPT, DISCARDED, ASKING), ()])
 def test_no_word_is_cut_in_a_language_as_long_as_german(
-    page: WalkingPage, look: Look, scale: float, width: int, height: int, is_compact: bool, rows: tuple[WalkRow, ...]
+    page: WalkingPage,
+    look: ThemeNotifier,
+    scale: float,
+    width: int,
+    height: int,
+    is_compact: bool,
+    rows: tuple[WalkRow, ...],
 ) -> None:
     look.set_scale(scale)
     page.set_compact(is_compact)
@@ -269,7 +275,7 @@ def test_no_word_is_cut_in_a_language_as_long_as_german(
     assert words_cut(page) == []
 
 
-def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot, look: Look) -> None:
+def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: QtBot, look: ThemeNotifier) -> None:
     window = QWidget()
     page = WalkingPage(look)
     column = QVBoxLayout(window)
@@ -292,7 +298,7 @@ def test_a_walk_stopped_in_a_small_window_leaves_the_focus_on_no_button(qtbot: Q
     assert not isinstance(QApplication.focusWidget(), QAbstractButton)
 
 
-def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot, look: Look) -> None:
+def test_a_walk_that_does_not_begin_leaves_the_focus_where_space_starts_it(qtbot: QtBot, look: ThemeNotifier) -> None:
     page = WalkingPage(look)
     window = QWidget()
     qtbot.addWidget(window)

@@ -8,7 +8,7 @@ from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.theme import Look, load_fonts
+from app.theme import ThemeNotifier, load_fonts
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
 from app.wizard.visit import Visit
@@ -26,16 +26,16 @@ RUN = Intent(KeyAction.RUN)
 
 
 @pytest.fixture
-def look(qapp: QApplication) -> Iterator[Look]:
+def look(qapp: QApplication) -> Iterator[ThemeNotifier]:
     load_fonts()
-    look = Look()
+    look = ThemeNotifier()
     look.set_dark(False)
     yield look
     qapp.setStyleSheet("")
 
 
 @pytest.fixture
-def step(qtbot: QtBot, look: Look, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
+def step(qtbot: QtBot, look: ThemeNotifier, visit: Visit, worn: dict[str, Site]) -> Iterator[WalkingStep]:
     """Of a patient who wears six sensors, entered, and looked at as the wizard does."""
     visit.patient.edit(Patient(code="DEMO-7", birth_year=1970, prosthetic_side="left"))
     with qtbot.waitSignal(visit.patient.changed):
@@ -114,7 +114,9 @@ def test_space_starts_and_stops_and_keeps(qtbot: QtBot, step: WalkingStep, visit
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
-def test_five_strides_find_the_ankles_axes_anew(qtbot: QtBot, look: Look, step: WalkingStep, visit: Visit) -> None:
+def test_five_strides_find_the_ankles_axes_anew(
+    qtbot: QtBot, look: ThemeNotifier, step: WalkingStep, visit: Visit
+) -> None:
     calibrate(qtbot, visit)
     with qtbot.waitSignal(visit.recordings.begun, timeout=10_000):
         step.on_intent(RUN)
@@ -199,7 +201,7 @@ def test_while_no_sensor_is_heard_no_walk_is_started(
     assert primary.is_enabled
 
 
-def test_without_sensors_it_cannot_be_entered(look: Look, visit: Visit) -> None:
+def test_without_sensors_it_cannot_be_entered(look: ThemeNotifier, visit: Visit) -> None:
     step = WalkingStep(look, visit)
     assert step.cannot_enter == "Type the patient's code first."
     assert Joint.LEFT_KNEE not in visit.sensors.joints

@@ -17,7 +17,7 @@ from core.samples import Recording, Session
 Row = tuple[str, str | float | int | None]
 
 
-def nameless(
+def pseudonymised(
     pseudonyms: Pseudonyms, patient_id: UUID, session: Session, analysis: Analysis, kept: Collection[Typed] = ()
 ) -> tuple[Session, Analysis]:
     """Both with our names for patient, recordings and sensors, and without findings, which may quote what was typed.
@@ -45,9 +45,9 @@ def nameless(
     return other, replace(analysis, calibrations=spans, recordings=recordings, findings=())
 
 
-def nameless_once(session: Session, analysis: Analysis, kept: Collection[Typed] = ()) -> tuple[Session, Analysis]:
-    """As `nameless`, with a pseudonym that nothing else will have."""
-    return nameless(once(), uuid4(), session, analysis, kept)
+def pseudonymised_once(session: Session, analysis: Analysis, kept: Collection[Typed] = ()) -> tuple[Session, Analysis]:
+    """As `pseudonymised`, with a pseudonym that nothing else will have."""
+    return pseudonymised(once(), uuid4(), session, analysis, kept)
 
 
 def once() -> Pseudonyms:
