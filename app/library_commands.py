@@ -193,12 +193,12 @@ def _recover_one(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySessi
     from app.storage.recovery import recover
 
     if one.problem:
-        name = one.stored.told.name if one.stored else f"recording {one.recording_id}"
+        name = one.stored.details.name if one.stored else f"recording {one.recording_id}"
         return f"- {name}: {one.problem}. {one.remedy}."
     if one.stored is None:
         return _adopt(opened, one, into, report)
     recovered = recover(opened, one, report)
-    told = recovered.stored.told.name
+    told = recovered.stored.details.name
     if not recovered.recorded_s:
         return f"{told}: it was ended before anything was recorded."
     where = f"{PREFIX}{recovered.stored.session_id}"
@@ -216,12 +216,12 @@ def _adopt(opened: "OpenedLibrary", one: "Interrupted", into: LibrarySession | N
         with suppress(LibraryError):  # the session that it says it is of is gone
             recovered = adopt_home(opened, one, report)
             where = f"{PREFIX}{recovered.stored.session_id}"
-            return f"{recovered.stored.told.name}: {_length(recovered.recorded_s)} was recovered into {where}."
+            return f"{recovered.stored.details.name}: {_length(recovered.recorded_s)} was recovered into {where}."
     if into is None:
         length = _length(one.recorded_s)
         return f"- {length} recorded at {when} belongs to no session. Say to which with --into {PREFIX}ID."
     visit = opened.library.sessions.get(into.id)
-    name = free_name(visit.told, RecordingKind.WALKING)
+    name = free_name(visit.details, RecordingKind.WALKING)
     told = Recording(name, RecordingKind.WALKING, folder_for(name), {})
     recovered = adopt(opened, one, into.id, told, report)
     return f"{name}: {_length(recovered.recorded_s)} recorded at {when} was recovered into {into}."

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_recovered: bool) -> PatientLine:
-    told = patient.told
+    told = patient.details
     who = person(told)
     looked_into = " ".join([told.code, str(told.birth_year or ""), told.device, told.aids, who])
     return PatientLine(

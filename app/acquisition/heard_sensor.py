@@ -39,7 +39,7 @@ class SensorStatus:
 
     sensor: str
     source: int
-    told: SensorDetails
+    details: SensorDetails
     heard_hz: float
     silent_s: float
     movement_rad_s: float
@@ -85,7 +85,7 @@ class HeardSensor:
         return SensorStatus(
             sensor=self.name,
             source=source,
-            told=told,
+            details=told,
             heard_hz=self._heard_hz(now_s),
             silent_s=max(now_s - self._heard_at_s, 0.0),
             movement_rad_s=self._movement_rad_s(now_s),

@@ -29,8 +29,8 @@ def live_sensors(
     found = {}
     for name in sensors:
         one = status.get(name)
-        rate_hz = (one.told.rate_hz or one.heard_hz) if one is not None else 0.0
+        rate_hz = (one.details.rate_hz or one.heard_hz) if one is not None else 0.0
         if one is not None and rate_hz > 0.0:
             bias = rests[name].gyr_rad_s if name in rests else np.zeros(3)
-            found[name] = LiveSensor(rate_hz, bias, one.told.rate_kind or untold)
+            found[name] = LiveSensor(rate_hz, bias, one.details.rate_kind or untold)
     return found

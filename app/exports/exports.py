@@ -133,7 +133,7 @@ def preview_from_library(opened: OpenedLibrary, session_id: UUID, kept: Collecti
         There is no such session.
     """
     visit = opened.library.sessions.get(session_id)
-    told = replace(visit.told, recordings=tuple(one.told for one in visit.recordings if one.state in READ_BACK))
+    told = replace(visit.details, recordings=tuple(one.details for one in visit.recordings if one.state in READ_BACK))
     return what_leaves(Pseudonyms(opened.library.pseudonyms_key).session(visit.patient_id, told, kept))
 
 

@@ -53,7 +53,7 @@ class Deleting(QObject):
         def restore(opened: "OpenedLibrary") -> UUID:
             return opened.library.patients.restore(opened.library.patients.get(patient_id)).id
 
-        self._ask(tr("{code} is deleted, for good in 30 days.").format(code=patient.told.code), delete, restore)
+        self._ask(tr("{code} is deleted, for good in 30 days.").format(code=patient.details.code), delete, restore)
 
     def session(self, session_id: UUID) -> None:
         def delete(opened: "OpenedLibrary") -> UUID:

@@ -330,7 +330,7 @@ class Home(Themed):
         patient = self.patient
         if patient is None:
             return BarState(quiet=(new,), has_back=False)
-        words = tr("New session for {code}").format(code=patient.told.code)
+        words = tr("New session for {code}").format(code=patient.details.code)
         begin = BarAction(words, tr("Enter"), Icon.PLAY)
         note = "" if self.rail.form is RailForm.COMPACT else tr("No session is running.")
         return BarState(begin, quiet=(new,), note=note, has_back=False)
@@ -354,7 +354,7 @@ class Home(Themed):
             self._sessions_of = None
             self.page.show_patient("", "")
             return
-        told = patient.told
+        told = patient.details
         about = " · ".join(filter(None, [person(told), told.device, told.aids]))
         encrypted = self._state is not None and not self._state.is_demonstration
         self.page.show_patient(told.code, about, tr("stored on this computer") if encrypted else tr("simulated"))
@@ -453,7 +453,7 @@ class Home(Themed):
 
     def _on_folder_read(self, session: "Session") -> None:
         self._to_import = session
-        code = session.patient.code or (self.patient.told.code if self.patient is not None else "")
+        code = session.patient.code or (self.patient.details.code if self.patient is not None else "")
         names = [recording.name for recording in session.recordings]
         self.import_page.show_session(
             str(self._folder), names, code, session.findings, is_simulated=session.is_simulated
@@ -480,7 +480,7 @@ class Home(Themed):
         if imported.differing:
             self.banner.tell(
                 tr("{code} is told of otherwise in the folder: {what}.").format(
-                    code=imported.patient.told.code, what=", ".join(_named(name) for name in imported.differing)
+                    code=imported.patient.details.code, what=", ".join(_named(name) for name in imported.differing)
                 ),
                 tr("The library keeps what it says."),
             )

@@ -193,7 +193,7 @@ def _heard_messages(heard: "Sequence[Recovered]") -> list[_Message]:
     is_whole = all(report.is_whole for one in heard for report in one.reports)
     if len(heard) == 1:
         what = tr("The program was closed while recording. {time} of {name} was recovered.").format(
-            time=length(heard[0].recorded_s), name=heard[0].stored.told.name
+            time=length(heard[0].recorded_s), name=heard[0].stored.details.name
         )
         whole, cut = tr("It is whole."), tr("It is kept up to the last record on the disk.")
         look = tr("Look at it, then keep or discard.")
@@ -225,7 +225,7 @@ def _adopted_messages(adopted: "Sequence[Recovered]") -> list[_Message]:
         return []
     if len(adopted) == 1:
         what = tr("{time} of {name} was recorded while the library did not answer.").format(
-            time=length(adopted[0].recorded_s), name=adopted[0].stored.told.name
+            time=length(adopted[0].recorded_s), name=adopted[0].stored.details.name
         )
         return [_Message(what, tr("It is in its session now."))]
     what = tr("{count} recordings were made while the library did not answer.").format(count=len(adopted))
@@ -248,7 +248,7 @@ def _undecided_messages(walks: "Sequence[UndecidedWalk]") -> list[_Message]:
         return []
     if len(walks) == 1:
         what = tr("{name} of {code} was recovered earlier, and nobody has said yet whether it is kept.").format(
-            name=walks[0].recording.told.name, code=walks[0].patient_code
+            name=walks[0].recording.details.name, code=walks[0].patient_code
         )
         return [_Message(what, tr("Look at it, then keep or discard."))]
     what = tr("{count} walks were recovered earlier, and nobody has said yet whether they are kept.")

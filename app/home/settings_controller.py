@@ -308,7 +308,10 @@ def _deleted_in(opened: "OpenedLibrary") -> tuple[DeletedLine, ...]:
     patients = opened.library.patients.search(is_deleted=True)
     sessions = opened.library.sessions.list(is_deleted=True)
     return (
-        *(DeletedLine(one.id, ", ".join(filter(None, [one.told.code, person(one.told)])), True) for one in patients),
+        *(
+            DeletedLine(one.id, ", ".join(filter(None, [one.details.code, person(one.details)])), True)
+            for one in patients
+        ),
         *(DeletedLine(one.id, f"{one.patient_code}, {when(one.started, now)}", False) for one in sessions),
     )
 

@@ -85,7 +85,7 @@ def import_session(
     differing = tuple(
         name
         for name in type(wanted).__slots__
-        if name != "code" and getattr(wanted, name) != getattr(patient.told, name)
+        if name != "code" and getattr(wanted, name) != getattr(patient.details, name)
     )
     visit = library.sessions.create(patient.id, replace(session, recordings=(), sensors={}))
     try:
@@ -112,13 +112,13 @@ def session_with_samples(opened: OpenedLibrary, visit: StoredSession, decoders: 
         A file cannot be read.
     """
     wanted = [recording for recording in visit.recordings if recording.state in READ_BACK]
-    recordings, findings = [], list(visit.told.findings)
+    recordings, findings = [], list(visit.details.findings)
     for number, recording in enumerate(wanted):
-        report(number / len(wanted), recording.told.name)
+        report(number / len(wanted), recording.details.name)
         read, noticed = recording_with_samples(opened, recording, decoders)
         recordings.append(read)
         findings += noticed
-    return replace(visit.told, recordings=tuple(recordings), findings=tuple(findings))
+    return replace(visit.details, recordings=tuple(recordings), findings=tuple(findings))
 
 
 def recording_with_samples(
@@ -135,9 +135,9 @@ def recording_with_samples(
             raise JournalRefusedError(path.name, "this recording's file is missing", RESTORE)
     keys = [journal.wrapped_key for journal in recording.journals]
     decoded = decode(paths, opened.data_key, decoders, keys)
-    _refuse_undecoded(recording.told.name, decoded)
+    _refuse_undecoded(recording.details.name, decoded)
     placement = recording.placement.site_of if recording.placement else {}
-    read = decoded.recording(recording.told, placement)
+    read = decoded.recording(recording.details, placement)
     names = _own_names(decoded)
     imu = {site: replace(block, sensor=names.get(block.sensor, block.sensor)) for site, block in read.imu.items()}
     return replace(read, imu=imu), tuple(_file_findings(recording, decoded))
@@ -193,7 +193,7 @@ def export_orphan(opened: OpenedLibrary, orphan: Interrupted, folder: Path, deco
         The folder cannot be written.
     """
     decoded = decode(list(orphan.segments.values()), opened.data_key, decoders)
-    _refuse_undecoded(orphan.belonging.told.name if orphan.belonging else orphan.recording_id.hex, decoded)
+    _refuse_undecoded(orphan.belonging.details.name if orphan.belonging else orphan.recording_id.hex, decoded)
     subject = about("recording", orphan.recording_id)
     opened.library.audit.note(Action.EXPORT, subject, format="one CSV per sensor")
     folder.mkdir(parents=True, exist_ok=True)
@@ -305,7 +305,7 @@ def _placed(session: Session, names: Mapping[Site, str]) -> dict[Site, PlacedSen
 
 
 def _file_findings(recording: StoredRecording, decoded: DecodedJournal) -> Iterator[Finding]:
-    name = recording.told.name
+    name = recording.details.name
     if recording.state is RecordingState.RECOVERED:
         yield Finding("recording_recovered", Severity.INFO, name)
     found = [report.sha256 for report in decoded.reports]

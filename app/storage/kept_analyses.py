@@ -128,7 +128,7 @@ def inputs_of(session: Session) -> AnalysisInputs:
         ),
         zero_rad=session.zero_rad,
         turned_sign=session.turned_sign,
-        told=told,
+        details=told,
         algorithm=algorithm(),
         parameters={},
     )

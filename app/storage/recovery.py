@@ -125,7 +125,7 @@ def recover(opened: OpenedLibrary, interrupted: Interrupted, report: Report) -> 
     if interrupted.stored is None:
         raise ValueError("an orphan has no row to close: adopt it")
     if interrupted.problem:
-        raise JournalRefusedError(interrupted.stored.told.name, interrupted.problem, interrupted.remedy)
+        raise JournalRefusedError(interrupted.stored.details.name, interrupted.problem, interrupted.remedy)
     return _close(opened, interrupted.stored, _Contents(opened, interrupted, report))
 
 
@@ -165,9 +165,9 @@ def adopt_home(opened: OpenedLibrary, orphan: Interrupted, report: Report) -> Re
     """
     if orphan.belonging is None:
         raise LibraryError("This recording does not say which session it is of", "Export it")
-    told, visit = orphan.belonging.told, opened.library.sessions.get(orphan.belonging.session_id)
-    if any(other.name == told.name for other in visit.told.recordings):
-        name = free_name(visit.told, told.kind)
+    told, visit = orphan.belonging.details, opened.library.sessions.get(orphan.belonging.session_id)
+    if any(other.name == told.name for other in visit.details.recordings):
+        name = free_name(visit.details, told.kind)
         told = replace(told, name=name, folder=folder_for(name))
     return adopt(opened, orphan, visit.id, told, report)
 

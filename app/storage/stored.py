@@ -1,6 +1,6 @@
 """What does the library hand out? Plain, frozen values; nothing here knows of a database.
 
-`told` is what the clinic or a file said, in the core's own words and without samples: those are in the journals.
+`details` is what the clinic or a file said, in the core's own words and without samples: those are in the journals.
 """
 
 from collections.abc import Mapping
@@ -92,7 +92,7 @@ class StoredPatient:
 
     id: UUID
     version: int
-    told: Patient
+    details: Patient
     created_at: datetime
     deleted_at: datetime | None
     sessions: int
@@ -141,7 +141,7 @@ class StoredRecording:
     id: UUID
     version: int
     session_id: UUID
-    told: Recording
+    details: Recording
     state: RecordingState
     is_simulated: bool
     placement: Placement | None
@@ -177,12 +177,12 @@ class Limits:
 
 @dataclass(frozen=True, slots=True)
 class StoredSession:
-    """One visit. `told` holds the recordings too, in order, without samples; `comment` is the clinician's."""
+    """One visit. `details` holds the recordings too, in order, without samples; `comment` is the clinician's."""
 
     id: UUID
     version: int
     patient_id: UUID
-    told: Session
+    details: Session
     comment: str
     created_at: datetime
     deleted_at: datetime | None
@@ -245,13 +245,13 @@ class AnalysedRecording:
 class AnalysisInputs:
     """Everything that an analysis depends on: the same inputs give the same result, byte for byte.
 
-    `told` is what was said of patient, sensors and joints, `parameters` method and settings, both by name.
+    `details` is what was said of patient, sensors and joints, `parameters` method and settings, both by name.
     """
 
     recordings: tuple[AnalysedRecording, ...]
     zero_rad: Mapping[Joint, float]
     turned_sign: Mapping[Joint, int]
-    told: Mapping[str, str | float | bool | None]
+    details: Mapping[str, str | float | bool | None]
     algorithm: str
     parameters: Mapping[str, str | float | bool]
 

@@ -45,7 +45,7 @@ class PatientRecord(QObject):
         self._controller, self._refuses = controller, refuses
         self.has_this_session_only = False
         """So another code is a correction of this patient's."""
-        self.told = Patient()
+        self.details = Patient()
         self.stored: StoredPatient | None = None
         self._phase = RecordPhase.SETTLED
         self._pause = QTimer(self)
@@ -55,7 +55,7 @@ class PatientRecord(QObject):
 
     @property
     def is_saved(self) -> bool:
-        return not self._may_be_old and self.stored is not None and self.stored.told == self.told
+        return not self._may_be_old and self.stored is not None and self.stored.details == self.details
 
     @property
     def _may_be_old(self) -> bool:
@@ -74,32 +74,32 @@ class PatientRecord(QObject):
 
     def edit(self, told: Patient) -> None:
         """Take what is on the screen; a patient of the library is changed once the typing pauses."""
-        self.told = replace(told, code=told.code.strip(), device=told.device.strip())
-        if self.stored is not None and self.told.code == self.stored.told.code:
+        self.details = replace(told, code=told.code.strip(), device=told.device.strip())
+        if self.stored is not None and self.details.code == self.stored.details.code:
             self._pause.start()
 
     def commit(self) -> None:
         """Save what is on the screen now, and make the patient if there is none yet."""
         self._pause.stop()
         is_under_way = self._phase not in (RecordPhase.SETTLED, RecordPhase.UNREAD)
-        if is_under_way or self.is_saved or not self.told.code:
+        if is_under_way or self.is_saved or not self.details.code:
             return
         if self._may_be_old and self.stored is not None:
             self._read(self.stored)
             return
-        if self.stored is not None and self.told.code != self.stored.told.code:
-            what, remedy = self._refuses(self.told.code)
+        if self.stored is not None and self.details.code != self.stored.details.code:
+            what, remedy = self._refuses(self.details.code)
             if what:
-                self.told = self.stored.told  # what was typed is another's
+                self.details = self.stored.details  # what was typed is another's
                 self.refused.emit(what, remedy)
                 return
         self._phase = RecordPhase.BUSY
-        stored, told = self.stored, self.told
+        stored, told = self.stored, self.details
         is_renamed = self.has_this_session_only
 
         def save(opened: OpenedLibrary) -> StoredPatient | None:
             patients = opened.library.patients
-            if stored is not None and stored.told.code == told.code:
+            if stored is not None and stored.details.code == told.code:
                 return patients.change(stored, told)
             found = patients.find(told.code)
             if found is not None and (stored is None or found.id != stored.id):
@@ -112,7 +112,7 @@ class PatientRecord(QObject):
         self._controller.run(save, self._on_saved, self._on_refused, self)
 
     def _choose(self, stored: StoredPatient) -> None:
-        self.stored, self.told = stored, stored.told
+        self.stored, self.details = stored, stored.details
         self.changed.emit()
 
     def _read(self, listed: StoredPatient) -> None:
@@ -124,11 +124,11 @@ class PatientRecord(QObject):
     def _on_read(self, stored: StoredPatient) -> None:
         is_awaited, self._phase = self._may_be_old, RecordPhase.SETTLED
         if is_awaited and self.stored is not None:  # else another was chosen meanwhile
-            listed, self.stored = self.stored.told, stored
-            every = ((field.name, getattr(self.told, field.name)) for field in fields(Patient))
+            listed, self.stored = self.stored.details, stored
+            every = ((field.name, getattr(self.details, field.name)) for field in fields(Patient))
             typed = {name: told for name, told in every if told != getattr(listed, name)}
-            self.told = replace(stored.told, **typed)
-            if stored.told != listed:
+            self.details = replace(stored.details, **typed)
+            if stored.details != listed:
                 self.read_anew.emit()
         self.changed.emit()
         if not self.is_saved:
@@ -140,7 +140,7 @@ class PatientRecord(QObject):
         if is_overtaken:  # it is saved, and another stands here now
             stored = self.stored
         if stored is None:
-            self.code_taken.emit(self.told.code)
+            self.code_taken.emit(self.details.code)
             return
         self.stored = stored
         self.changed.emit()

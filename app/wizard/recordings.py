@@ -41,7 +41,7 @@ MOST_READINGS = 15
 class Ongoing:
     """What is being recorded. `began_s` is on the acquisition's clock."""
 
-    told: Recording
+    details: Recording
     began_s: float
 
 
@@ -62,8 +62,8 @@ class SessionRecording:
         return self.stored.id
 
     @property
-    def told(self) -> Recording:
-        return self.stored.told
+    def details(self) -> Recording:
+        return self.stored.details
 
 
 class RecordingPhase(Enum):
@@ -154,13 +154,14 @@ class SessionRecordings(QObject):
     def standing(self) -> SessionRecording | None:
         """The one in force."""
         return next(
-            (recording for recording in reversed(self._of(RecordingKind.STANDING)) if recording.told.is_kept), None
+            (recording for recording in reversed(self._of(RecordingKind.STANDING)) if recording.details.is_kept), None
         )
 
     @property
     def free_motion(self) -> SessionRecording | None:
         return next(
-            (recording for recording in reversed(self._of(RecordingKind.FREE_MOTION)) if recording.told.is_kept), None
+            (recording for recording in reversed(self._of(RecordingKind.FREE_MOTION)) if recording.details.is_kept),
+            None,
         )
 
     @property
@@ -174,9 +175,9 @@ class SessionRecordings(QObject):
         if self._is_restrapped:
             return False
         for recording in reversed(self.every):
-            if recording.told.kind is RecordingKind.FREE_MOTION and recording.told.is_kept:
+            if recording.details.kind is RecordingKind.FREE_MOTION and recording.details.is_kept:
                 return True
-            if recording.told.is_restrapped_before:
+            if recording.details.is_restrapped_before:
                 return False
         return False
 
@@ -184,7 +185,7 @@ class SessionRecordings(QObject):
     def must_move(self) -> bool:
         """Whether sensors were strapped anew, and the free motion that this asks for is still to come."""
         return not self.has_moved and (
-            self._is_restrapped or any(recording.told.is_restrapped_before for recording in self.every)
+            self._is_restrapped or any(recording.details.is_restrapped_before for recording in self.every)
         )
 
     @property
@@ -192,7 +193,7 @@ class SessionRecordings(QObject):
         """All recordings since sensors were strapped last: what is said now of who wears what holds for these."""
         if self._is_restrapped:
             return ()
-        strapped = [number for number, recording in enumerate(self.every) if recording.told.is_restrapped_before]
+        strapped = [number for number, recording in enumerate(self.every) if recording.details.is_restrapped_before]
         return self.every[strapped[-1] if strapped else 0 :]
 
     def awaits(self, kind: RecordingKind) -> bool:
@@ -258,7 +259,7 @@ class SessionRecordings(QObject):
             recorder.halt()
 
         self._phase = RecordingPhase.STOPPING
-        self._unread.append(_Unread(recorder, self.ongoing.told.name, strides, is_kept))
+        self._unread.append(_Unread(recorder, self.ongoing.details.name, strides, is_kept))
         self._controller.record(halt, None, self._on_not_halted, self)
         self._waited.start(WAITED_MS)
         if not self._again.isActive():
@@ -305,7 +306,7 @@ class SessionRecordings(QObject):
             now_s,
             {name: count for name, count in lost.items() if name in status},
             all(one.silent_s < now_s - latest.ended_s for one in status.values()),
-            all(one.told.rate_hz is not None for one in status.values()),
+            all(one.details.rate_hz is not None for one in status.values()),
         )
 
     def _lost(self) -> int:
@@ -332,7 +333,7 @@ class SessionRecordings(QObject):
 
     def keep(self, recording: SessionRecording, is_kept: bool) -> None:
         """Say whether a recording counts; nothing is deleted, and it can be said anew at any time."""
-        if recording.told.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
+        if recording.details.is_restrapped_before and not is_kept and recording.id == self.every[-1].id:
             self._is_restrapped = True  # what comes next is the first that counts
         self._put(replace(recording, is_decided=True))
         if recording.stored.state is RecordingState.RECOVERED or not recording.stored.is_decided:
@@ -348,7 +349,7 @@ class SessionRecordings(QObject):
 
         def save(opened: "OpenedLibrary") -> StoredRecording:
             current = opened.library.recordings.find(recording.id) or recording.stored
-            return opened.library.recordings.change(current, corrected(current.told))
+            return opened.library.recordings.change(current, corrected(current.details))
 
         self._controller.run(save, self._on_changed, self._on_not_changed, self)
 
@@ -369,12 +370,12 @@ class SessionRecordings(QObject):
         return counted(self.every)
 
     def _of(self, kind: RecordingKind) -> tuple[SessionRecording, ...]:
-        return tuple(recording for recording in self.every if recording.told.kind is kind)
+        return tuple(recording for recording in self.every if recording.details.kind is kind)
 
     def _new_name(self, kind: RecordingKind) -> str:
         """`walk 2`, `free motion`, `standing 3`: the kind's name in files, numbered."""
         word = {RecordingKind.STANDING: "standing", RecordingKind.FREE_MOTION: "free motion"}.get(kind, "walk")
-        taken = {recording.told.name for recording in self.every} | {unread.name for unread in self._unread}
+        taken = {recording.details.name for recording in self.every} | {unread.name for unread in self._unread}
         first = f"{word} 1" if kind is RecordingKind.WALKING else word
         return next(name for name in [first, *(f"{word} {k}" for k in range(2, 10_000))] if name not in taken)
 
@@ -495,8 +496,8 @@ def counted(recordings: Sequence[SessionRecording]) -> tuple[Recording, ...]:
     found = []
     is_restrapped = False
     for recording in recordings:
-        is_restrapped |= recording.told.is_restrapped_before
-        if recording.told.is_kept and recording.read_back is not None:
-            found.append(replace(recording.told, imu=recording.read_back.imu, is_restrapped_before=is_restrapped))
+        is_restrapped |= recording.details.is_restrapped_before
+        if recording.details.is_kept and recording.read_back is not None:
+            found.append(replace(recording.details, imu=recording.read_back.imu, is_restrapped_before=is_restrapped))
             is_restrapped = False
     return tuple(found)

@@ -58,7 +58,7 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
 
 def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) -> Session:
     """What is evaluated of a session of the library, as `Visit.evaluate` asks it when nothing is recorded."""
-    return with_limits(replace(session.told, recordings=counted(recordings)), session.limits)
+    return with_limits(replace(session.details, recordings=counted(recordings)), session.limits)
 
 
 def with_limits(told: Session, limits: Limits) -> Session:
@@ -75,7 +75,7 @@ def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[Se
         SessionRecording(
             stored,
             recording_with_samples(opened, stored, DECODERS)[0],
-            is_decided=stored.is_decided and not (stored.is_unjudged and stored.told.is_kept),
+            is_decided=stored.is_decided and not (stored.is_unjudged and stored.details.is_kept),
         )
         for stored in session.recordings
         if stored.state in usable
@@ -87,10 +87,10 @@ def rests_of(recordings: Sequence[SessionRecording]) -> "dict[str, Rest]":
     rests: dict[str, Rest] = {}
     for recording in recordings:
         if (
-            recording.told.kind is RecordingKind.STANDING
+            recording.details.kind is RecordingKind.STANDING
             and recording.read_back
             and recording.stored.placement
-            and recording.told.is_kept
+            and recording.details.is_kept
         ):
             worn = recording.stored.placement.sensors
             found = {worn[site].name: rest_of(block) for site, block in recording.read_back.imu.items() if site in worn}

@@ -124,14 +124,14 @@ class Visit(QObject):
     # the session
 
     @property
-    def told(self) -> Session:
+    def details(self) -> Session:
         """What was said about the session, the last word of it on the screen; without recordings."""
-        told = self._wanted or (self.session.told if self.session is not None else Session(recordings=()))
-        return replace(told, recordings=(), patient=self.patient.told)
+        told = self._wanted or (self.session.details if self.session is not None else Session(recordings=()))
+        return replace(told, recordings=(), patient=self.patient.details)
 
     @property
     def prosthetic_sides(self) -> frozenset[Side]:
-        said = self.patient.told.prosthetic_side
+        said = self.patient.details.prosthetic_side
         return frozenset(side for side in Side if said in (side, "both"))
 
     @property
@@ -145,14 +145,14 @@ class Visit(QObject):
     @property
     def is_simulated(self) -> bool:
         acquisition = self.sensors.acquisition
-        return bool(self.told.is_simulated or (acquisition is not None and acquisition.is_simulated))
+        return bool(self.details.is_simulated or (acquisition is not None and acquisition.is_simulated))
 
     @property
     def may_simulate(self) -> bool:
         """Whether simulated recordings may be kept for this patient: the demonstration's, or one coded for it."""
         state = self._controller.state
         is_demonstration = state is not None and state.is_demonstration
-        return is_demonstration or self.patient.told.code.startswith(DEMO)
+        return is_demonstration or self.patient.details.code.startswith(DEMO)
 
     @property
     def cannot_record(self) -> str:
@@ -161,7 +161,7 @@ class Visit(QObject):
         if acquisition is None or not acquisition.is_simulated or self.may_simulate:
             return ""
         said = tr("These sensors are simulated, and {code} is no demonstration patient: nothing would be recorded.")
-        return said.format(code=self.patient.told.code)
+        return said.format(code=self.patient.details.code)
 
     @property
     def cannot_calibrate(self) -> str:
@@ -202,27 +202,27 @@ class Visit(QObject):
 
     def set_zero(self, joint: Joint, zero_rad: float | None) -> None:
         """Take the goniometer's value while standing, radians in the clinical sign; None: the standing itself is 0."""
-        zero = {**self.told.zero_rad}
+        zero = {**self.details.zero_rad}
         if zero_rad is None:
             zero.pop(joint, None)
         else:
             zero[joint] = zero_rad
-        self._change(replace(self.told, zero_rad=zero))
+        self._change(replace(self.details, zero_rad=zero))
 
     def set_limits(self, limits: Limits) -> None:
         """Take what the patient's body does not allow; before there is a session, it waits for that."""
         if limits != self.limits:
             self.limits = limits
-            self._change(self.told)
+            self._change(self.details)
 
     def set_turned(self, joint: Joint, sign: int | None) -> None:
         """Turn (-1) or confirm (1) the sign that was found of a joint; None: as found. `evaluation.done` follows."""
-        turned = {**self.told.turned_sign}
+        turned = {**self.details.turned_sign}
         if sign is None:
             turned.pop(joint, None)
         else:
             turned[joint] = sign
-        self._change(replace(self.told, turned_sign=turned))
+        self._change(replace(self.details, turned_sign=turned))
 
     def swap_sides(self) -> None:
         """Say that left and right were worn the other way round in all recordings; they are read anew.
@@ -296,8 +296,8 @@ class Visit(QObject):
         """Find out what the recordings tell, with a walk that still goes on; `evaluation.done` follows."""
         recordings = self.recordings.counted() + ((with_walk,) if with_walk is not None else ())
         if any(recording.kind is not RecordingKind.STANDING for recording in recordings):
-            sensors = self.session.told.sensors if self.session is not None else {}
-            told = with_limits(replace(self.told, sensors=sensors, is_simulated=self.is_simulated), self.limits)
+            sensors = self.session.details.sensors if self.session is not None else {}
+            told = with_limits(replace(self.details, sensors=sensors, is_simulated=self.is_simulated), self.limits)
             self._is_partial = with_walk is not None
             self.evaluation.ask(replace(told, recordings=recordings))
 
@@ -309,7 +309,7 @@ class Visit(QObject):
 
         def work(opened: "OpenedLibrary", report: Report) -> "list[tuple[Session, Analysis]]":
             lines = opened.library.sessions.list(session.patient_id)  # latest first
-            before = [line for line in lines if line.id != session.id and line.started < session.told.started]
+            before = [line for line in lines if line.id != session.id and line.started < session.details.started]
             return [read_analysed(opened, line.id, report) for line in reversed(before[:MOST_EARLIER])]
 
         self._controller.run_long(work, self._on_earlier_read, self._on_refused, None, self)
@@ -352,7 +352,7 @@ class Visit(QObject):
 
         def save(opened: "OpenedLibrary") -> StoredSession:
             current = opened.library.sessions.get(session.id)
-            wanted = replace(current.told, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
+            wanted = replace(current.details, zero_rad=told.zero_rad, turned_sign=told.turned_sign)
             return opened.library.sessions.change(current, wanted, limits=limits)
 
         self._controller.run(save, self._on_session_changed, self._on_refused, self)
@@ -361,12 +361,12 @@ class Visit(QObject):
         self._is_changing = False
         self.session = self.recordings.session = session
         wanted = self._wanted
-        if self.limits != session.limits or (wanted is not None and _by_hand(wanted) != _by_hand(session.told)):
-            self._change(wanted or session.told)  # typed on meanwhile
+        if self.limits != session.limits or (wanted is not None and _by_hand(wanted) != _by_hand(session.details)):
+            self._change(wanted or session.details)  # typed on meanwhile
         else:
             self._wanted = None
             evaluated = self.evaluation.session
-            told = with_limits(session.told, session.limits)
+            told = with_limits(session.details, session.limits)
             if evaluated is not None and (*_by_hand(evaluated), evaluated.findings) != (*_by_hand(told), told.findings):
                 self.evaluate()
         self.changed.emit()
@@ -405,7 +405,7 @@ class Visit(QObject):
         self.limits = self.session.limits
         self.patient.choose(patient)
         self.patient.has_this_session_only = patient.sessions == 1
-        self._is_of_another_day = bool(recordings) and _day(recordings[-1].told.started) not in ("", _day(_now()))
+        self._is_of_another_day = bool(recordings) and _day(recordings[-1].details.started) not in ("", _day(_now()))
         self.recordings.take_over(self.session, recordings)
         self.rests = rests_of(recordings)
         if known is not None:
@@ -419,7 +419,7 @@ class Visit(QObject):
         """A session stays its patient's, and what is simulated a simulated patient's."""
         if self.session is None or self.patient.stored is None:
             return "", ""
-        own = self.patient.stored.told.code
+        own = self.patient.stored.details.code
         if not self.patient.has_this_session_only:
             what = tr("This session belongs to {code}.").format(code=own)
             return what, tr("Go back to all patients to begin one with another.")

@@ -245,7 +245,7 @@ class Wizard(QWidget):
         self.shell.rail.show_rows(tuple(rows))
         self.shell.bar.show_state(self._bar())
         self._keys.set_running(self.is_recording)
-        patient = self._visit.patient.told
+        patient = self._visit.patient.details
         self.shell.header.show_session(
             patient.code or tr("New session"), about_and_device(patient), self._visit.is_simulated
         )
@@ -400,7 +400,7 @@ class Wizard(QWidget):
         self._controller.run(_demonstration_patient, self._on_demonstration_found, self._on_refused, self)
 
     def _on_demonstration_found(self, stored: "StoredPatient | None") -> None:
-        if self._visit is None or self._visit.patient.told.code:
+        if self._visit is None or self._visit.patient.details.code:
             return  # somebody has typed another meanwhile
         if stored is not None:
             self._visit.patient.choose(stored)
@@ -488,7 +488,7 @@ def _tile(site: Site, sensor: str | None, status: "Mapping[str, SensorStatus]", 
     return SensorTile(
         site,
         sensor,
-        heard.told.battery,
+        heard.details.battery,
         heard.heard_hz,
         heard.lost_share,
         heard.silent_s,

@@ -145,7 +145,7 @@ class WornSensors(QObject):
         status = self.status
         placed = {}
         for sensor, site in self.site_of.items():
-            told = status[sensor].told
+            told = status[sensor].details
             info = SensorInfo(told.serial, told.model, told.firmware, told.rate_hz, told.rate_kind)
             placed[site] = PlacedSensor(sensor, info)
         return placed

@@ -282,7 +282,7 @@ def test_a_session_is_begun_in_the_wizard_and_left_for_home(qtbot: QtBot, open_w
     assert wizard is not None
     assert window.screens.currentWidget() is wizard
     assert wizard.visit is not None
-    assert wizard.visit.patient.told.code == SECRET_CODE
+    assert wizard.visit.patient.details.code == SECRET_CODE
     wizard.leave()
     assert window.screens.currentWidget() is window.home
 
@@ -643,7 +643,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
     home.banner.dismiss.click()
     assert home.banner.isHidden()
-    assert [one.told.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
+    assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
 
 
 def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
@@ -680,4 +680,4 @@ def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
         QTest.keyClick(page.passphrase.line_edit, Qt.Key.Key_Return)
     assert not window.is_covered
     assert home.banner.text == "The library is back. 1 recording that was made meanwhile is in it now."
-    assert sorted(one.told.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]
+    assert sorted(one.details.name for one in library.sessions.get(session_id).recordings) == ["walk 1", "walk 2"]

@@ -292,12 +292,12 @@ def outcome_of(kind: str, visit: Visit, analysis: Analysis, told: Mapping[str, F
         for site, block in recording.read_back.imu.items():
             rows = compare_samples(outcome, block, told[f"sent {site}"], STEPS[kind])
             late_s = block.time_s[rows >= 0] + opened_s(recording, library) - told[f"sent_s {site}"][rows[rows >= 0]]
-            outcome.late_ms.setdefault(recording.told.name, []).append(1000 * float(late_s.mean()))
-            if recording.told.kind is RecordingKind.FREE_MOTION:
+            outcome.late_ms.setdefault(recording.details.name, []).append(1000 * float(late_s.mean()))
+            if recording.details.kind is RecordingKind.FREE_MOTION:
                 outcome.moved_s = float(np.ptp(block.time_s))
             outcome.rate_hz = round(1 / float(np.median(np.diff(block.time_s))), 1)
-        found = next((one for one in analysis.recordings if one.name == recording.told.name), None)
-        if recording.told.kind is RecordingKind.WALKING and found is not None:
+        found = next((one for one in analysis.recordings if one.name == recording.details.name), None)
+        if recording.details.kind is RecordingKind.WALKING and found is not None:
             compare_angles(outcome, found, told, zero, opened_s(recording, library))
     return outcome
 

@@ -264,7 +264,7 @@ class SensibleUser(Hands):
             key = self._chance.choices((Key.Key_K, Key.Key_D, Key.Key_Space), (6, 2, 2))[0]
             self.press(key)
             return "answers whether it is kept"
-        kept = sum(recording.told.is_kept for recording in recordings.walks)
+        kept = sum(recording.details.is_kept for recording in recordings.walks)
         if kept and self._chance.random() < 0.3 + 0.1 * kept:
             self._primary(wizard)
             return "goes to the results"

@@ -126,7 +126,7 @@ def main() -> int:
         assert walk.read_back is not None
         faults += [fault for block in walk.read_back.imu.values() for fault in faults_of(block, seconds)]
         samples = sum(len(block) for block in walk.read_back.imu.values())
-        strides = visit.evaluation.strides(walk.told.name)
+        strides = visit.evaluation.strides(walk.details.name)
     faults += [f"{name} grew" for name in grown(before, after)]
     most_mib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
     print(f"{samples} samples, {behind} left out of the preview; strides: {', '.join(map(str, strides.values()))}")

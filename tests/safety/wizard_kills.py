@@ -108,7 +108,7 @@ class Guide:
         step._on_condition_typed(str(first.id), CONDITION)  # before the library has the stride: both hold
         step._on_sign_turned(str(Joint.LEFT_KNEE), True)
         step._on_kept_turned(str(second.id), False)
-        self._wait(lambda: bool(self.visit.told.turned_sign) and not self.visit.recordings.walks[1].told.is_kept)
+        self._wait(lambda: bool(self.visit.details.turned_sign) and not self.visit.recordings.walks[1].details.is_kept)
         linger(self._application, 0.5)
 
     def comment(self) -> None:
@@ -133,7 +133,7 @@ class Guide:
         assert self.visit.session is not None
         heard = self.acquisition.latest(self.acquisition.sensors[0], 29.0)  # as long as it holds
         recordings = {
-            recording.told.name: {
+            recording.details.name: {
                 str(site): len(block)
                 for site, block in (recording.read_back.imu if recording.read_back else {}).items()
             }

@@ -99,7 +99,7 @@ def stored_session(row: SessionRow) -> StoredSession:
     for placement in placements:  # the latest word on each site
         worn |= placement.sensors
     told = Session(
-        recordings=tuple(recording.told for recording in recordings),
+        recordings=tuple(recording.details for recording in recordings),
         patient=told_patient(row.patient),
         sensors={site: worn[site].info for site in Site if site in worn and worn[site].info != SensorInfo()},
         zero_rad={joint.joint: joint.zero_rad for joint in row.joints if joint.zero_rad is not None},

@@ -67,10 +67,10 @@ class Belonging:
     """Of which session a recording is, and what was told of it, in the text of a mark: its row may not be there yet."""
 
     session_id: UUID
-    told: Recording
+    details: Recording
 
     def text(self) -> str:
-        told = {name: getattr(self.told, name) for name in BELONGING_FIELDS}
+        told = {name: getattr(self.details, name) for name in BELONGING_FIELDS}
         return BELONGING + json.dumps({"session": str(self.session_id), **told})
 
     @classmethod

@@ -225,7 +225,7 @@ class FreeMotionStep(Step):
     @property
     def _is_recording(self) -> bool:
         ongoing = self._visit.recordings.ongoing
-        return ongoing is not None and ongoing.told.kind is KIND
+        return ongoing is not None and ongoing.details.kind is KIND
 
     @property
     def _has_moved(self) -> bool:
@@ -261,7 +261,7 @@ class FreeMotionStep(Step):
         """Whether it is time to record by itself: none is in force, or the one before was given up for another."""
         recordings = self._visit.recordings
         if self._then is AfterRecording.ANOTHER:
-            return recordings.is_idle and not recordings.every[-1].told.is_kept
+            return recordings.is_idle and not recordings.every[-1].details.is_kept
         return self._then is AfterRecording.ITSELF and not (self._has_moved or recordings.is_recording)
 
     def _begin(self, side: Side | None = None) -> None:
@@ -498,7 +498,7 @@ class FreeMotionStep(Step):
             self._stop()
 
     def _on_ended(self, recording: SessionRecording) -> None:
-        if recording.told.kind is not KIND:
+        if recording.details.kind is not KIND:
             return
         if self._repeated is not None:  # the other leg's sensors are worn as before
             self._repeated = None

@@ -58,7 +58,7 @@ class PatientStep(Step):
 
     @property
     def note(self) -> str:
-        told = self._visit.patient.told
+        told = self._visit.patient.details
         return _about(told) if told.code else tr("new session")
 
     @property
@@ -77,7 +77,7 @@ class PatientStep(Step):
         self._visit.patient.commit()
 
     def bar(self) -> BarState:
-        has_code = bool(self._visit.patient.told.code)
+        has_code = bool(self._visit.patient.details.code)
         note = tr("Type the patient's code to go on.")
         if has_code:
             note = tr("Saved as you type.") if self._visit.patient.is_saved else tr("Not saved yet.")
@@ -88,7 +88,7 @@ class PatientStep(Step):
 
     def on_primary(self) -> None:
         patient = self._visit.patient
-        if not patient.told.code:
+        if not patient.details.code:
             self.page.focus()
             return
         self._is_going_on = True
@@ -105,7 +105,7 @@ class PatientStep(Step):
         """Fill the page with what is known of the patient; nothing that is being typed is overwritten."""
         patient = self._visit.patient
         self._shown_id = patient.stored.id if patient.stored is not None else None
-        self.page.show_draft(PatientDraft(patient.told, self._visit.without_ankle))
+        self.page.show_draft(PatientDraft(patient.details, self._visit.without_ankle))
         self._show_saved()
 
     def _show_saved(self) -> None:
@@ -138,7 +138,7 @@ class PatientStep(Step):
     def _on_edited(self, draft: PatientDraft) -> None:
         self._visit.set_limits(replace(self._visit.limits, without_ankle=draft.without_ankle))
         self._visit.patient.edit(draft.patient)
-        if self._visit.patient.told.code != self._taken_code:
+        if self._visit.patient.details.code != self._taken_code:
             self._taken_code = ""
         self._show_saved()
         self.changed.emit()
@@ -168,13 +168,13 @@ class PatientStep(Step):
 
     def _on_refused(self, _what: str, _remedy: str) -> None:
         self._is_going_on = False  # the wizard's banner says why
-        if self._page is not None and self._page.draft.patient.code.strip() != self._visit.patient.told.code:
+        if self._page is not None and self._page.draft.patient.code.strip() != self._visit.patient.details.code:
             self._fill()  # another's code, which was not taken
             self.changed.emit()
 
     def _on_open_pressed(self, code: str) -> None:
         if self._visit.session is not None:
-            told = self._visit.session.told.patient.code
+            told = self._visit.session.details.patient.code
             self.told.emit(
                 tr("This session belongs to {code}.").format(code=told),
                 tr("Go back to all patients to begin one with another."),
@@ -196,7 +196,7 @@ class PatientStep(Step):
         """Take zero and placement as they were, and go on."""
         if self._last is None:
             return
-        for joint, zero_rad in self._last.told.zero_rad.items():
+        for joint, zero_rad in self._last.details.zero_rad.items():
             self._visit.set_zero(joint, zero_rad)
         if self._last.placements:
             self._visit.placement_before = self._last.placements[-1].site_of
@@ -216,7 +216,7 @@ def _about(patient: Patient) -> str:
 
 
 def _last_visit(session: "StoredSession") -> LastVisit:
-    told = session.told
+    told = session.details
     try:
         day = date(datetime.datetime.fromisoformat(told.started).date())
     except ValueError:

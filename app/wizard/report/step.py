@@ -150,7 +150,7 @@ class ReportStep(Step):
         self.dialog.setAcceptMode(QFileDialog.AcceptMode.AcceptSave)
         self.dialog.setFileMode(QFileDialog.FileMode.AnyFile)
         if self._visit.session is not None:
-            told = self._visit.session.told
+            told = self._visit.session.details
             self.dialog.selectFile(folder_name(told.patient.code, told.started))
         self.dialog.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.dialog.fileSelected.connect(self.save_in)
@@ -240,7 +240,7 @@ class ReportStep(Step):
         def save(opened: "OpenedLibrary") -> None:
             current = opened.library.sessions.get(session_id)
             if current.comment != comment:
-                opened.library.sessions.change(current, current.told, comment)
+                opened.library.sessions.change(current, current.details, comment)
 
         self._controller.run(save, None, self._on_refused, self)
 
@@ -261,7 +261,7 @@ class ReportStep(Step):
 
         def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary]]":
             lines = opened.library.sessions.list(current.patient_id)  # latest first
-            before = [line for line in lines if line.id != current.id and line.started < current.told.started]
+            before = [line for line in lines if line.id != current.id and line.started < current.details.started]
             return str(opened.library.settings.get(CLINIC, "")), before
 
         self._controller.run(read, self._on_choices, self._on_refused, self)

@@ -79,7 +79,7 @@ class ResultsStep(Step):
 
     @property
     def note(self) -> str:
-        kept = sum(one.told.is_kept and one.is_decided for one in self._visit.recordings.walks)
+        kept = sum(one.details.is_kept and one.is_decided for one in self._visit.recordings.walks)
         return tr("{count} kept").format(count=kept) if kept else ""  # of those that somebody kept
 
     @property
@@ -92,7 +92,7 @@ class ResultsStep(Step):
 
     @property
     def _kept_walks(self) -> list[object]:
-        return [recording for recording in self._visit.recordings.walks if recording.told.is_kept]
+        return [recording for recording in self._visit.recordings.walks if recording.details.is_kept]
 
     def prepare(self) -> bool:
         return self.page.prepare()
@@ -249,17 +249,23 @@ class ResultsStep(Step):
         visit = self._visit
         walks = []
         for recording in visit.recordings.walks:
-            strides = visit.evaluation.strides(recording.told.name)
+            strides = visit.evaluation.strides(recording.details.name)
             counted = ", ".join(f"{side[0].upper()} {count}" for side, count in strides.items())
             told = tr("strides {counts}").format(counts=counted) if counted else tr("not evaluated")
             walks.append(
-                WalkLine(str(recording.id), recording.told.name, told, recording.told.condition, recording.told.is_kept)
+                WalkLine(
+                    str(recording.id),
+                    recording.details.name,
+                    told,
+                    recording.details.condition,
+                    recording.details.is_kept,
+                )
             )
         page.show_walks(walks)
         found = visit.evaluation.calibration
         joints = []
         for joint in (joint for joint in Joint if joint in found):
-            turned = visit.told.turned_sign.get(joint)
+            turned = visit.details.turned_sign.get(joint)
             note = tr("turned by hand") if turned == -1 else tr("confirmed by hand") if turned == 1 else ""
             if not note:
                 note = tr("as found") if found[joint].is_sign_certain else tr("as found, unsure")
@@ -285,13 +291,13 @@ class ResultsStep(Step):
 
     def _on_condition_typed(self, key: str, condition: str) -> None:
         recording = self._recording(key)
-        if recording is None or recording.told.condition == condition:
+        if recording is None or recording.details.condition == condition:
             return
-        before = recording.told.condition
+        before = recording.details.condition
         self._change_condition(key, condition)
         self._offer(
             tr("{walk} is {condition} now.").format(
-                walk=recording.told.name, condition=condition or tr("without condition")
+                walk=recording.details.name, condition=condition or tr("without condition")
             ),
             lambda: self._change_condition(key, before),
         )
@@ -302,11 +308,11 @@ class ResultsStep(Step):
 
     def _on_kept_turned(self, key: str, is_kept: bool) -> None:
         recording = self._recording(key)
-        if recording is None or recording.told.is_kept == is_kept:
+        if recording is None or recording.details.is_kept == is_kept:
             return
         self._keep(key, is_kept)
         said = tr("{walk} counts.") if is_kept else tr("{walk} is left out.")
-        self._offer(said.format(walk=capitalised(recording.told.name)), lambda: self._keep(key, not is_kept))
+        self._offer(said.format(walk=capitalised(recording.details.name)), lambda: self._keep(key, not is_kept))
 
     def _keep(self, key: str, is_kept: bool) -> None:
         if (recording := self._recording(key)) is not None:
@@ -314,7 +320,7 @@ class ResultsStep(Step):
 
     def _on_sign_turned(self, name: str, is_turned: bool) -> None:
         joint = Joint(name)
-        before = self._visit.told.turned_sign.get(joint)
+        before = self._visit.details.turned_sign.get(joint)
         self._visit.set_turned(joint, -1 if is_turned else None)
         said = tr("{joint}: the sign is turned.") if is_turned else tr("{joint}: the sign is as found.")
         words = said.format(joint=capitalised(name_of(joint)))

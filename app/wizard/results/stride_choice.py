@@ -62,14 +62,14 @@ class StrideChoice(QObject):
             self._recordings.change(recording, lambda told: replace(told, left_out_s=wanted))
 
     def _recording(self, walk: str) -> "SessionRecording | None":
-        return next((recording for recording in self._recordings.walks if recording.told.name == walk), None)
+        return next((recording for recording in self._recordings.walks if recording.details.name == walk), None)
 
     def _left_out(self, recording: "SessionRecording") -> LeftOut:
-        return self._wanted.get(recording.id, recording.told.left_out_s)
+        return self._wanted.get(recording.id, recording.details.left_out_s)
 
     def _on_recordings_changed(self) -> None:
         for recording in self._recordings.walks:
-            if self._wanted.get(recording.id) == recording.told.left_out_s:
+            if self._wanted.get(recording.id) == recording.details.left_out_s:
                 del self._wanted[recording.id]
 
     def _on_refused(self) -> None:

@@ -123,7 +123,9 @@ class SensorsStep(Step):
         if patient.stored is not None:
             return ""
         return (
-            tr("Press Enter to save the patient first.") if patient.told.code else tr("Type the patient's code first.")
+            tr("Press Enter to save the patient first.")
+            if patient.details.code
+            else tr("Type the patient's code first.")
         )
 
     @property
@@ -313,9 +315,9 @@ class SensorsStep(Step):
         is_silent = status.silent_s >= SILENT_FROM_S
         return SensorRow(
             name=status.sensor,
-            model=status.told.model,
-            rate_hz=status.told.rate_hz or float(round(status.heard_hz)),
-            battery=status.told.battery,
+            model=status.details.model,
+            rate_hz=status.details.rate_hz or float(round(status.heard_hz)),
+            battery=status.details.battery,
             site=self._visit.sensors.site_of.get(status.sensor),
             silent_s=float(round(status.silent_s)) if is_silent else 0.0,
             lost_share=round(status.lost_share, 3),

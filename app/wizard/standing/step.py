@@ -89,7 +89,7 @@ class StandStillStep(Step):
     def enter(self) -> None:
         self._phase = self._settled_phase()
         self._watch()
-        zero = self._visit.told.zero_rad
+        zero = self._visit.details.zero_rad
         joints = list(Joint) if self._visit.sensors.is_left_to_motion else self._visit.sensors.joints
         self.page.show_zero({joint: math.degrees(zero.get(joint, 0.0)) for joint in joints})
         self._show()
@@ -145,7 +145,7 @@ class StandStillStep(Step):
     @property
     def _is_recording(self) -> bool:
         ongoing = self._visit.recordings.ongoing
-        return ongoing is not None and ongoing.told.kind is RecordingKind.STANDING
+        return ongoing is not None and ongoing.details.kind is RecordingKind.STANDING
 
     @property
     def _has_stood(self) -> bool:
@@ -241,7 +241,7 @@ class StandStillStep(Step):
             self._watch()  # only what is recorded counts
 
     def _on_ended(self, recording: SessionRecording) -> None:
-        if recording.told.kind is not RecordingKind.STANDING:
+        if recording.details.kind is not RecordingKind.STANDING:
             return
         if self._phase is StandPhase.DONE and not self._shown.isActive() and self._estimator is not None:
             self._go_on()  # the check mark has been seen while the journal was closed

@@ -87,12 +87,12 @@ class WalkingStep(Step):
     @property
     def note(self) -> str:
         if self._visit.recordings.is_recording and self._visit.recordings.ongoing is not None:
-            if self._visit.recordings.ongoing.told.kind is RecordingKind.WALKING:
+            if self._visit.recordings.ongoing.details.kind is RecordingKind.WALKING:
                 return tr("Recording walk {number}").format(number=len(self._visit.recordings.walks) + 1)
             return ""
         if self._asked is not None:
             return tr("keep or discard?")
-        kept = sum(one.told.is_kept and one.is_decided for one in self._visit.recordings.walks)
+        kept = sum(one.details.is_kept and one.is_decided for one in self._visit.recordings.walks)
         return tr("{count} kept").format(count=kept) if kept else ""
 
     @property
@@ -101,7 +101,7 @@ class WalkingStep(Step):
             return StepState.ATTENTION
         return (
             StepState.DONE
-            if any(recording.told.is_kept for recording in self._visit.recordings.walks)
+            if any(recording.details.is_kept for recording in self._visit.recordings.walks)
             else StepState.TODO
         )
 
@@ -145,7 +145,7 @@ class WalkingStep(Step):
         self._begin_estimator()
         self.page.set_simulated(self._visit.is_simulated)
         if not self._label:
-            self._label = label_after(self._visit.patient.told, self._used)
+            self._label = label_after(self._visit.patient.details, self._used)
         self._show()
         self.page.focus()
 
@@ -177,7 +177,7 @@ class WalkingStep(Step):
             return BarState(
                 primary=BarAction(tr("Stop walk"), tr("Space"), Icon.STOP),
                 recording=RecordingNote(
-                    tr("Recording {label}").format(label=recordings.ongoing.told.condition),
+                    tr("Recording {label}").format(label=recordings.ongoing.details.condition),
                     " ".join(filter(None, [self._saved(), tr("The space bar stops it, with a sound.")])),
                     elapsed_s,
                     sounds.is_on(),
@@ -192,7 +192,7 @@ class WalkingStep(Step):
                 tr("Keep, start next"), tr("Space"), Icon.PLAY, is_wished=False, is_enabled=self._can_start
             )
             return BarState(primary=both, note=self._cannot_start or tr("Next: {label}").format(label=self._label))
-        if any(recording.told.is_kept for recording in recordings.walks):
+        if any(recording.details.is_kept for recording in recordings.walks):
             again = BarAction(start.text, start.key, start.icon, is_wished=False, is_enabled=start.is_enabled)
             return BarState(primary=BarAction(tr("Results"), "", Icon.NEXT), others=(again,), note=self._cannot_start)
         note = tr("Next: {label}").format(label=self._label)
@@ -210,7 +210,7 @@ class WalkingStep(Step):
     def on_primary(self) -> None:
         recordings = self._visit.recordings
         is_settled = not recordings.is_recording and not recordings.is_stopping and self._asked is None
-        if is_settled and any(recording.told.is_kept for recording in recordings.walks):
+        if is_settled and any(recording.details.is_kept for recording in recordings.walks):
             self.done.emit()
         else:
             self._run()
@@ -280,7 +280,7 @@ class WalkingStep(Step):
         self._visit.recordings.keep(recording, is_kept)
         if not is_kept:
             self._discarded = recording.id
-            self.offered.emit(tr("{label} discarded.").format(label=recording.told.condition))
+            self.offered.emit(tr("{label} discarded.").format(label=recording.details.condition))
         self._show()
 
     # what is live
@@ -311,7 +311,7 @@ class WalkingStep(Step):
         seconds = min(acquisition.now_s - recordings.ongoing.began_s, LOOKED_BACK_S)
         worn = self._visit.sensors.site_of
         imu = {site: acquisition.latest(sensor, seconds) for sensor, site in worn.items()}
-        told = recordings.ongoing.told
+        told = recordings.ongoing.details
         self._visit.evaluate(
             Recording(told.name, told.kind, told.folder, {site: block for site, block in imu.items() if len(block)})
         )
@@ -372,7 +372,7 @@ class WalkingStep(Step):
             return self._message_of_ongoing()
         asked = self._asked
         if asked is not None and asked.stored.state is RecordingState.RECOVERED:
-            return recovered_message(asked.told.name, _length_s(asked))
+            return recovered_message(asked.details.name, _length_s(asked))
         return self._few_strides_message()
 
     def _message_of_ongoing(self) -> Message:
@@ -386,13 +386,13 @@ class WalkingStep(Step):
 
     def _few_strides_message(self) -> Message:
         """Say what is short of a spread for the last walk's condition, if its walks are all too short together."""
-        walks = [recording for recording in self._visit.recordings.walks if recording.told.is_kept]
+        walks = [recording for recording in self._visit.recordings.walks if recording.details.is_kept]
         if not walks:
             return NOTHING
-        condition = walks[-1].told.condition
+        condition = walks[-1].details.condition
         counts: dict[Side, int] = {}
         for recording in walks:
-            if recording.told.condition == condition:
+            if recording.details.condition == condition:
                 for side, count in self._strides_of(recording).items():
                     counts[side] = counts.get(side, 0) + count
         return few_strides_message(counts)
@@ -401,7 +401,7 @@ class WalkingStep(Step):
 
     @property
     def _used(self) -> list[str]:
-        return [recording.told.condition for recording in self._visit.recordings.walks]
+        return [recording.details.condition for recording in self._visit.recordings.walks]
 
     @property
     def _asked(self) -> "SessionRecording | None":
@@ -417,10 +417,10 @@ class WalkingStep(Step):
         """As the analysis has counted them, or else as they were counted live: amid a walk it saw a part only."""
         session = self._visit.evaluation.session
         seen = {recording.name: recording for recording in session.recordings} if session is not None else {}
-        same = seen.get(recording.told.name)
+        same = seen.get(recording.details.name)
         if same is None or recording.read_back is None or same.imu is not recording.read_back.imu:
             return dict(recording.strides or {})
-        return self._visit.evaluation.strides(recording.told.name)
+        return self._visit.evaluation.strides(recording.details.name)
 
     @Slot()
     def _show(self) -> None:
@@ -429,26 +429,30 @@ class WalkingStep(Step):
             return
         recordings, asked = self._visit.recordings, self._asked
         ongoing = (
-            recordings.ongoing if recordings.ongoing and recordings.ongoing.told.kind is RecordingKind.WALKING else None
+            recordings.ongoing
+            if recordings.ongoing and recordings.ongoing.details.kind is RecordingKind.WALKING
+            else None
         )
-        conditions = [*self._used, *([ongoing.told.condition] if ongoing is not None else [])]
+        conditions = [*self._used, *([ongoing.details.condition] if ongoing is not None else [])]
         letters = letters_of(conditions)
         rows = []
         for recording in recordings.walks:
-            state = WalkState.KEPT if recording.told.is_kept else WalkState.DISCARDED
+            state = WalkState.KEPT if recording.details.is_kept else WalkState.DISCARDED
             if not recording.is_decided:
                 is_recovered = recording.stored.state is RecordingState.RECOVERED
                 state = WalkState.RECOVERED if is_recovered else WalkState.ASKING
             strides = max(self._strides_of(recording).values(), default=None)
-            letter = letters.get(recording.told.condition, "")
+            letter = letters.get(recording.details.condition, "")
             rows.append(
-                WalkRow(str(recording.id), letter, recording.told.condition or recording.told.name, state, strides)
+                WalkRow(
+                    str(recording.id), letter, recording.details.condition or recording.details.name, state, strides
+                )
             )
         if ongoing is not None:
-            label = ongoing.told.condition
-            rows.append(WalkRow("", letters.get(label, ""), label or ongoing.told.name, WalkState.RECORDING))
+            label = ongoing.details.condition
+            rows.append(WalkRow("", letters.get(label, ""), label or ongoing.details.name, WalkState.RECORDING))
         self._page.show_walks(tuple(rows), self._facts(asked) if asked is not None else "")
-        self._page.show_labels(labels_for(self._visit.patient.told, conditions), self._label)
+        self._page.show_labels(labels_for(self._visit.patient.details, conditions), self._label)
         self.changed.emit()
 
     def _facts(self, recording: "SessionRecording") -> str:
@@ -474,8 +478,8 @@ class WalkingStep(Step):
 
     @Slot(object)
     def _on_ended(self, recording: "SessionRecording") -> None:
-        if recording.told.kind is RecordingKind.WALKING:
-            self._label = label_after(self._visit.patient.told, self._used)
+        if recording.details.kind is RecordingKind.WALKING:
+            self._label = label_after(self._visit.patient.details, self._used)
             self._show()
 
     @Slot()

@@ -91,7 +91,7 @@ def test_sensors_are_heard_shown_and_told(start: Start) -> None:
     assert [status[name].source for name in acquisition.sensors] == [0, 0, 1]
     for name, one in status.items():
         assert one.sensor == name
-        assert one.told.serial == name
+        assert one.details.serial == name
         assert one.silent_s < PATIENCE_S
         assert one.counts.received > 20
         assert one.lost_share == 0.0

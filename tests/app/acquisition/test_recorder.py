@@ -150,7 +150,7 @@ def test_a_visit_recorded_live_gives_the_same_results_whenever_it_is_read(opened
         assert all(is_part_of(recording.imu[site], played.imu[site]) for site in played.imu)
 
     visit = opened.library.sessions.get(visit_id)
-    first = analyse(Session(tuple(live), visit.told.patient, visit.told.sensors, is_simulated=True))
+    first = analyse(Session(tuple(live), visit.details.patient, visit.details.sensors, is_simulated=True))
     opened.library.close()
     with reopened(opened) as later:
         stored_visit = later.library.sessions.get(visit_id)
@@ -225,7 +225,7 @@ def test_without_room_nothing_begins_and_the_name_stays_free(
         Recorder.begin(opened, acquisition, session_id, walk(), room=Room(start_bytes=10**15))
     wait_for(lambda: opened.library.sessions.get(session_id).recordings == ())
     stored, _ = Recorder.begin(opened, acquisition, session_id, walk(), room=ANY_ROOM).stop(opened)
-    assert stored.told.name == "walk 1"
+    assert stored.details.name == "walk 1"
 
 
 class Busy:

@@ -148,7 +148,7 @@ def test_arrows_choose_while_typing_and_enter_begins(qtbot: QtBot, home: Home) -
         QTest.keyClick(home.page.search, Qt.Key.Key_Return)
     (patient,) = told.args or []
     assert isinstance(patient, StoredPatient)
-    assert patient.told.code == "P-0147"
+    assert patient.details.code == "P-0147"
 
 
 def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -> None:

@@ -21,7 +21,7 @@ WHOLE = replace(CUT, footer=Footer("stopped", 0, 0))
 class Row:
     """A recording's row, as far as it is said."""
 
-    told = Recording("walk 3", RecordingKind.WALKING, str(Path("walk_3")), {})
+    details = Recording("walk 3", RecordingKind.WALKING, str(Path("walk_3")), {})
 
 
 def said(*reports: ReadReport) -> str:

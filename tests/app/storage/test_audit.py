@@ -146,7 +146,7 @@ def test_what_is_no_checkpoint_is_refused(words: str) -> None:
 
 def test_the_library_notes_what_is_done_in_it_and_beside_it(library: Library) -> None:
     patient = library.patients.create(Patient(code="P-1"))
-    library.patients.change(patient, replace(patient.told, aids="cane"))
+    library.patients.change(patient, replace(patient.details, aids="cane"))
     library.audit.note(Action.BACKUP, "library", bytes=12)
     entries = library.audit.entries()
     assert [entry.action for entry in entries] == ["create", "login", "create", "edit", "backup"]
@@ -162,7 +162,7 @@ def test_the_library_notes_what_is_done_in_it_and_beside_it(library: Library) ->
 
 def test_the_audit_holds_no_values(library: Library) -> None:
     patient = library.patients.create(Patient(code="Mustermann"))
-    library.patients.change(patient, replace(patient.told, aids="Mustermann's cane"))
+    library.patients.change(patient, replace(patient.details, aids="Mustermann's cane"))
     assert "Mustermann" not in str(library.audit.entries())
 
 

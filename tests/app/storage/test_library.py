@@ -46,7 +46,7 @@ INPUTS = AnalysisInputs(
     ),
     zero_rad={Joint.LEFT_KNEE: 0.1},
     turned_sign={Joint.LEFT_KNEE: -1},
-    told={"affected_side": "left"},
+    details={"affected_side": "left"},
     algorithm="1.0",
     parameters={"method": "robust", "tau_s": 5.0},
 )
@@ -158,7 +158,7 @@ def test_roles_allow_what_they_say(clinician: Library) -> None:
     assert clinician.patients.search() != ()
     assert clinician.sessions.view(visit.id) == visit
     with pytest.raises(NotAllowedError, match="clinician"):
-        clinician.patients.change(patient, replace(patient.told, aids="cane"))
+        clinician.patients.change(patient, replace(patient.details, aids="cane"))
     with pytest.raises(NotAllowedError, match="clinician"):
         clinician.patients.delete(patient)
 
@@ -207,10 +207,10 @@ def test_simulated_recordings_go_to_demo_patients_only(library: Library) -> None
     assert library.sessions.get(visit.id) == visit
     shown = library.sessions.create(demo.id, Session(()))
     assert library.recordings.start(shown.id, walk, is_simulated=True).is_simulated
-    assert library.sessions.get(shown.id).told.is_simulated
+    assert library.sessions.get(shown.id).details.is_simulated
     demo = library.patients.get(demo.id)
     with pytest.raises(LibraryError, match="DEMO"):
-        library.patients.change(demo, replace(demo.told, code="P-2"))
+        library.patients.change(demo, replace(demo.details, code="P-2"))
     with pytest.raises(LibraryError, match="DEMO"):
         library.patients.merge(library.patients.get(real.id), demo)
     library.recordings.start(visit.id, walk, is_simulated=False)
@@ -256,7 +256,7 @@ def test_a_result_is_found_by_all_that_it_depends_on_and_by_nothing_less(library
         replace(INPUTS, turned_sign={}),
         replace(INPUTS, algorithm="1.1"),
         replace(INPUTS, parameters={"method": "robust", "tau_s": 6.0}),
-        replace(INPUTS, told={"affected_side": "right"}),
+        replace(INPUTS, details={"affected_side": "right"}),
     ]
     for other in others:
         assert library.results.find(visit.id, ResultKind.ANALYSIS, other) is None

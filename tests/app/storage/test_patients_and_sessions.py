@@ -91,7 +91,7 @@ def walk(library: Library, visit: StoredSession) -> StoredRecording:
 
 
 def test_a_patient_comes_back_as_told(library: Library, patient: StoredPatient, clock: Clock) -> None:
-    assert patient.told == FULL
+    assert patient.details == FULL
     assert (patient.version, patient.created_at, patient.sessions, patient.last_session) == (1, clock.now, 0, "")
     assert library.patients.get(patient.id) == patient
     assert library.patients.find(" p-001 ") == patient
@@ -125,7 +125,7 @@ def test_patients_are_found_by_any_part_of_their_code_latest_first(library: Libr
         library.sessions.create(patients[code].id, Session((), started=f"2026-01-0{day + 1}"))
 
     def found(text: str) -> list[str]:
-        return [patient.told.code for patient in library.patients.search(text)]
+        return [patient.details.code for patient in library.patients.search(text)]
 
     assert found("")[:2] == ["A_1", "AB-4"]
     assert sorted(found("")) == sorted(codes)
@@ -139,7 +139,7 @@ def test_changing_a_patient_keeps_what_it_was_and_who_did_it(
 ) -> None:
     clock.now += datetime.timedelta(hours=1)
     changed = library.patients.change(patient, replace(FULL, affected_side="right", mass_kg=None))
-    assert changed.told == replace(FULL, affected_side="right", mass_kg=None)
+    assert changed.details == replace(FULL, affected_side="right", mass_kg=None)
     (correction,) = library.corrections.of_patient(patient.id)
     assert (correction.operator, correction.at, correction.is_undone) == ("hk", clock.now, False)
     assert {(c.field, c.old, c.new) for c in correction.changes} == {
@@ -147,13 +147,13 @@ def test_changing_a_patient_keeps_what_it_was_and_who_did_it(
         ("mass_kg", 70.1, None),
     }
     library.corrections.undo(correction.id)
-    assert library.patients.get(patient.id).told == FULL
+    assert library.patients.get(patient.id).details == FULL
     again, first = library.corrections.of_patient(patient.id)
     assert (again.undoes, again.is_undone, first.is_undone) == (correction.id, False, True)
     with pytest.raises(LibraryError, match="undone already"):
         library.corrections.undo(correction.id)
     library.corrections.undo(again.id)
-    assert library.patients.get(patient.id).told == changed.told
+    assert library.patients.get(patient.id).details == changed.details
 
 
 def test_a_change_that_changes_nothing_is_none(library: Library, patient: StoredPatient) -> None:
@@ -167,10 +167,10 @@ def test_what_was_changed_again_is_not_undone_over_it(library: Library, patient:
     latest, first = library.corrections.of_patient(patient.id)
     with pytest.raises(ChangedMeanwhileError):
         library.corrections.undo(first.id)
-    assert library.patients.get(patient.id).told.aids == "none"
+    assert library.patients.get(patient.id).details.aids == "none"
     library.corrections.undo(latest.id)
     library.corrections.undo(first.id)
-    assert library.patients.get(patient.id).told.aids == "cane"
+    assert library.patients.get(patient.id).details.aids == "cane"
 
 
 def test_of_two_who_change_at_once_the_second_is_told(
@@ -178,12 +178,12 @@ def test_of_two_who_change_at_once_the_second_is_told(
 ) -> None:
     library.patients.change(patient, replace(FULL, aids="frame"))
     visit = library.sessions.get(visit.id)
-    library.sessions.change(visit, replace(visit.told, zero_rad={Joint.LEFT_KNEE: 0.1}))
+    library.sessions.change(visit, replace(visit.details, zero_rad={Joint.LEFT_KNEE: 0.1}))
     library.recordings.change(walk, replace(WALK, is_kept=False))
     with pytest.raises(ChangedMeanwhileError):
         library.patients.change(patient, replace(FULL, device="none"))
     with pytest.raises(ChangedMeanwhileError):
-        library.sessions.change(visit, replace(visit.told, zero_rad={Joint.LEFT_KNEE: 0.2}))
+        library.sessions.change(visit, replace(visit.details, zero_rad={Joint.LEFT_KNEE: 0.2}))
     with pytest.raises(ChangedMeanwhileError):
         library.recordings.change(walk, replace(WALK, condition="barefoot"))
     with pytest.raises(ChangedMeanwhileError):
@@ -209,14 +209,14 @@ def test_a_session_comes_back_as_told(library: Library, patient: StoredPatient) 
         unknown={"weather": "rain", "zero": {"left_hip": 1.0}},
     )
     visit = library.sessions.create(patient.id, told)
-    assert visit.told == told
+    assert visit.details == told
     assert library.sessions.get(visit.id) == visit
     library.sessions.place(visit.id, SENSORS)
     for recording in (WALK, replace(WALK, name="walk 2", is_restrapped_before=True, is_kept=False)):
         library.recordings.start(visit.id, recording, is_simulated=False)
     again = library.sessions.get(visit.id)
-    assert again.told.recordings == (WALK, replace(WALK, name="walk 2", is_restrapped_before=True, is_kept=False))
-    assert again.told.sensors == {site: sensor.info for site, sensor in SENSORS.items()}
+    assert again.details.recordings == (WALK, replace(WALK, name="walk 2", is_restrapped_before=True, is_kept=False))
+    assert again.details.sensors == {site: sensor.info for site, sensor in SENSORS.items()}
     assert [recording.placement for recording in again.recordings] == [again.placements[0]] * 2
 
 
@@ -261,16 +261,16 @@ def test_sessions_are_found_by_their_words(library: Library, patient: StoredPati
 
 
 def test_zero_and_sign_are_corrected_and_taken_back(library: Library, visit: StoredSession) -> None:
-    told = replace(visit.told, zero_rad={Joint.LEFT_KNEE: 0.1}, turned_sign={Joint.LEFT_KNEE: -1}, notes="new")
+    told = replace(visit.details, zero_rad={Joint.LEFT_KNEE: 0.1}, turned_sign={Joint.LEFT_KNEE: -1}, notes="new")
     changed = library.sessions.change(visit, told, comment="better")
-    assert (changed.told, changed.comment) == (told, "better")
+    assert (changed.details, changed.comment) == (told, "better")
     assert changed.version > visit.version
     (correction,) = library.corrections.of_session(visit.id)
     assert {change.field for change in correction.changes} == {"zero_rad", "turned_sign", "notes", "comment"}
     assert library.audit.entries(f"session:{visit.id}")[-1].action == Action.EDIT
     library.corrections.undo(correction.id)
     back = library.sessions.get(visit.id)
-    assert (back.told, back.comment) == (visit.told, "")
+    assert (back.details, back.comment) == (visit.details, "")
 
 
 def test_a_corrected_placement_leaves_the_old_one_in_the_history(
@@ -344,21 +344,21 @@ def test_what_was_told_of_a_recording_is_corrected_and_taken_back(library: Libra
         left_out_s={Side.LEFT: (1 / 3, 7.25), Side.RIGHT: (4.0,)},
     )
     changed = library.recordings.change(walk, told)
-    assert changed.told == told
+    assert changed.details == told
     (correction,) = library.corrections.of_session(walk.session_id)
     assert "left_out" in {change.field for change in correction.changes}
     assert "left_out" in library.audit.entries(f"session:{walk.session_id}")[-1].details
     library.corrections.undo(correction.id)
     found = library.recordings.find(walk.id)
     assert found is not None
-    assert found.told == WALK
+    assert found.details == WALK
 
 
 def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPatient, visit: StoredSession) -> None:
     kept = library.patients.create(Patient(code="P-1", aids="frame"))
     patient = library.patients.get(patient.id)
     merged = library.patients.merge(kept, patient)
-    assert merged.told == replace(FULL, code="P-1", aids="frame", unknown={})
+    assert merged.details == replace(FULL, code="P-1", aids="frame", unknown={})
     assert merged.sessions == 1
     assert [line.patient_code for line in library.sessions.list()] == ["P-1"]
     assert [found.id for found in library.patients.search()] == [kept.id]
@@ -367,9 +367,9 @@ def test_doubles_are_merged_and_parted_again(library: Library, patient: StoredPa
         library.patients.create(FULL)
     (correction,) = library.corrections.of_patient(kept.id)
     library.corrections.undo(correction.id)
-    assert library.patients.get(kept.id).told == kept.told
+    assert library.patients.get(kept.id).details == kept.details
     assert [line.patient_code for line in library.sessions.list()] == ["P-001"]
-    assert library.patients.get(patient.id).told == FULL
+    assert library.patients.get(patient.id).details == FULL
 
 
 def test_a_double_of_a_double_is_merged_too(library: Library, patient: StoredPatient, clock: Clock) -> None:

@@ -34,16 +34,16 @@ def test_corrections_are_taken_back_in_their_order_whatever_the_clock_says(
     library.corrections.undo(earliest.id)
     found = library.recordings.find(walk.id)
     assert found is not None
-    assert found.told == WALK
+    assert found.details == WALK
 
 
 def test_whether_a_walk_is_kept_is_answered_once_for_all(library: Library, visit: StoredSession) -> None:
     asked = library.recordings.start(visit.id, WALK, is_simulated=False, is_decided=False)
     assert not asked.is_decided
     kept = library.recordings.decide(asked, is_kept=True)
-    assert (kept.is_decided, kept.told, kept.judged_by) == (True, WALK, "")
+    assert (kept.is_decided, kept.details, kept.judged_by) == (True, WALK, "")
     assert library.corrections.of_session(visit.id) == ()
     assert library.audit.entries(f"recording:{asked.id}")[-1].details == '{"is_kept":true,"is_recovered":false}'
     discarded = library.recordings.decide(kept, is_kept=False)
-    assert not discarded.told.is_kept
+    assert not discarded.details.is_kept
     assert [change.field for change in library.corrections.of_session(visit.id)[0].changes] == ["is_kept"]

@@ -111,7 +111,7 @@ def place_of(wizard: Wizard) -> int:
 
 def samples_of(visit: Visit) -> dict[str, dict[str, int]]:
     return {
-        recording.told.name: {str(site): len(block) for site, block in recording.read_back.imu.items()}
+        recording.details.name: {str(site): len(block) for site, block in recording.read_back.imu.items()}
         for recording in visit.recordings.every
         if recording.read_back is not None
     }
@@ -169,9 +169,9 @@ def check_corrections(qtbot: QtBot, wizard: Wizard, told: dict[str, Any]) -> Non
     visit = visit_of(wizard)
     assert samples_of(visit) == told["takes"]
     first, second = visit.recordings.walks
-    assert (first.told.condition, dict(first.told.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
-    assert (first.told.is_kept, second.told.is_kept) == (True, False)
-    assert visit.told.turned_sign == {Joint.LEFT_KNEE: -1}
+    assert (first.details.condition, dict(first.details.left_out_s)) == (CONDITION, {Side.LEFT: (4.0,)})
+    assert (first.details.is_kept, second.details.is_kept) == (True, False)
+    assert visit.details.turned_sign == {Joint.LEFT_KNEE: -1}
     qtbot.waitUntil(lambda: visit.evaluation.analysis is not None and not visit.evaluation.is_busy, timeout=WAIT_MS)
     assert visit.evaluation.session is not None
     assert visit.evaluation.session.turned_sign == {Joint.LEFT_KNEE: -1}

@@ -84,7 +84,7 @@ def test_a_correction_that_is_refused_does_not_hide_the_walk_that_has_just_begun
     assert recordings.is_recording
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS):
         recordings.stop()
-    assert [recording.told.name for recording in recordings.walks] == ["walk 1", "walk 2"]
+    assert [recording.details.name for recording in recordings.walks] == ["walk 1", "walk 2"]
 
 
 def test_a_walk_that_the_library_is_too_busy_for_is_read_back_later(
@@ -237,11 +237,11 @@ def test_a_new_calibration_that_is_broken_off_is_asked_for_again(qtbot: QtBot, l
         recordings.keep(record(qtbot, looked_at, kind, 1.0), is_kept=True)
     recordings.say_restrapped()
     broken_off = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
-    assert broken_off.told.is_restrapped_before
+    assert broken_off.details.is_restrapped_before
     recordings.keep(broken_off, is_kept=False)
     assert recordings.is_restrapped
     standing = record(qtbot, looked_at, RecordingKind.STANDING, 1.0)
-    assert standing.told.is_restrapped_before
+    assert standing.details.is_restrapped_before
     step = WalkingStep(ThemeNotifier(), looked_at)
     assert not step.bar().others[0].is_enabled  # nobody has moved since
     assert "Stand still and move freely" in step.bar().note
@@ -286,7 +286,7 @@ def test_walks_are_judged_without_sensors(qtbot: QtBot, controller: LibraryContr
     step.tick()
     assert "was recovered, up to the last record on the disk" in step.page.notice.text
     step.page.discard_pressed.emit(str(walk.id))
-    qtbot.waitUntil(lambda: not again.recordings.walks[0].told.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: not again.recordings.walks[0].details.is_kept, timeout=WAIT_MS)
     step.leave()
     again.finish()
 
@@ -316,10 +316,10 @@ def test_a_session_stays_its_patients(qtbot: QtBot, visit: Visit, worn: dict[str
     record(qtbot, visit, RecordingKind.WALKING, 0.5)
     visit.recordings.session = visit.session
     for code, is_taken in (("DEMO-8", True), ("P-8", False)):
-        visit.patient.edit(replace(visit.patient.told, code=code))
+        visit.patient.edit(replace(visit.patient.details, code=code))
         with qtbot.waitSignals([visit.patient.changed if is_taken else visit.patient.refused], timeout=WAIT_MS):
             visit.patient.commit()
-    assert visit.patient.told.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
+    assert visit.patient.details.code == "DEMO-8"  # corrected; what is simulated becomes nobody's who is not
     assert visit.patient.stored is not None
     assert visit.session is not None
     assert visit.patient.stored.id == visit.session.patient_id
@@ -340,8 +340,8 @@ def test_the_session_of_somebody_with_others_is_given_to_nobody_else(
     visit.patient.edit(Patient(code="DEMO-99", birth_year=1990))
     with qtbot.waitSignal(visit.patient.refused) as refused:
         visit.patient.commit()
-    assert refused.args[0] == f"This session belongs to {demo.told.code}."
-    assert visit.patient.told == demo.told
+    assert refused.args[0] == f"This session belongs to {demo.details.code}."
+    assert visit.patient.details == demo.details
     assert library.patients.find("DEMO-99") is None
 
 
@@ -351,7 +351,7 @@ def test_a_code_is_written_otherwise_by_its_own_patient(qtbot: QtBot, visit: Vis
         with qtbot.waitSignal(visit.patient.changed, timeout=WAIT_MS):
             visit.patient.commit()
     assert visit.patient.stored is not None
-    assert visit.patient.stored.told.code == "DEMO-5"
+    assert visit.patient.stored.details.code == "DEMO-5"
 
 
 def test_a_session_that_is_gone_leads_back_and_says_so(

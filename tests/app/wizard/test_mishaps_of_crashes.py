@@ -111,5 +111,5 @@ def test_a_clock_that_is_set_back_between_recordings_changes_nothing_of_their_or
     again = Visit(left.controller, [])
     with qtbot.waitSignal(again.resumed, timeout=WAIT_MS):
         again.resume(left.session.id)
-    assert [recording.told.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
+    assert [recording.details.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     again.finish()

@@ -64,7 +64,7 @@ def test_no_call_of_the_library_holds_up_a_recording(
     finally:
         over.set()
     qtbot.waitUntil(lambda: recordings.is_idle, timeout=WAIT_MS)
-    assert [recording.told.name for recording in ended] == ["walk 1", "walk 2"]
+    assert [recording.details.name for recording in ended] == ["walk 1", "walk 2"]
     assert [recording.stored.state for recording in ended] == [RecordingState.CLOSED] * 2
     for recording in ended:
         assert recording.read_back is not None
@@ -99,7 +99,7 @@ def test_a_database_that_fails_in_whatever_way_costs_no_recording(
     is_broken[0] = False
     with qtbot.waitSignal(recordings.ended, timeout=WAIT_MS) as ended:
         pass
-    assert ended.args[0].told.name == "walk 1"
+    assert ended.args[0].details.name == "walk 1"
 
 
 def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
@@ -111,8 +111,8 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     recordings.change(walk, lambda told: replace(told, condition="barefoot"))
     recordings.change(walk, lambda told: replace(told, left_out_s={Side.LEFT: (4.0,)}))
     recordings.keep(walk, is_kept=False)
-    qtbot.waitUntil(lambda: not recordings.walks[0].told.is_kept, timeout=WAIT_MS)
-    told = recordings.walks[0].told
+    qtbot.waitUntil(lambda: not recordings.walks[0].details.is_kept, timeout=WAIT_MS)
+    told = recordings.walks[0].details
     assert (told.condition, dict(told.left_out_s)) == ("barefoot", {Side.LEFT: (4.0,)})
     for is_kept in (True, False):
         recordings.keep(recordings.walks[0], is_kept)
@@ -123,7 +123,7 @@ def test_corrections_that_follow_each_other_quickly_all_hold(qtbot: QtBot, visit
     assert passed.wait(20)
     stored = library.recordings.find(walk.id)
     assert stored is not None
-    assert not stored.told.is_kept
+    assert not stored.details.is_kept
 
 
 def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
@@ -132,7 +132,7 @@ def test_what_was_broken_off_does_not_count(qtbot: QtBot, visit: Visit, worn: di
     assert acquisition is not None
     recordings.begin(acquisition, RecordingKind.STANDING)
     recordings.stop(is_kept=False)  # before it has begun
-    qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].told.is_kept, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: bool(recordings.every) and not recordings.every[0].details.is_kept, timeout=WAIT_MS)
     assert recordings.standing is None
     record(qtbot, visit, RecordingKind.STANDING, 2.0)
     assert recordings.standing is not None

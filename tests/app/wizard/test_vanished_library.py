@@ -112,7 +112,7 @@ def test_renamed_between_two_walks_the_next_begins_all_the_same(
     assert not recordings.is_idle
     with qtbot.waitSignals([recordings.ended, controller.back], timeout=WAIT_MS):
         elsewhere.rename(folder)
-    assert [(recording.told.name, recording.stored.state) for recording in recordings.walks] == [
+    assert [(recording.details.name, recording.stored.state) for recording in recordings.walks] == [
         ("walk 1", RecordingState.CLOSED),
         ("walk 2", RecordingState.CLOSED),
     ]
@@ -215,7 +215,7 @@ def test_a_whole_day_on_which_the_disk_comes_and_goes(
     library = again.controller.state.library.library
     (line,) = library.sessions.list()
     recordings = library.sessions.get(line.id).recordings
-    assert [(one.told.name, one.state) for one in recordings] == [
+    assert [(one.details.name, one.state) for one in recordings] == [
         ("walk 1", RecordingState.CLOSED),
         ("walk 2", RecordingState.CLOSED),
     ]

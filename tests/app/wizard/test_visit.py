@@ -62,7 +62,7 @@ def test_whole_session_is_evaluated_and_stored(
     assert set(visit.evaluation.calibration) == set(Joint)
     with qtbot.waitSignal(visit.evaluation.done, timeout=20_000):
         walk = record(qtbot, visit, RecordingKind.WALKING, 18.0, "barefoot")
-    assert walk.told.condition == "barefoot"
+    assert walk.details.condition == "barefoot"
     assert not walk.is_decided
     assert visit.evaluation.strides("walk 1")[Side.LEFT] >= 10
     assert visit.is_simulated
@@ -75,7 +75,7 @@ def test_whole_session_is_evaluated_and_stored(
     with qtbot.waitSignals([again.resumed, again.evaluation.done], timeout=30_000):
         again.resume(stored.id)
     assert computed == []  # it was kept
-    assert [recording.told.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
+    assert [recording.details.name for recording in again.recordings.every] == ["standing", "free motion", "walk 1"]
     assert set(again.rests) == set(worn)
     one, other = visit.evaluation.analysis, again.evaluation.analysis
     assert one is not None
@@ -94,10 +94,10 @@ def test_discarded_walk_is_not_evaluated_and_comes_back(qtbot: QtBot, visit: Vis
     walk = record(qtbot, visit, RecordingKind.WALKING, 6.0)
     with qtbot.waitSignal(visit.recordings.changed):
         visit.recordings.keep(walk, is_kept=False)
-    qtbot.waitUntil(lambda: not visit.recordings.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: not visit.recordings.walks[0].details.is_kept)
     assert visit.recordings.counted() == ()
     visit.recordings.keep(visit.recordings.walks[0], is_kept=True)
-    qtbot.waitUntil(lambda: visit.recordings.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.is_kept)
     assert [recording.name for recording in visit.recordings.counted()] == ["walk 1"]
 
 
@@ -112,11 +112,11 @@ def test_patient_is_saved_as_typed(qtbot: QtBot, visit: Visit) -> None:
     visit.patient.edit(Patient(code="DEMO-8"))
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
-    visit.patient.edit(replace(visit.patient.told, height_m=1.7))
-    visit.patient.edit(replace(visit.patient.told, mass_kg=70.0))
+    visit.patient.edit(replace(visit.patient.details, height_m=1.7))
+    visit.patient.edit(replace(visit.patient.details, mass_kg=70.0))
     qtbot.waitUntil(lambda: visit.patient.is_saved)
     assert visit.patient.stored is not None
-    assert visit.patient.stored.told == Patient(code="DEMO-8", height_m=1.7, mass_kg=70.0)
+    assert visit.patient.stored.details == Patient(code="DEMO-8", height_m=1.7, mass_kg=70.0)
 
 
 def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> None:
@@ -125,8 +125,8 @@ def test_zero_is_stored(qtbot: QtBot, visit: Visit, worn: dict[str, Site]) -> No
     visit.set_zero(Joint.LEFT_KNEE, 0.2)
     visit.set_zero(Joint.RIGHT_KNEE, 0.3)
     wanted = {Joint.LEFT_KNEE: 0.2, Joint.RIGHT_KNEE: 0.3}
-    assert visit.told.zero_rad == wanted
-    qtbot.waitUntil(lambda: visit.session is not None and visit.session.told.zero_rad == wanted)
+    assert visit.details.zero_rad == wanted
+    qtbot.waitUntil(lambda: visit.session is not None and visit.session.details.zero_rad == wanted)
 
 
 def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
@@ -138,7 +138,7 @@ def test_what_the_body_does_not_allow_is_stored_and_taken_up_again(
     session = visit.session
     assert session is not None
     assert session.limits == Limits(without_ankle=frozenset({Side.LEFT}))
-    visit.patient.edit(replace(visit.patient.told, prosthetic_side="both"))
+    visit.patient.edit(replace(visit.patient.details, prosthetic_side="both"))
     wanted = Limits(frozenset({Side.LEFT, Side.RIGHT}), cannot_stand=True)
     visit.set_limits(replace(wanted, cannot_stand=False))
     visit.set_limits(wanted)
@@ -189,7 +189,7 @@ def test_who_judged_a_recovered_walk_is_noted_once_for_all(
     assert (audited.operator, audited.details) == ("hk", '{"is_kept":true,"is_recovered":true}')
     second = resumed()
     assert second.recordings.walks[0].is_decided
-    assert second.recordings.walks[0].told.is_kept
+    assert second.recordings.walks[0].details.is_kept
     first.finish()
     second.finish()
 
@@ -268,20 +268,20 @@ def test_a_patient_chosen_while_another_is_saved_stays_the_one_of_the_visit(qtbo
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     assert visit.patient.stored is not None
-    visit.patient.edit(replace(visit.patient.told, birth_year=1950))
+    visit.patient.edit(replace(visit.patient.details, birth_year=1950))
     visit.patient.commit()  # on its way to the library
     visit.patient.choose(chosen)
     with qtbot.waitSignal(visit.patient.changed):  # the answer to the save
         pass
     assert visit.patient.stored is not None
-    assert (visit.patient.stored.id, visit.patient.told.code) == (chosen.id, "DEMO-8")
+    assert (visit.patient.stored.id, visit.patient.details.code) == (chosen.id, "DEMO-8")
     assert visit.patient.is_saved
     state = visit.controller.state
     assert state is not None
     saved = state.library.library.patients.find("DEMO-9")
     assert saved is not None
-    assert saved.told.birth_year == 1950  # what was typed of the other is kept as theirs
-    visit.patient.edit(replace(visit.patient.told, birth_year=1961))
+    assert saved.details.birth_year == 1950  # what was typed of the other is kept as theirs
+    visit.patient.edit(replace(visit.patient.details, birth_year=1961))
     with qtbot.waitSignal(visit.patient.changed):
         visit.patient.commit()
     assert visit.patient.is_saved

@@ -96,7 +96,7 @@ def test_calls_are_answered_in_order_on_the_screens_thread(
     def adding(code: str) -> Callable[[OpenedLibrary], str]:
         def add(library: OpenedLibrary) -> str:
             worked_in.append(current_thread())
-            return library.library.patients.create(Patient(code=code)).told.code
+            return library.library.patients.create(Patient(code=code)).details.code
 
         return add
 
@@ -338,7 +338,7 @@ def test_the_demonstration_holds_a_patient_and_a_session_and_leaves_nothing(
     assert isinstance(patients, tuple)
     (patient,) = patients
     assert isinstance(patient, StoredPatient)
-    assert (patient.told.code, patient.sessions) == ("DEMO-1", 1)
+    assert (patient.details.code, patient.sessions) == ("DEMO-1", 1)
     controller.run(worn_at_first, asker.on_done, asker.on_failed, asker)
     qtbot.waitUntil(lambda: len(asker.results) == 2, timeout=WAIT_MS)
     assert asker.results[1] == {name: site for site, name in DEMONSTRATION_NAMES.items()}, "as its live sensors"

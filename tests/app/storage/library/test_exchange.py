@@ -118,7 +118,7 @@ def test_the_simulated_patient_comes_back_bit_for_bit_by_way_of_folders(
     assert_same(session, read_session(tmp_path / "second"))
     first, second = (sorted((tmp_path / name).rglob("*.csv")) for name in ("first", "second"))
     assert [path.read_bytes() for path in first] == [path.read_bytes() for path in second]
-    assert opened.library.patients.get(imported.patient.id).told == session.patient
+    assert opened.library.patients.get(imported.patient.id).details == session.patient
 
 
 NUMBERS = st.floats(allow_nan=True, allow_infinity=False, width=64)
@@ -331,7 +331,7 @@ def test_a_session_without_a_code_needs_one_and_a_simulated_one_needs_a_simulate
         import_session(opened, small(walked), silent, code="P-001", room=ANY_ROOM)
     assert opened.library.sessions.list() == ()
     imported = import_session(opened, small(walked), silent, code="demo 7".upper(), room=ANY_ROOM)
-    assert imported.patient.told.code == "DEMO 7"
+    assert imported.patient.details.code == "DEMO 7"
 
 
 def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, walked: Session) -> None:
@@ -340,7 +340,7 @@ def test_a_known_patient_stays_as_the_library_knows_it(opened: OpenedLibrary, wa
     second = import_session(opened, taller, silent, room=ANY_ROOM)
     assert second.patient.id == first.patient.id
     assert second.differing == ("sex", "height_m")
-    assert second.patient.told == first.patient.told
+    assert second.patient.details == first.patient.details
 
 
 def test_a_destroyed_recording_is_not_exported_and_a_missing_file_is_said(

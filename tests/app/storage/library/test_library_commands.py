@@ -53,7 +53,7 @@ def test_recover_closes_what_was_interrupted_and_says_so(
     assert "belongs to no session" in orphan
     assert cli.main(["recover", str(opened.folder), *key, "--into", f"library:{session_id}"]) == 0
     assert f"was recovered into library:{session_id}" in capsys.readouterr().out
-    assert [one.stored.told.name for one in find_interrupted(opened) if one.stored] == ["walk 3"]
+    assert [one.stored.details.name for one in find_interrupted(opened) if one.stored] == ["walk 3"]
 
 
 def test_recover_says_when_there_is_nothing_to_do(

@@ -38,7 +38,7 @@ def test_an_interrupted_recording_is_listed_then_closed_with_all_that_there_is(
     before = path.read_bytes()
     (found,) = find_interrupted(opened)
     assert found.stored is not None
-    assert found.stored.told.name == "walk 2"
+    assert found.stored.details.name == "walk 2"
     assert not found.is_orphan
     assert found.began_at is not None
     assert found.ended_at is not None
@@ -95,7 +95,7 @@ def test_an_orphan_is_listed_until_somebody_says_where_it_belongs(
     assert recovered.stored.id == left.id
     assert recovered.stored.placement is not None
     assert find_interrupted(opened) == ()
-    assert [one.told.name for one in opened.library.sessions.get(session_id).recordings] == ["walk 1", "walk 9"]
+    assert [one.details.name for one in opened.library.sessions.get(session_id).recordings] == ["walk 1", "walk 9"]
 
 
 def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
@@ -108,7 +108,7 @@ def test_an_orphan_goes_into_the_session_that_it_was_begun_in(
     found = find_interrupted(opened)
     assert [one.belonging is not None for one in found] == [True, True]
     recovered = [adopt_home(opened, one, silent).stored for one in found]
-    assert [(one.told.name, one.told.folder, one.told.condition) for one in recovered] == [
+    assert [(one.details.name, one.details.folder, one.details.condition) for one in recovered] == [
         ("walk 1", "walk_1", "barefoot"),
         ("walk 3", "walk_3", "barefoot"),
     ]
@@ -163,7 +163,7 @@ def test_an_orphan_comes_where_it_was_made(opened: OpenedLibrary, session_id: UU
     for one in (second, first):
         adopt_home(opened, one, silent)
     session = opened.library.sessions.get(session_id)
-    assert [one.told.name for one in session.recordings] == ["walk 1", "walk 2", "walk 3", "walk 4"]
+    assert [one.details.name for one in session.recordings] == ["walk 1", "walk 2", "walk 3", "walk 4"]
     assert [one.version for one in session.recordings if one.id in before] == list(before.values())
     assert [one.is_decided for one in session.recordings] == [True, False, False, True]  # asked: keep or discard
 

@@ -270,7 +270,7 @@ def test_opening_makes_no_library(opened: OpenedLibrary, tmp_path: Path) -> None
             import_session(opened, Session((), patient=Patient(code="P-009")), silent)
         assert list(opened.folder.iterdir()) == []
         opened.folder.rmdir()
-    assert {one.told.code for one in opened.library.patients.search()} == {"P-002"}
+    assert {one.details.code for one in opened.library.patients.search()} == {"P-002"}
 
 
 def test_what_is_gone_with_the_library_is_not_said_to_be_missing(opened: OpenedLibrary, record: Record) -> None:
@@ -306,7 +306,7 @@ def test_a_copy_in_its_place_is_the_library_once_it_is_taken(opened: OpenedLibra
     opened.library.patients.create(Patient(code="P-004"))
     with Library.open(opened.folder, opened.data_key) as again:
         again.log_in("hk")
-        assert {one.told.code for one in again.patients.search()} == {"P-002", "P-004"}
+        assert {one.details.code for one in again.patients.search()} == {"P-002", "P-004"}
 
 
 def test_moved_to_another_disk_amid_a_recording_nothing_is_lost(

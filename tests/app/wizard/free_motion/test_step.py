@@ -124,7 +124,7 @@ def test_a_replay_that_has_ended_is_said_and_is_recorded_again_from_its_beginnin
     assert bar.note == "Left knee: 3.8°, 1.5° wanted. Go on and the report says so."
     step.on_other(0)
     ticks(qtbot, step, lambda: len(visit.recordings.every) == 1 and visit.recordings.has_begun)
-    assert not visit.recordings.every[0].told.is_kept
+    assert not visit.recordings.every[0].details.is_kept
     assert step.page.band.hint.sentence != "The replay has ended"
     ticks(qtbot, step, lambda: knows(step))
 
@@ -173,7 +173,7 @@ def test_a_leg_that_is_repeated_later_leaves_the_other_legs_recording_in_force(
     assert repeated is not None
     assert repeated.read_back is not None
     assert {site.side for site in repeated.read_back.imu} == {Side.RIGHT}
-    qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.told.sensors) == set(Site))
+    qtbot.waitUntil(lambda: visit.session is not None and set(visit.session.details.sensors) == set(Site))
 
 
 def test_leaving_before_a_leg_has_moved_is_said_and_does_not_count(
@@ -209,7 +209,7 @@ def test_leaving_before_its_end_keeps_what_has_moved_unless_another_is_in_force(
     with qtbot.waitSignal(step.told, timeout=10_000) as told:
         step.leave()
     assert told.args[0] == "Free motion was left before its end: the one before it stays in force."
-    qtbot.waitUntil(lambda: not visit.recordings.every[1].told.is_kept, timeout=10_000)
+    qtbot.waitUntil(lambda: not visit.recordings.every[1].details.is_kept, timeout=10_000)
     assert visit.recordings.free_motion is not None
     assert visit.recordings.free_motion.id == kept.id
     assert step.note == note

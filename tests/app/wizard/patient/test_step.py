@@ -76,8 +76,8 @@ def test_what_is_typed_of_a_known_patient_is_saved(qtbot: QtBot, visit: Visit, s
     qtbot.waitUntil(lambda: visit.patient.is_saved, timeout=5000)
     assert step.bar().note == "Saved as you type."
     assert visit.patient.stored is not None
-    assert visit.patient.stored.told.mass_kg == 82.0
-    assert visit.patient.stored.told.device == "knee K2"
+    assert visit.patient.stored.details.mass_kg == 82.0
+    assert visit.patient.stored.details.device == "knee K2"
 
 
 def test_the_set_up_of_the_last_visit_is_taken_over(
@@ -92,8 +92,10 @@ def test_the_set_up_of_the_last_visit_is_taken_over(
     with qtbot.waitSignal(step.done, timeout=5000):
         button.click()
     assert visit.placement_before == {"0A09": Site.LEFT_THIGH, "0A31": Site.LEFT_SHANK}
-    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.told.zero_rad, timeout=5000)
-    assert np.rad2deg(visit.told.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
+    qtbot.waitUntil(
+        lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.details.zero_rad, timeout=5000
+    )
+    assert np.rad2deg(visit.details.zero_rad[Joint.LEFT_KNEE]) == pytest.approx(15.0)
 
 
 def test_a_foot_without_an_ankle_joint_is_told_to_the_visit(visit: Visit, step: PatientStep) -> None:
@@ -131,7 +133,7 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
     def change(opened: OpenedLibrary) -> None:
         patients = opened.library.patients
         stored = patients.create(Patient(code="DEMO-10", birth_year=1966, device="foot, carbon"))
-        patients.change(stored, replace(stored.told, birth_year=1982))
+        patients.change(stored, replace(stored.details, birth_year=1982))
         listed.append(stored)
 
     controller.run(change, None, None, step)
@@ -139,14 +141,14 @@ def test_a_patient_of_a_list_read_before_a_change_is_read_anew(
     visit.patient.choose_from_list(listed[0])
     step.enter()
     assert step.page.draft.patient.birth_year == 1966
-    type_in(step, replace(listed[0].told, mass_kg=70.0))  # before the library has answered
+    type_in(step, replace(listed[0].details, mass_kg=70.0))  # before the library has answered
     assert not visit.patient.is_saved
     with qtbot.waitSignal(step.done, timeout=5000):
         step.on_primary()
     stored = visit.patient.stored
     assert stored is not None
-    assert visit.patient.told == stored.told == step.page.draft.patient
-    assert (stored.told.birth_year, stored.told.mass_kg) == (1982, 70.0)
+    assert visit.patient.details == stored.details == step.page.draft.patient
+    assert (stored.details.birth_year, stored.details.mass_kg) == (1982, 70.0)
 
 
 def test_another_patient_chosen_while_the_first_is_read_anew_is_the_one(

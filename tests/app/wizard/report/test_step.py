@@ -105,14 +105,14 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     library = state.library.library
     patients, patient = library.patients, library.patients.get(session.patient_id)
     told = replace(simulated_session, started="2026-11-20T10:00:00+00:00")
-    imported = import_session(state.library, told, lambda _share, _what: None, patient.told.code)
+    imported = import_session(state.library, told, lambda _share, _what: None, patient.details.code)
     visit.session = library.sessions.get(imported.session_id)
-    patients.change(patient, replace(patient.told, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
+    patients.change(patient, replace(patient.details, birth_year=1950, device="Qx1 knee", aids="Qx2 stick"))
     step.page.report.formats.choose(["xlsx", "fhir"])
     step.on_primary()
     dialog = dialog_of(qtbot, step)
     shown = dict(dialog.shown)
-    assert shown["patient"] != patient.told.code
+    assert shown["patient"] != patient.details.code
     assert "device" not in shown
     assert "birth year" not in shown
     assert shown["age, years"] == "76"
@@ -131,7 +131,7 @@ def test_what_leaves_without_the_name_is_shown_first_and_nothing_typed_but_what_
     assert shown["patient"] in said
     assert "Qx1 knee" in said
     assert "Qx2 stick" not in said
-    assert patient.told.code not in said.replace(shown["patient"], "")  # which begins as the code does
+    assert patient.details.code not in said.replace(shown["patient"], "")  # which begins as the code does
 
 
 def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
@@ -140,7 +140,7 @@ def test_nothing_is_asked_where_no_file_leaves_without_the_name(qtbot: QtBot, st
     assert step.dialog is not None
     assert step.page.findChild(LeavingDialog) is None
     assert visit.session is not None
-    told = visit.session.told
+    told = visit.session.details
     assert [Path(path).name for path in step.dialog.selectedFiles()] == [folder_name(told.patient.code, told.started)]
     step.dialog.close()
 
@@ -176,7 +176,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     state, session = controller.state, visit.session
     assert state is not None
     assert session is not None
-    code = session.told.patient.code
+    code = session.details.patient.code
     earlier = replace(simulated_session, started="2020-03-01T10:00:00+00:00")
     opened, silent = state.library, lambda _share, _what: None
     earlier_id = import_session(opened, earlier, silent, code).session_id

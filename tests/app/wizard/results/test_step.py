@@ -167,7 +167,7 @@ def test_a_walk_is_left_out_comes_back_and_changes_its_condition(qtbot: QtBot, v
     ((key, _),) = step.page.correct().walk_rows.items()
     with qtbot.waitSignal(visit.evaluation.done, timeout=30_000):
         step.page.correct().condition_typed.emit(key, "AFO")
-    assert [recording.told.condition for recording in visit.recordings.walks] == ["AFO"]
+    assert [recording.details.condition for recording in visit.recordings.walks] == ["AFO"]
     step.page.correct().closed.emit()
     assert [part.name for part in step.page.results().compare._conditions] == ["AFO"]
 

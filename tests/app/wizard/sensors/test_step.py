@@ -262,7 +262,7 @@ def test_the_demonstration_begins_with_its_patient_found_or_to_be_made(
     assert wizard.visit is not first
     assert wizard.visit is not None
     patient = wizard.visit.patient
-    qtbot.waitUntil(lambda: patient.told.code == code, timeout=5000)
+    qtbot.waitUntil(lambda: patient.details.code == code, timeout=5000)
     assert (patient.stored is not None) is (code == "DEMO-1")
     assert wizard.visit.may_simulate
     with qtbot.waitSignal(wizard.visit.changed, timeout=5000):

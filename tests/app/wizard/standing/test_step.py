@@ -146,8 +146,8 @@ def test_the_goniometer_is_told_in_radians_and_nought_is_the_standing_itself(
 ) -> None:
     step.page.zero_edited.emit(Joint.LEFT_KNEE, 15.0)
     step.page.zero_edited.emit(Joint.RIGHT_KNEE, 0.0)
-    assert dict(visit.told.zero_rad) == {Joint.LEFT_KNEE: pytest.approx(np.deg2rad(15.0))}
-    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.told.zero_rad)
+    assert dict(visit.details.zero_rad) == {Joint.LEFT_KNEE: pytest.approx(np.deg2rad(15.0))}
+    qtbot.waitUntil(lambda: visit.session is not None and Joint.LEFT_KNEE in visit.session.details.zero_rad)
     step.enter()
     assert step.page.zero.fields[Joint.LEFT_KNEE].value == pytest.approx(15.0)
 

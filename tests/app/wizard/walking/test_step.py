@@ -136,10 +136,10 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
     with qtbot.waitSignal(step.offered) as offered:
         step.on_intent(Intent(KeyAction.DISCARD))
     assert offered.args == ["Alignment A discarded."]
-    qtbot.waitUntil(lambda: not visit.recordings.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: not visit.recordings.walks[0].details.is_kept)
     assert [state for _, _, state in states(step)] == [WalkState.DISCARDED]
     step.undo()
-    qtbot.waitUntil(lambda: visit.recordings.walks[0].told.is_kept)
+    qtbot.waitUntil(lambda: visit.recordings.walks[0].details.is_kept)
     assert [state for _, _, state in states(step)] == [WalkState.KEPT]
     assert step.bar().primary is not None
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
@@ -148,7 +148,7 @@ def test_a_walk_is_discarded_and_comes_back(qtbot: QtBot, step: WalkingStep, vis
 def test_digits_choose_what_the_next_walk_is_called(qtbot: QtBot, step: WalkingStep, visit: Visit) -> None:
     assert step.on_intent(Intent(KeyAction.LABEL, 4))
     walk(qtbot, step, visit, 2.0)
-    assert visit.recordings.walks[0].told.condition == "Barefoot"
+    assert visit.recordings.walks[0].details.condition == "Barefoot"
     qtbot.waitUntil(lambda: not visit.evaluation.is_busy, timeout=20_000)
 
 
