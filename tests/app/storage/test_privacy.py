@@ -41,7 +41,8 @@ with Library.create(folder, key, Operator("hk", names[0], Role.ADMINISTRATOR)) a
                 library.recordings.start(visit.id, walk, is_simulated=False)
             library.patients.search(name)
             library.sessions.list(text=name)
-            library.patients.change(patient := library.patients.get(patient.id), replace(patient.details, aids=name * 2))
+            patient = library.patients.get(patient.id)
+            library.patients.change(patient, replace(patient.details, aids=name * 2))
             if k == 20:
                 library.sessions.delete(library.sessions.get(visit.id))
         print("round", flush=True)
