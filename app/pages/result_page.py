@@ -1,9 +1,7 @@
 """What came of one session: the answer to a walk first, then its curves, what differs most, and how sure that is."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from enum import Enum, auto
-from functools import cached_property
 
 import numpy as np
 from PySide6.QtCore import Qt, Signal
@@ -12,14 +10,9 @@ from PySide6.QtWidgets import QBoxLayout, QGridLayout, QHBoxLayout, QVBoxLayout,
 
 from app.icons import Icon
 from app.pages.answer_words import door_words, figures_in_short, key_figures, strides_in_short
-from app.pages.compare_page import ComparePage
-from app.pages.cycle_page import CyclePage
 from app.pages.differs_card import DiffersCard
-from app.pages.quality_page import QualityPage
-from app.pages.strides_page import StridesPage
+from app.pages.result_parts import PageRoom, ResultParts
 from app.plots.angle_chart import Curve
-from app.plots.joint_charts import JointCharts
-from app.plots.moving_legs import MovingLegs
 from app.reports.comparison import Contrast, conditions_of
 from app.reports.patient_report.answer import Outcome, answer_of
 from app.reports.patient_report.data_quality import data_quality, quality_without_walk
@@ -29,7 +22,6 @@ from app.reports.patient_report.request import AnalysedVisit
 from app.reports.reference_bands import age_and_height, sides_with_band
 from app.review.mean_legs import mean_legs
 from app.theme import ThemeNotifier
-from app.widgets import grid
 from app.widgets.button import Button, ButtonKind
 from app.widgets.choice import Choice
 from app.widgets.door import Door
@@ -50,10 +42,6 @@ RESULT, PUBLISHED, ORIENTATION, BOTH = "result", "published", "orientation", "bo
 ANSWER, COMPARE, WHOLE, STRIDES = "answer", "compare", "whole", "strides"
 WALK, RECORDING = later("Whole walk"), later("Whole recording")
 
-COMPACT_BELOW = (940, 608)  # the charts and the rows beneath them need so much
-NARROW_BELOW = 860  # what the tools need in one row
-SPACIOUS_FROM = 1600  # what charts, differences and their table need side by side
-TWO_CHARTS_FROM = 680
 ANSWER_PX = 22
 BOTTOM = 44  # px high: the row that closes the answer
 BESIDE_TABLE, WITHHELD, NOTE = 484, 40, 24  # px high: all else on a page, a withheld curve, strides left out by hand
@@ -83,64 +71,12 @@ class Beside(Enum):
     VISITS = auto()  # leads to Compare
 
 
-@dataclass(frozen=True, slots=True)
-class PageRoom:
-    """What a page of its size has room for."""
-
-    is_compact: bool = False
-    is_narrow: bool = False
-    has_two_charts: bool = False
-    has_strides_beside: bool = False
-    is_spacious: bool = False
-    is_on_grid: bool = False
-
-
 class Behind(Enum):
     """What somebody looks at behind the answer, in place of its curves."""
 
     NOTHING = auto()
     FIGURES = auto()
     QUALITY = auto()
-
-
-class ResultParts:
-    """The parts of a result page that take long to be made: one at a time before they are wanted, or else when."""
-
-    def __init__(self, look: ThemeNotifier) -> None:
-        self._look = look
-
-    @cached_property
-    def cycles(self) -> CyclePage:
-        return CyclePage(self._look)
-
-    @cached_property
-    def strides(self) -> StridesPage:
-        return StridesPage(self._look)
-
-    @cached_property
-    def compare(self) -> ComparePage:
-        return ComparePage(self._look)
-
-    @cached_property
-    def charts(self) -> JointCharts:
-        return JointCharts(self._look)
-
-    @cached_property
-    def legs(self) -> MovingLegs:
-        return MovingLegs(self._look)
-
-    @cached_property
-    def quality(self) -> QualityPage:
-        return QualityPage(self._look)
-
-    def make_next(self) -> bool:
-        """Make one part; whether there was one left to be made."""
-        left = [
-            name for name in ("cycles", "strides", "compare", "charts", "quality", "legs") if name not in vars(self)
-        ]
-        if left:
-            getattr(self, left[0])
-        return bool(left)
 
 
 class ResultPage(Themed):
@@ -238,15 +174,7 @@ class ResultPage(Themed):
 
         Where there is little room the key figures join the sentence, and the controls take two rows.
         """
-        is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
-        room = PageRoom(
-            is_compact=is_compact,
-            is_narrow=width < NARROW_BELOW,
-            has_two_charts=width >= TWO_CHARTS_FROM,
-            has_strides_beside=width >= COMPACT_BELOW[0],
-            is_spacious=not is_compact and width >= SPACIOUS_FROM,
-            is_on_grid=width >= grid.NARROW_BELOW,
-        )
+        room = PageRoom.of(width, height)
         if room != self._room:
             self._room = room
             self._place()

@@ -160,7 +160,7 @@ def _of_rail(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[st
     session = visit.session.id.hex
     notes = [row.note for row in wizard.shell.rail.rows]
     walks = held.ask(WALKS, session)
-    kept = sum(bool(row[2]) for row in walks)
+    kept = sum(bool(row[2] and _is_answered(row)) for row in walks)
     is_recording = visit.recordings.is_recording or visit.recordings.is_stopping
     for place in (4, 5):
         if (said := KEPT.search(notes[place])) is not None and int(said[1]) != kept and not is_recording:

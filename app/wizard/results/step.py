@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from app.pages.found_page import FoundPage
-    from app.pages.result_page import ResultPage, ResultParts
+    from app.pages.result_page import ResultPage
+    from app.pages.result_parts import ResultParts
     from app.wizard.recordings import SessionRecording
     from app.wizard.visit import Visit
     from app.workers.diagnostics_controller import DiagnosticsController
@@ -419,7 +420,7 @@ class _ResultsFrame(PageStack):
         """Make the next part of the results; whether there was one."""
         if self._results is not None:
             return False
-        from app.pages.result_page import ResultParts
+        from app.pages.result_parts import ResultParts
 
         self._parts = self._parts or ResultParts(self._look)
         if not self._parts.make_next():

@@ -499,7 +499,7 @@ def test_every_word_fits(
         if button is not None:
             button.click()
         window._show_page(page)
-        for _ in range(3):  # what wraps settles its height in a second round
+        for _ in range(10):  # what wraps settles its height in a second round
             qapp.processEvents()
         shown = [widget for widget in visible(window) if not isinstance(widget, AngleChart)]
         cut = [(type(w).__name__, w.accessibleName() or getattr(w, "text", str)()) for w in shown if is_cut(w)]
