@@ -45,6 +45,7 @@ class Library:
     ) -> None:
         from app.storage.audit import Audit
         from app.storage.corrections import Corrections
+        from app.storage.courses import Courses
         from app.storage.database.schema import bring_up_to_date
         from app.storage.derived_keys import derived_keys
         from app.storage.operators import Operators, OperatorSettings
@@ -66,6 +67,7 @@ class Library:
         self.sessions = Sessions(self._unit)
         self.recordings = Recordings(self._unit)
         self.results = Results(self._unit)
+        self.courses = Courses(self._unit)
         self.corrections = Corrections(self._unit)
         self.operators = Operators(self._unit)
         self.settings = OperatorSettings(self._unit)

@@ -5,8 +5,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
+from app.reports.course import course_of
 from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, keep_analysis
+from app.storage.kept_courses import course_key, keep_course
 from app.storage.stored import Limits, RecordingState, StoredPatient, StoredSession
 from app.wizard.recordings import SessionRecording, counted
 from app.workers.background import Report
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
     from core.results import Analysis
+
+USABLE = (RecordingState.CLOSED, RecordingState.RECOVERED)
 
 
 class Resumed(NamedTuple):
@@ -52,8 +56,17 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
     if known is None:
         known = analyse(bare(told), progress=report)
         keep_analysis(results, session_id, told, known)
-    without_samples = tuple(replace(recording, imu={}) for recording in told.recordings)
-    return replace(told, recordings=without_samples), leave_out(known, told.recordings)
+    without_samples = replace(told, recordings=tuple(replace(recording, imu={}) for recording in told.recordings))
+    analysis = leave_out(known, told.recordings)
+    key = course_key(without_samples, stored.recordings)
+    keep_course(opened.library.courses, session_id, key, course_of(analysis, told.recordings))
+    return without_samples, analysis
+
+
+def current_course_key(session: StoredSession) -> str:
+    """The key that what is kept of a session's course has to have, to hold as the session is told now."""
+    read_back = tuple(SessionRecording(one, one.told) for one in session.recordings if one.state in USABLE)
+    return course_key(evaluated(session, read_back), session.recordings)
 
 
 def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) -> Session:
@@ -70,7 +83,6 @@ def with_limits(told: Session, limits: Limits) -> Session:
 
 def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[SessionRecording, ...]:
     """All recordings of a session that can be read, with their samples."""
-    usable = (RecordingState.CLOSED, RecordingState.RECOVERED)
     return tuple(
         SessionRecording(
             stored,
@@ -78,7 +90,7 @@ def read_recordings(opened: "OpenedLibrary", session: StoredSession) -> tuple[Se
             is_decided=stored.is_decided and not (stored.is_unjudged and stored.details.is_kept),
         )
         for stored in session.recordings
-        if stored.state in usable
+        if stored.state in USABLE
     )
 
 

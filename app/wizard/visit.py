@@ -15,7 +15,9 @@ from PySide6.QtCore import QObject, Signal
 
 from app.acquisition.live_sensors import live_sensors
 from app.logs import version_of
+from app.reports.course import course_of
 from app.storage.kept_analyses import keep_analysis
+from app.storage.kept_courses import course_key, keep_course
 from app.storage.stored import Limits, StoredRecording, StoredSession
 from app.wizard.evaluation import Evaluation
 from app.wizard.patient_record import PatientRecord
@@ -97,6 +99,7 @@ class Visit(QObject):
         self.recordings.refused.connect(self.refused)
         self.evaluation.refused.connect(self.refused)
         self.evaluation.computed.connect(self._on_computed)
+        self.evaluation.done.connect(self._keep_course)
         self.reviewing.refused.connect(self.refused)
         self.recordings.ended.connect(self._on_recording_ended)
         self.recordings.changed.connect(self._on_recordings_changed)
@@ -394,6 +397,20 @@ class Visit(QObject):
 
         def keep(opened: "OpenedLibrary") -> None:
             keep_analysis(opened.library.results, session_id, session, analysis)
+
+        self._controller.run(keep, None, self._on_not_kept, self)
+
+    def _keep_course(self) -> None:
+        """Keep what of this visit stands in the patient's course, so that home need not evaluate it."""
+        session, analysis = self.evaluation.session, self.evaluation.analysis
+        if self.session is None or session is None or analysis is None or self._is_partial:
+            return
+        session_id = self.session.id
+        stored = [recording.stored for recording in self.recordings.every]
+
+        def keep(opened: "OpenedLibrary") -> None:
+            course = course_of(analysis, session.recordings)
+            keep_course(opened.library.courses, session_id, course_key(session, stored), course)
 
         self._controller.run(keep, None, self._on_not_kept, self)
 

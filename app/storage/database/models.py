@@ -277,6 +277,16 @@ class ResultRow(Base):
     created_at: Mapped[datetime.datetime]
 
 
+class CourseRow(Base):
+    """What stands of a session in its patient's course, as it came of all that `key` is a digest of."""
+
+    __tablename__ = "courses"
+
+    session_id: Mapped[UUID] = mapped_column(ForeignKey("sessions.id", ondelete="CASCADE"), primary_key=True)
+    key: Mapped[str]
+    content: Mapped[dict[str, Any]] = mapped_column(JSON)
+
+
 class CorrectionRow(Base):
     """Who changed what from what to what. Goes when the patient or session that it is about is destroyed.
 

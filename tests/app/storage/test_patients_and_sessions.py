@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from sqlalchemy import func, select
 
+from app.reports.course import Course
 from app.storage.database.engine import Database
 from app.storage.database.ids import uuid7
 from app.storage.database.models import Base
@@ -419,6 +420,7 @@ def test_only_what_was_deleted_30_days_ago_is_destroyed_and_then_nothing_is_left
     library.patients.merge(library.patients.get(patient.id), library.patients.get(double.id))
     inputs = AnalysisInputs((), {}, {}, {}, "1", {})
     library.results.keep(walk.session_id, ResultKind.ANALYSIS, inputs, "json", b"{}")
+    library.courses.keep(walk.session_id, "key", Course(None, ()))
     with pytest.raises(LibraryError, match="30 days"):
         library.patients.destroy(patient.id)
     library.patients.delete(library.patients.get(patient.id))

@@ -1,0 +1,219 @@
+"""What of a visit stands in the patient's course: a few figures of each condition, with what judging them needs.
+
+They are few enough to be kept beside the session, so that home shows the course of many visits without analysing one.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from app.reports.comparison import Part
+from app.reports.visits import by_condition
+from core.body import Joint, Side
+from core.norms import MIN_STRIDES_FOR_MEAN
+from core.results import Analysis
+from core.samples import Recording
+from core.verdicts.measurement_error import ComparisonKind, Difference, MeanOfStrides, compare, whisker
+from core.verdicts.model import Assessment, GateReason, Verdict, together
+from core.verdicts.quantities import assessment_of_both
+
+FORMAT = "gaitwright-course/1"
+SPEED = "speed_m_s"
+KNEE = "knee_stance_to_swing_deg"  # what stands for the knee: an excursion, which needs no zero
+STANCE = "stance_percent"
+OF_A_LEG = (KNEE, STANCE)
+
+
+@dataclass(frozen=True, slots=True)
+class CourseFigure:
+    """The mean of one measure. `side` None: of the walk. `gates`: those that were not passed; `found` is NaN where
+    it is withheld or was not measured."""
+
+    column: str
+    side: Side | None
+    found: MeanOfStrides
+    verdict: Verdict
+    gates: tuple[str, ...] = ()
+
+    @property
+    def is_told(self) -> bool:
+        return self.assessment.is_told and self.found.n >= MIN_STRIDES_FOR_MEAN and math.isfinite(self.found.mean)
+
+    @property
+    def assessment(self) -> Assessment:
+        """The verdict with the gates that led to it, without what each of them found."""
+        return Assessment(self.verdict, tuple(GateReason(gate, self.verdict) for gate in self.gates))
+
+    @property
+    def whisker(self) -> float:
+        """Half of the error of a difference between visits; NaN where no error is known."""
+        return whisker(self.column, ComparisonKind.VISITS, self.found) if self.is_told else math.nan
+
+
+@dataclass(frozen=True, slots=True)
+class CourseCondition:
+    """One condition of a visit, as it was walked last. `withheld`: the joints whose curve may not be read."""
+
+    condition: str
+    strides: int
+    figures: tuple[CourseFigure, ...]
+    withheld: tuple[Joint, ...] = ()
+
+    def figure(self, column: str, side: Side | None = None) -> CourseFigure | None:
+        return next((one for one in self.figures if (one.column, one.side) == (column, side)), None)
+
+    @property
+    def stance_between_legs(self) -> Difference | None:
+        """Stance of the left leg less that of the right, percent of the stride; None with one leg."""
+        left, right = (self.figure(STANCE, side) for side in Side)
+        if left is None or right is None:
+            return None
+        return compare(STANCE, ComparisonKind.LEGS, left.found, right.found, (left.assessment, right.assessment))
+
+
+@dataclass(frozen=True, slots=True)
+class Course:
+    """What one visit gives the course. Without conditions: it has no walk with strides."""
+
+    affected: Side | None
+    conditions: tuple[CourseCondition, ...]
+
+    def condition(self, name: str) -> CourseCondition | None:
+        return next((one for one in self.conditions if one.condition == name), None)
+
+
+def course_of(analysis: Analysis, recordings: Sequence[Recording]) -> Course:
+    """The figures of a visit by condition, each strapping's last, never pooled.
+
+    Parameters
+    ----------
+    recordings
+        Those of the session, in order of time, whose conditions and strappings count.
+    """
+    walked = by_condition(analysis, recordings)
+    return Course(
+        analysis.affected_side,
+        tuple(_condition(name, part) for name, part in walked.items()),
+    )
+
+
+def change(one: CourseCondition, first: CourseCondition, column: str, side: Side | None = None) -> Difference | None:
+    """A figure less that of an earlier visit, judged as between visits; None where one of them has none."""
+    pair = one.figure(column, side), first.figure(column, side)
+    if pair[0] is None or pair[1] is None:
+        return None
+    speeds = [found.found.mean for part in (one, first) if (found := part.figure(SPEED)) is not None and found.is_told]
+    return compare(
+        column,
+        ComparisonKind.VISITS,
+        pair[0].found,
+        pair[1].found,
+        (pair[0].assessment, pair[1].assessment),
+        speed_apart_m_s=abs(speeds[0] - speeds[1]) if len(speeds) == 2 else 0.0,
+    )
+
+
+def _condition(name: str, part: Part) -> CourseCondition:
+    figures = [_speed(part)]
+    for side in part.sides:
+        for column in OF_A_LEG:
+            found = part.assessment(side, column)
+            figures.append(_figure(column, side, part.mean(side, column, ComparisonKind.VISITS), found))
+    withheld = []
+    for joint in part.joints:
+        said = part.verdicts.joint(joint)
+        if together((said.shape, said.sign)).verdict is Verdict.WITHHELD:
+            withheld.append(joint)
+    return CourseCondition(name, sum(map(part.strides, part.sides)), tuple(figures), tuple(withheld))
+
+
+def _speed(part: Part) -> CourseFigure:
+    """Of the first leg, as comparisons take it, where the distance of both may be told."""
+    return _figure(
+        SPEED,
+        None,
+        part.mean(part.sides[0], SPEED, ComparisonKind.VISITS),
+        assessment_of_both(part.verdicts, SPEED),
+    )
+
+
+def _figure(column: str, side: Side | None, found: MeanOfStrides, assessment: Assessment) -> CourseFigure:
+    gates = tuple(dict.fromkeys(reason.gate for reason in assessment.reasons))
+    if not assessment.is_told:
+        found = MeanOfStrides(math.nan, math.nan, 0, math.nan, math.nan)
+    return CourseFigure(column, side, found, assessment.verdict, gates)
+
+
+# as it is kept
+
+
+def course_in_json(course: Course) -> dict[str, Any]:
+    """A course as JSON can hold it: None for NaN."""
+    return {
+        "format": FORMAT,
+        "affected": course.affected,
+        "conditions": [
+            {
+                "condition": one.condition,
+                "strides": one.strides,
+                "withheld": list(one.withheld),
+                "figures": [
+                    {
+                        "column": figure.column,
+                        "side": figure.side,
+                        "verdict": figure.verdict,
+                        "gates": list(figure.gates),
+                        "found": {
+                            name: value if math.isfinite(value) else None
+                            for name, value in asdict(figure.found).items()
+                        },
+                    }
+                    for figure in one.figures
+                ],
+            }
+            for one in course.conditions
+        ],
+    }
+
+
+def course_from_json(content: Any) -> Course:
+    """What `course_in_json` was given.
+
+    Raises
+    ------
+    ValueError
+        Another version has written it, or it is none.
+    """
+    try:
+        if content["format"] != FORMAT:
+            raise ValueError(content["format"])
+        return Course(
+            _side(content["affected"]),
+            tuple(
+                CourseCondition(
+                    one["condition"],
+                    one["strides"],
+                    tuple(_figure_from_json(figure) for figure in one["figures"]),
+                    tuple(map(Joint, one["withheld"])),
+                )
+                for one in content["conditions"]
+            ),
+        )
+    except (KeyError, TypeError) as error:
+        raise ValueError("this is no course") from error
+
+
+def _figure_from_json(content: Any) -> CourseFigure:
+    found = {name: math.nan if value is None else value for name, value in content["found"].items()}
+    return CourseFigure(
+        content["column"],
+        _side(content["side"]),
+        MeanOfStrides(**found),
+        Verdict(content["verdict"]),
+        tuple(content["gates"]),
+    )
+
+
+def _side(name: str | None) -> Side | None:
+    return None if name is None else Side(name)

@@ -1,0 +1,74 @@
+"""Do the figures of a visit that were kept for its patient's course still hold?
+
+They hold as long as everything that they came of is as it was: what was said of patient, joints and recordings, who
+wore what, which strides were left out, and the code that computes. Samples never change.
+"""
+
+import hashlib
+import json
+import logging
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from app.storage.kept_analyses import algorithm
+from app.storage.stored import LibraryError, Placement, StoredRecording
+from core.samples import Session
+
+if TYPE_CHECKING:  # the database takes long to load
+    from app.reports.course import Course
+    from app.storage.courses import Courses
+
+_log = logging.getLogger(__name__)
+
+
+def course_key(told: Session, stored: Sequence[StoredRecording]) -> str:
+    """SHA-256 of all that a course depends on but the samples.
+
+    Parameters
+    ----------
+    told
+        The session as it is evaluated; its samples are not looked at.
+    stored
+        Recordings of the library, those that are evaluated among them.
+    """
+    placements = {recording.told.name: recording.placement for recording in stored}
+    return hashlib.sha256(
+        json.dumps(
+            {
+                "algorithm": algorithm(),
+                "sides": [told.patient.affected_side, told.patient.prosthetic_side],
+                "zero_rad": {str(joint): value for joint, value in told.zero_rad.items()},
+                "turned_sign": {str(joint): sign for joint, sign in told.turned_sign.items()},
+                "findings": sorted({f"{finding.key} {finding.where}" for finding in told.findings}),
+                "recordings": [
+                    {
+                        "name": one.name,
+                        "kind": one.kind,
+                        "condition": one.condition,
+                        "is_restrapped_before": one.is_restrapped_before,
+                        "left_out_s": {
+                            str(side): sorted(times_s) for side, times_s in one.left_out_s.items() if times_s
+                        },
+                        "worn": _worn(placements, one.name),
+                    }
+                    for one in told.recordings
+                ],
+            },
+            sort_keys=True,
+        ).encode()
+    ).hexdigest()
+
+
+def keep_course(courses: "Courses", session_id: UUID, key: str, course: "Course") -> None:
+    """Keep it where that can be done. That it cannot is no harm: it is computed again."""
+    try:
+        courses.keep(session_id, key, course)
+    except LibraryError as error:
+        _log.info("a course was not kept", exc_info=error)
+
+
+def _worn(placements: Mapping[str, Placement | None], name: str) -> dict[str, str]:
+    """Sensor by site."""
+    placement = placements.get(name)
+    return {str(site): sensor.name for site, sensor in placement.sensors.items()} if placement is not None else {}
