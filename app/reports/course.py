@@ -205,7 +205,7 @@ def course_from_json(content: Any) -> Course:
 
 
 def _figure_from_json(content: Any) -> CourseFigure:
-    found = {name: math.nan if value is None else value for name, value in content["found"].items()}
+    found: dict[str, Any] = {name: math.nan if value is None else value for name, value in content["found"].items()}
     return CourseFigure(
         content["column"],
         _side(content["side"]),

@@ -21,6 +21,7 @@ from app.theme import ThemeNotifier, load_fonts
 from app.wizard import reviewing
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.results.step import ResultsStep
+from app.wizard.resuming import current_course_key
 from app.wizard.visit import Visit
 from app.workers.library_controller import LibraryController
 from core.body import Joint, Side
@@ -267,6 +268,18 @@ def test_strides_are_left_out_by_hand_taken_back_one_by_one_and_stay_out_after_a
     assert isinstance(answer, tuple)
     assert answer[0] == ["left_out", "left_out"]
     assert "left_out" in answer[1]
+
+    def of_the_course(opened: OpenedLibrary) -> tuple[str, str, int]:
+        key, course = opened.library.courses.find([session_id])[session_id]
+        strides = sum(condition.strides for condition in course.conditions)
+        return key, current_course_key(opened.library.sessions.get(session_id)), strides
+
+    kept_course = asked(qtbot, controller, of_the_course)
+    assert isinstance(kept_course, tuple)
+    kept, current, strides_told = kept_course
+    assert kept == current  # so that home can show it as it stands now
+    gait = walk_of(visit).gait
+    assert strides_told == sum(int(one.strides.is_used.sum()) for one in gait.values())
 
     again = Visit(controller, [])
     again.evaluation.computed.connect(lambda _session, analysis: computed.append(analysis))
