@@ -42,6 +42,7 @@ class Icon(StrEnum):
     RECORDING = "recording"
     BEND = "bend"
     NEXT = "next"
+    ARROW = "arrow"
     SEARCH = "search"
     DELETE = "delete"
     LOCK = "lock"

@@ -5,7 +5,10 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING
 from uuid import UUID
 
+from app.dates import date
+from app.icons import Icon
 from app.pages.home_lists import PatientLine, SessionLine
+from app.reports.course import Course
 from app.wording import tr, tr_n
 
 if TYPE_CHECKING:
@@ -28,17 +31,38 @@ def patient_line(patient: "stored.StoredPatient", now: datetime.datetime, is_rec
     )
 
 
-def session_line(line: "stored.SessionSummary", now: datetime.datetime, recovered: Collection[UUID]) -> SessionLine:
-    is_recovered = line.id in recovered
-    state = tr("recovered, look at it") if is_recovered else tr("simulated") if line.is_simulated else ""
-    return SessionLine(
-        line.id,
-        when(line.started, now),
-        ", ".join(line.conditions),
-        tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings),
-        state,
-        is_recovered,
-    )
+def session_line(
+    line: "stored.SessionSummary",
+    now: datetime.datetime,
+    recovered: Collection[UUID],
+    course: Course | None = None,
+    *,
+    is_reported: bool = False,
+) -> SessionLine:
+    """One session in a list; `course` where it is known, which tells how many strides there are."""
+    is_recovered, has_walk = line.id in recovered, course is not None and bool(course.conditions)
+    amount = tr_n("{count} recording", "{count} recordings", line.recordings).format(count=line.recordings)
+    if course is not None and has_walk:
+        strides = sum(condition.strides for condition in course.conditions)
+        amount = tr_n("{count} stride", "{count} strides", strides).format(count=strides)
+    state, mark = (tr("simulated"), None) if line.is_simulated else ("", None)
+    if is_recovered:
+        state = tr("recovered, look at it")
+    elif is_reported:
+        state, mark = tr("report written"), Icon.CHECK
+    elif has_walk:
+        state, mark = tr("report not written"), Icon.INFO
+    conditions = "; ".join(line.conditions)  # which may hold commas
+    return SessionLine(line.id, when(line.started, now), conditions, amount, state, is_recovered, mark)
+
+
+def day_of_session(started: str, now: datetime.datetime) -> datetime.date | None:
+    """The day of a time as a file holds it, where `now` is; None for what is no time."""
+    try:
+        at = datetime.datetime.fromisoformat(started)
+    except ValueError:
+        return None
+    return (at.astimezone(now.tzinfo) if at.tzinfo is not None else at).date()
 
 
 def person(patient: "Patient") -> str:
@@ -73,14 +97,6 @@ def when(started: str, now: datetime.datetime) -> str:
     if days == 0:
         return tr("today {time}").format(time=f"{at:%H:%M}")
     return tr("yesterday") if days == 1 else date(at.date())
-
-
-def date(day: datetime.date) -> str:
-    months = (
-        *(tr("Jan"), tr("Feb"), tr("Mar"), tr("Apr"), tr("May"), tr("Jun")),
-        *(tr("Jul"), tr("Aug"), tr("Sep"), tr("Oct"), tr("Nov"), tr("Dec")),
-    )
-    return tr("{day} {month} {year}").format(day=day.day, month=months[day.month - 1], year=day.year)
 
 
 def length(seconds: float) -> str:

@@ -13,13 +13,14 @@ from PySide6.QtWidgets import QFileDialog, QFrame, QHBoxLayout, QScrollArea, QSt
 from app.foreign_files import read_foreign_session
 from app.home.deleting import Deleting
 from app.home.entry import ADMINISTRATOR
+from app.home.patient_reading import PatientReading, compute_courses, read_patient
 from app.home.recovering import Recovering
 from app.home.settings_controller import SettingsController
 from app.icons import Icon
 from app.pages.home_page import HomePage
 from app.pages.import_page import ImportPage
 from app.pages.settings_page import SettingsPage
-from app.patient_words import patient_line, person, session_line
+from app.patient_words import patient_line, person
 from app.settings import Scheme, Settings
 from app.storage.exchange import import_session
 from app.theme import ThemeNotifier
@@ -31,7 +32,7 @@ from app.widgets.start_pages import WorkingPage
 from app.widgets.step_rail import StepRail, home_below
 from app.widgets.themed import Themed
 from app.widgets.toast import Toast
-from app.wording import place, tr
+from app.wording import place, tr, tr_n
 from app.workers.background import Report
 from app.workers.library_controller import LibraryController
 from app.workers.library_state import OpenedState
@@ -56,15 +57,6 @@ class _Patients:
     undecided: frozenset[UUID]
 
 
-@dataclass(frozen=True, slots=True)
-class _Sessions:
-    """The sessions of a patient, and which of them hold a walk that was recovered and is not decided yet."""
-
-    patient_id: UUID
-    lines: "tuple[stored.SessionSummary, ...]"
-    recovered: frozenset[UUID]
-
-
 class Home(Themed):
     session_wished = Signal(object)  # the StoredPatient of a new session, or None: a new patient
     session_opened = Signal(object)  # UUID
@@ -79,6 +71,8 @@ class Home(Themed):
         self._state: OpenedState | None = None
         self._patients: dict[UUID, stored.StoredPatient] = {}
         self._sessions_of: UUID | None = None  # the patient whose sessions are shown, or being read
+        self._reading: PatientReading | None = None
+        self._is_computing = False
         self._to_import: Session | None = None
         self._dialog: QFileDialog | None = None
         self.rail = StepRail(look)
@@ -168,6 +162,7 @@ class Home(Themed):
         """Keep nothing of any patient, for whoever comes next."""
         self._state, self._to_import = None, None
         self._patients.clear()
+        self._reading = None
         self.deleting.forget()
         self.toast.hide()
         self.banner.hide()
@@ -239,6 +234,8 @@ class Home(Themed):
         page.new_session_wished.connect(self._on_primary)
         page.new_patient_wished.connect(self._on_new_patient)
         page.demonstration_wished.connect(self.demonstration_wished)
+        page.import_wished.connect(self._choose_folder)
+        page.computing_wished.connect(self._compute)
         page.patient_deleted.connect(self._on_patient_deleted)
         page.session_deleted.connect(self.deleting.session)
         self.rail.step_pressed.connect(self._on_rail_pressed)
@@ -289,7 +286,7 @@ class Home(Themed):
         is_compact = width < COMPACT_BELOW[0] or height < COMPACT_BELOW[1]
         form = RailForm.COMPACT if is_compact else RailForm.WIDE if width >= WIDE_FROM else RailForm.USUAL
         self.rail.set_form(form)
-        self.page.set_room(width - form.value)
+        self.page.set_room(width - form.value, is_compact=is_compact)
         self.bar.show_state(self._bar())
         px = self._look.theme.px
         self.toast.move(px(form.value + 24), self.height() - self.bar.height() - self.toast.height() - px(16))
@@ -328,6 +325,8 @@ class Home(Themed):
             return BarState()
         new = BarAction(tr("New patient"), tr("Ctrl N"), Icon.ADD)
         patient = self.patient
+        if self.page.is_empty:
+            return BarState(note=tr("No session is running."), has_back=False)
         if patient is None:
             return BarState(quiet=(new,), has_back=False)
         words = tr("New session for {code}").format(code=patient.details.code)
@@ -351,28 +350,52 @@ class Home(Themed):
         patient = self._patients.get(patient_id) if patient_id is not None else None
         self._show()
         if patient is None:
-            self._sessions_of = None
+            self._sessions_of = self._reading = None
             self.page.show_patient("", "")
+            self.page.forget_sessions()
             return
         told = patient.details
         about = " · ".join(filter(None, [person(told), told.device, told.aids]))
-        encrypted = self._state is not None and not self._state.is_demonstration
-        self.page.show_patient(told.code, about, tr("stored on this computer") if encrypted else tr("simulated"))
+        self.page.show_patient(told.code, about)
         own = patient.id
         if own != self._sessions_of:  # what stands there is another patient's
             self._sessions_of = own
             self.page.forget_sessions()
 
-        def read(opened: "OpenedLibrary") -> _Sessions:
-            return _sessions_of(opened, own)
+        def read(opened: "OpenedLibrary") -> PatientReading:
+            return read_patient(opened, own)
 
         self._controller.run(read, self._on_sessions, self.banner.tell, self)
 
-    def _on_sessions(self, sessions: _Sessions) -> None:
-        if sessions.patient_id != self.page.patient_id:
+    def _on_sessions(self, reading: PatientReading) -> None:
+        if reading.patient_id != self.page.patient_id:
             return  # another was chosen meanwhile
         now = datetime.datetime.now().astimezone()
-        self.page.show_sessions([session_line(line, now, sessions.recovered) for line in sessions.lines])
+        self._reading = reading
+        self.page.show_sessions(reading.lines(now), reading.visits(now), reading.next_step(now))
+
+    def _compute(self) -> None:
+        """Evaluate those visits of the patient that have no figures in the course yet."""
+        if self._reading is None:
+            return
+        missing = [
+            visit.id for visit in self._reading.visits(datetime.datetime.now().astimezone()) if visit.course is None
+        ]
+
+        def work(opened: "OpenedLibrary", report: Report) -> int:
+            return compute_courses(opened, missing, report)
+
+        self._is_computing = True
+        self._work(tr("Computing the visits"))
+        self._controller.run_long(work, self._on_computed, self._on_work_refused, self._on_progressed, self)
+
+    def _on_computed(self, unread: int) -> None:
+        self._is_computing = False
+        self._go_to(self.page)
+        if unread:
+            said = tr_n("{count} visit could not be computed.", "{count} visits could not be computed.", unread)
+            self.banner.tell(said.format(count=unread), tr("Open it to see why."))
+        self.refresh()
 
     def _on_new_patient(self) -> None:
         if self.current is self.page:
@@ -501,7 +524,13 @@ class Home(Themed):
         self.working.show_progress(share, words[:1].upper() + words[1:])
 
     def _on_stop(self) -> None:
-        if self._to_import is None:  # a folder was being read, and no more
+        if self._is_computing:
+            self._is_computing = False
+            self._controller.stop_long()
+            self._go_to(self.page)
+            self.banner.tell(tr("This was stopped."), tr("The visits that were computed stay in the course."))
+            self.refresh()
+        elif self._to_import is None:  # a folder was being read, and no more
             self._controller.stop_long()
             self._go_to(self.page)
             self.banner.tell(tr("This was stopped."), tr("Nothing was added to the library."))
@@ -522,6 +551,7 @@ class Home(Themed):
         self.refresh()
 
     def _on_work_refused(self, what: str, remedy: str) -> None:
+        self._is_computing = False
         self._go_to(self.page)
         self.banner.tell(what, remedy)
 
@@ -535,12 +565,6 @@ class Home(Themed):
 def _patients_in(opened: "OpenedLibrary") -> _Patients:
     undecided = opened.library.recordings.undecided()
     return _Patients(opened.library.patients.search(), frozenset(walk.patient_id for walk in undecided))
-
-
-def _sessions_of(opened: "OpenedLibrary", patient_id: UUID) -> _Sessions:
-    undecided = opened.library.recordings.undecided()
-    recovered = frozenset(walk.recording.session_id for walk in undecided if walk.patient_id == patient_id)
-    return _Sessions(patient_id, opened.library.sessions.list(patient_id), recovered)
 
 
 def _named(name: str) -> str:

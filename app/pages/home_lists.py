@@ -49,7 +49,7 @@ class PatientLine:
 
 @dataclass(frozen=True, slots=True)
 class SessionLine:
-    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it."""
+    """`state` is empty where there is nothing to say; `needs_look` puts a triangle before it, else stands `mark`."""
 
     id: UUID
     when: str
@@ -57,6 +57,7 @@ class SessionLine:
     amount: str
     state: str = ""
     needs_look: bool = False
+    mark: Icon | None = None
 
     @property
     def words(self) -> tuple[str, ...]:
@@ -141,7 +142,7 @@ class PatientCell(LineCell):
             sessions = Word(line.sessions, weight=SEMIBOLD, is_right=True, icon=Icon.WARNING)
         rows: list[list[Word]] = []
         for first, second in ((code, when), (person, sessions)):
-            if _are_beside(first, second, width - theme.px(ARROW), theme):
+            if _are_beside(first, second, width, theme):
                 rows.append([first, second])
             else:
                 rows += [*_wrapped(first, width, theme), [replace(second, is_right=False)]]
@@ -188,8 +189,8 @@ class SessionCell(LineCell):
         line = self.line
         state = Word(
             line.state,
-            weight=SEMIBOLD if line.needs_look else REGULAR,
-            icon=Icon.WARNING if line.needs_look else None,
+            weight=SEMIBOLD if line.needs_look or line.mark is Icon.INFO else REGULAR,
+            icon=Icon.WARNING if line.needs_look else line.mark,
         )
         return Word(line.when, 15, SEMIBOLD), Word(line.conditions), Word(line.amount, tone="ink2"), state
 
@@ -200,8 +201,8 @@ class LineList(CellTable):
     `chosen` and `opened` tell the id of a line.
     """
 
-    def __init__(self, look: ThemeNotifier, name: str, is_opened_by_click: bool = False) -> None:
-        super().__init__(look, name, row=ROW, head=0, padding=PAD, edge=PAD, is_list=True)
+    def __init__(self, look: ThemeNotifier, name: str, is_opened_by_click: bool = False, row: int = ROW) -> None:
+        super().__init__(look, name, row=row, head=0, padding=PAD, edge=PAD, is_list=True)
         self.lines: tuple[Line, ...] = ()
         self._longest: list[LineCell] = []
         self._are_even = not is_opened_by_click  # patients may be thousands, sessions are of one patient
@@ -241,7 +242,7 @@ class LineList(CellTable):
         """Make every line as high as its words in this width, or all of thousands as high as the longest one."""
         if self._are_even:
             heights = [self._height(cell) for cell in self._longest]
-            self.verticalHeader().setDefaultSectionSize(max([self._look.theme.px(ROW), *heights]))
+            self.verticalHeader().setDefaultSectionSize(max([self._look.theme.px(self._row), *heights]))
         else:
             for number, row in enumerate(self.cells.rows):
                 self.setRowHeight(number, self._height(row.cells[0]))
@@ -274,8 +275,9 @@ class LineList(CellTable):
 
     def _height(self, cell: TableCell) -> int:
         assert isinstance(cell, LineCell)
-        px = self._look.theme.px
-        return px(ROW) + (max(2, len(cell.word_rows(self.word_room, self._look.theme))) - 2) * px(MORE_HEIGHT)
+        px, rows = self._look.theme.px, len(cell.word_rows(self.word_room, self._look.theme))
+        rows_held = 2 if self._row == ROW else 1
+        return px(self._row) + max(0, rows - rows_held) * px(MORE_HEIGHT)
 
     def _on_clicked(self, _index: QModelIndex) -> None:
         self.opened.emit(self.key)

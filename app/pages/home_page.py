@@ -1,57 +1,63 @@
-"""Find the patient, begin: patients at the left with a search, the sessions of the one that is chosen at the right."""
+"""Find the patient, begin: patients at the left with a search, the one that is chosen at the right."""
 
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import QEvent, QObject, QRectF, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QModelIndex, QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QFontMetrics, QKeyEvent, QKeySequence, QPainter, QPaintEvent
-from PySide6.QtWidgets import QBoxLayout, QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLineEdit, QSizePolicy, QVBoxLayout, QWidget
 
 from app.icons import Icon, paint_icon
+from app.pages.home_empty import EmptyLibrary
 from app.pages.home_lists import Line, LineList, PatientLine, SessionLine
+from app.pages.patient_panel import PatientPanel
+from app.reports.course_lanes import CourseVisit
+from app.reports.course_words import NextStep
 from app.theme import ThemeNotifier
-from app.widgets.button import Button, ButtonKind
 from app.widgets.card import Card
+from app.widgets.segmented import Segmented
 from app.widgets.text import MEDIUM, SEMIBOLD, Text
 from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
 SEARCH_HEIGHT = 48
-PATIENTS_SHARE, SESSIONS_SHARE = 414, 586  # of the picture's 1016, without the gutter
-STACKED_BELOW = 660  # px of the design: lists one above the other
-ROOMY_FROM = 800
-PATIENTS_AT_LEAST = 280
+EDGE, GUTTER = 24, 16
+LIST, PANEL = 344, 656  # of the picture's 1016, without the gutter
+ONE_BELOW = 860  # px of the design: the list or the patient
+LIST_WIDTH_AT_LEAST = 280
 LIST_AT_LEAST = 236  # three lines
+PATIENTS, PATIENT = "patients", "patient"
 
 
 class HomePage(Themed):
-    """Knows lines and ids. Typing narrows the list down; the arrow keys choose from it while typing goes on."""
+    """Knows lines and ids. Typing narrows the list down; the arrow keys choose from it while typing goes on.
+
+    Where there is little room, the list or the patient is in sight.
+    """
 
     patient_chosen = Signal(object)  # UUID or None
     session_opened = Signal(object)  # UUID
     new_session_wished = Signal()  # Enter
     new_patient_wished = Signal()
     demonstration_wished = Signal()
-    patient_deleted = Signal(object)  # UUID: by key or button
+    import_wished = Signal()
+    computing_wished = Signal()  # of the visits that have no figures yet
+    patient_deleted = Signal(object)  # UUID: by key or menu
     session_deleted = Signal(object)
 
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look = look
         self._patients: Sequence[PatientLine] | None = None  # not read yet
+        self._is_single = False
         self._title = Text(look, tr("Patients"), size=26, weight=SEMIBOLD)
         self._count = Text(look, tone="ink2")
         self.search = _Search(look)
         self.patients = LineList(look, tr("Patients"))
-        self._nobody = _Empty(look)
-        self._code = Text(look, size=26, weight=SEMIBOLD, is_code=True, wraps=True)
-        self._person = Text(look, tone="ink2", wraps=True)
-        self.delete_patient = Button(look, tr("Delete patient"), ButtonKind.QUIET, Icon.DELETE, height=44)
-        self._sessions_title = Text(look, tr("Sessions"), size=16, weight=SEMIBOLD)
-        self._stored = Text(look, size=12, tone="ink2")
-        self.delete_session = Button(look, tr("Delete session"), ButtonKind.QUIET, Icon.DELETE, height=44)
-        self.sessions = LineList(look, tr("Sessions"), is_opened_by_click=True)
-        self._none_yet = Text(look, tr("No sessions yet."), tone="ink2", wraps=True)
+        self.nobody = Text(look, tr("Nobody is found. Search for less, or add a new patient."), wraps=True)
+        self.empty = EmptyLibrary(look)
+        self.panel = PatientPanel(look)
+        self.view = Segmented(look, tr("View"), [(PATIENTS, tr("Patients"), ""), (PATIENT, tr("Patient"), "")])
         self._build()
         self._connect()
         self.forget_patients()
@@ -65,18 +71,21 @@ class HomePage(Themed):
         return line.id if line is not None else None
 
     @property
+    def sessions(self) -> LineList:
+        """Those of the patient who is chosen."""
+        return self.panel.sessions
+
+    @property
+    def is_empty(self) -> bool:
+        """Whether the library was read and has no patient."""
+        return self._patients is not None and not self._patients
+
+    @property
     def tab_order(self) -> list[QWidget]:
-        return [
-            self.search,
-            self.patients,
-            *self._nobody.buttons,
-            self.delete_patient,
-            self.sessions,
-            self.delete_session,
-        ]
+        return [*self.view.segments, self.search, self.patients, *self.panel.tab_order, *self.empty.buttons]
 
     def focus(self) -> None:
-        self.search.setFocus()
+        (self.empty.new_patient if self.is_empty else self.search).setFocus()
 
     def forget_patients(self) -> None:
         """Show nobody, and do not say that there is nobody: the library has still to be read."""
@@ -87,32 +96,41 @@ class HomePage(Themed):
     def forget_sessions(self) -> None:
         """Show no session, and do not say that there is none: those of another patient are still to be read."""
         self.show_sessions(())
-        self._none_yet.hide()
+        self.panel.none_yet.hide()
 
     def show_patients(self, lines: Sequence[PatientLine], chosen: UUID | None = None) -> None:
         """Show all patients there are, with one of them chosen, else the first that the search lets through."""
         self._patients = tuple(lines)
         self._filter(chosen)
 
-    def show_patient(self, code: str, person: str, stored: str = "") -> None:
+    def show_patient(self, code: str, person: str) -> None:
         """Say whose sessions stand at the right; nobody's where there is no code."""
-        self._code.setText(code)
-        self._person.setText(person)
-        self._stored.setText(stored)
-        for part in (self._code, self._person, self._card, self.delete_patient):
-            part.setVisible(bool(code))
+        self.panel.show_patient(code, person)
+        self.view.set_word(PATIENT, code or tr("Patient"))
+        self._show_parts()
 
-    def show_sessions(self, lines: Sequence[SessionLine]) -> None:
-        self.sessions.show_lines(lines)
-        self.sessions.setVisible(bool(lines))
-        self._none_yet.setVisible(not lines)
-        self.delete_session.setVisible(False)
+    def show_sessions(
+        self, lines: Sequence[SessionLine], visits: Sequence[CourseVisit] = (), step: NextStep | None = None
+    ) -> None:
+        """Show sessions, the course over those that are visits with a day, and what is to be done next."""
+        self.panel.show_sessions(lines)
+        self.panel.show_course(visits)
+        self.panel.show_next(step)
 
-    def set_room(self, width: float) -> None:
+    def set_room(self, width: float, *, is_compact: bool = False) -> None:
         """Lay out for a page of this width, in px of the design."""
-        way = QBoxLayout.Direction.TopToBottom if width < STACKED_BELOW else QBoxLayout.Direction.LeftToRight
-        self._columns.setDirection(way)
-        self._stored.setVisible(width >= ROOMY_FROM)
+        self._is_single = is_compact or width < ONE_BELOW
+        self.empty.set_room(width)
+        inside = width - 2 * EDGE
+        self.panel.set_room(inside if self._is_single else (inside - GUTTER) * PANEL / (LIST + PANEL))
+        self._show_parts()
+
+    def event(self, event: QEvent) -> bool:
+        """Ask for the height that words take in this width: what scrolls round the page asks for the least only."""
+        is_done = super().event(event)
+        if event.type() in (QEvent.Type.LayoutRequest, QEvent.Type.Resize):
+            self.setMinimumHeight(max(0, self._page.minimumHeightForWidth(self.width())))
+        return is_done
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Let the arrow keys move in the list while the search has the focus, and Delete delete in the lists."""
@@ -146,47 +164,53 @@ class HomePage(Themed):
         heading.addWidget(self._count, 0, Qt.AlignmentFlag.AlignBottom)
         self._list_card = Card(self._look, padding=0)
         self._list_card.column.addWidget(self.patients, 1)
-        self._list_card.column.addWidget(self._nobody, 1)
-        self._left = QVBoxLayout()
+        self._list_card.column.addWidget(self.nobody, 1, Qt.AlignmentFlag.AlignCenter)
+        self._left_room = QWidget()
+        self._left = QVBoxLayout(self._left_room)
+        self._left.setContentsMargins(0, 0, 0, 0)
         self._left.addLayout(heading)
         self._left.addWidget(self.search)
         self._left.addWidget(self._list_card, 1)
-        names = QVBoxLayout()
-        names.setSpacing(0)
-        names.addWidget(self._code)
-        names.addWidget(self._person)
-        self._who = QHBoxLayout()
-        self._who.addLayout(names, 1)
-        self._who.addWidget(self.delete_patient, 0, Qt.AlignmentFlag.AlignBottom)
-        self._card = Card(self._look, padding=0)
-        self._card_head = QHBoxLayout()
-        self._card_head.addWidget(self._sessions_title, 1)
-        self._card_head.addWidget(self.delete_session)
-        self._card_head.addWidget(self._stored)
-        self._card.column.addLayout(self._card_head)
-        self._card.column.addWidget(self.sessions, 1)
-        self._card.column.addWidget(self._none_yet, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._card.column.addStretch(0)
-        self._right = QVBoxLayout()
-        self._right.addLayout(self._who)
-        self._right.addWidget(self._card, 1)
-        self._right.addStretch(0)
-        self._columns = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._columns.addLayout(self._left, PATIENTS_SHARE)
-        self._columns.addLayout(self._right, SESSIONS_SHARE)
+        self._both = QWidget()
+        self._columns = QHBoxLayout(self._both)
+        self._columns.setContentsMargins(0, 0, 0, 0)
+        self._columns.addWidget(self._left_room, LIST)
+        self._columns.addWidget(self.panel, PANEL)
+        self._empty_title = Text(self._look, tr("Patients"), size=26, weight=SEMIBOLD)
+        self._page = QVBoxLayout(self)
+        self._page.addWidget(self.view, 0, Qt.AlignmentFlag.AlignLeft)
+        self._page.addWidget(self._empty_title)
+        self._page.addWidget(self.empty, 1)
+        self._page.addWidget(self._both, 1)
 
     def _connect(self) -> None:
         self.search.textChanged.connect(self._on_searched)
         self.patients.chosen.connect(self._on_patient_chosen)
         self.patients.opened.connect(self._on_patient_opened)
+        self.patients.clicked.connect(self._on_patient_clicked)
+        self.view.chosen.connect(self._show_parts)
         self.sessions.opened.connect(self.session_opened)
-        self.sessions.chosen.connect(self._on_session_chosen)
-        self.delete_patient.clicked.connect(self._on_delete_patient)
-        self.delete_session.clicked.connect(self._on_delete_session)
-        self._nobody.new_patient.clicked.connect(self.new_patient_wished)
-        self._nobody.demonstration.clicked.connect(self.demonstration_wished)
+        self.panel.next_wished.connect(self.session_opened)
+        self.panel.course.visit_opened.connect(self.session_opened)
+        self.panel.course.computing_wished.connect(self.computing_wished)
+        self.panel.delete_patient_wished.connect(self._on_delete_patient)
+        self.panel.delete_session_wished.connect(self._on_delete_session)
+        self.empty.new_patient.clicked.connect(self.new_patient_wished)
+        self.empty.demonstration.clicked.connect(self.demonstration_wished)
+        self.empty.importing.clicked.connect(self.import_wished)
         for watched in (self.search, self.patients, self.sessions):
             watched.installEventFilter(self)
+
+    def _show_parts(self) -> None:
+        """The list, the patient, or both; of an empty library neither."""
+        is_single, has_any = self._is_single, not self.is_empty
+        self.empty.setVisible(not has_any)
+        self._empty_title.setVisible(not has_any)
+        self._both.setVisible(has_any)
+        self.view.setVisible(is_single and has_any)
+        self._title.setVisible(not is_single)
+        self._left_room.setVisible(not is_single or self.view.choice == PATIENTS)
+        self.panel.setVisible(not is_single or self.view.choice == PATIENT)
 
     def _filter(self, chosen: UUID | None) -> None:
         wanted = self.search.text().strip().casefold().split()
@@ -199,8 +223,8 @@ class HomePage(Themed):
         self._count.setText(str(len(found)) if self._patients else "")
         self._count.setAccessibleName(tr_n("{count} patient", "{count} patients", len(found)).format(count=len(found)))
         self.patients.setVisible(bool(found))
-        self._nobody.setVisible(not found and self._patients is not None)
-        self._nobody.show_reason(bool(self._patients))
+        self.nobody.setVisible(not found and bool(self._patients))
+        self._show_parts()
         if self.patient_id is None:
             self.patient_chosen.emit(None)
 
@@ -211,11 +235,12 @@ class HomePage(Themed):
         if patient_id is not None:
             self.patient_chosen.emit(patient_id)
 
+    def _on_patient_clicked(self, _index: QModelIndex) -> None:
+        if self._is_single:
+            self.view.choose(PATIENT)
+
     def _on_patient_opened(self, _patient_id: UUID) -> None:
         self.new_session_wished.emit()
-
-    def _on_session_chosen(self, session_id: UUID | None) -> None:
-        self.delete_session.setVisible(session_id is not None)
 
     def _on_delete_patient(self) -> None:
         if self.patient_id is not None:
@@ -228,54 +253,13 @@ class HomePage(Themed):
 
     def _on_look_changed(self) -> None:
         px = self._look.theme.px
-        self._columns.setContentsMargins(px(24), px(16), px(24), px(20))
-        self._columns.setSpacing(px(16))
-        for column in (self._left, self._right):
-            column.setSpacing(px(12))
-        self._who.setSpacing(px(12))
-        self._card_head.setContentsMargins(px(24), px(4), px(24), 0)
-        self._card_head.setSpacing(px(12))
-        for one in (self.patients, self.sessions, self._nobody):
+        self._page.setContentsMargins(px(EDGE), px(16), px(EDGE), px(12))
+        self._page.setSpacing(px(12))
+        self._columns.setSpacing(px(GUTTER))
+        self._left.setSpacing(px(12))
+        self._left_room.setMinimumWidth(px(LIST_WIDTH_AT_LEAST))
+        for one in (self.patients, self.nobody):
             one.setMinimumHeight(px(LIST_AT_LEAST))
-        self._sessions_title.setMinimumHeight(px(44))
-        self._none_yet.setMinimumHeight(px(96))
-        self._list_card.setMinimumWidth(px(PATIENTS_AT_LEAST))
-
-
-class _Empty(Themed):
-    """What stands in the list's place: nobody yet, or nobody who is searched for."""
-
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__()
-        self._look = look
-        self._sentence = Text(look, size=16, weight=SEMIBOLD, wraps=True)
-        self._sentence.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        self.new_patient = Button(look, tr("New patient"), ButtonKind.PRIMARY, Icon.ADD)
-        self.demonstration = Button(look, tr("Open demonstration"), ButtonKind.QUIET, Icon.PLAY)
-        self._column = QVBoxLayout(self)
-        self._column.addStretch(1)
-        self._column.addWidget(self._sentence)
-        self._column.addWidget(self.new_patient, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addWidget(self.demonstration, 0, Qt.AlignmentFlag.AlignHCenter)
-        self._column.addStretch(1)
-        self._on_look_changed()
-
-    @property
-    def buttons(self) -> list[QWidget]:
-        return [self.new_patient, self.demonstration]
-
-    def show_reason(self, are_there_others: bool) -> None:
-        self._sentence.setText(
-            tr("Nobody is found. Search for less, or add a new patient.")
-            if are_there_others
-            else tr("No patients yet. Add a new patient, or open the demonstration.")
-        )
-        self.demonstration.setVisible(not are_there_others)
-
-    def _on_look_changed(self) -> None:
-        px = self._look.theme.px
-        self._column.setContentsMargins(px(2), px(24), px(2), px(24))
-        self._column.setSpacing(px(16))
 
 
 class _Search(QLineEdit):

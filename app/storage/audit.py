@@ -9,17 +9,19 @@ Entries name rows by their ids and hold no names and no values, so they may outl
 import datetime
 import hmac
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from uuid import UUID
 
 from sqlalchemy import select
 from sqlalchemy.orm import Session as OrmSession
 
 from app.storage.database.models import AuditRow
-from app.storage.stored import BEGINNING, Action, AuditEntry, AuditFault, AuditReport, Checkpoint, Role
+from app.storage.stored import BEGINNING, Action, AuditEntry, AuditFault, AuditReport, Checkpoint, LibraryError, Role
 from app.storage.unit_of_work import END, UnitOfWork
 
 MANY = 1000  # rows held at a time
+REPORT_FORMAT = "report"  # the format of an export by which a session is reported
 
 
 class Audit:
@@ -64,12 +66,41 @@ class Audit:
         with self._unit.writing(Role.VIEWER) as session:
             note(self._unit, session, action, subject, **details)
 
+    @contextmanager
+    def exporting(self, subject: str, **details: str | float | bool) -> Iterator[None]:
+        """Record an export before it is made; and where making it raises, that it was broken off.
+
+        Raises
+        ------
+        LibraryError
+            It cannot be recorded; then it is not made either.
+        """
+        self.note(Action.EXPORT, subject, **details)
+        try:
+            yield
+        except BaseException:
+            with suppress(LibraryError):
+                self.note(Action.EXPORT, subject, **details, is_broken_off=True)
+            raise
+
     def entries(self, subject: str = "", last: int = 1000) -> tuple[AuditEntry, ...]:
         """The latest entries, oldest first; all of them or those about one `subject`."""
         wanted = select(AuditRow).order_by(AuditRow.number.desc()).limit(last)
         with self._unit.reading() as session:
             rows = session.scalars(wanted.where(AuditRow.subject == subject) if subject else wanted)
             return tuple(entry_of(row) for row in rows)[::-1]
+
+    def reported(self, session_ids: Collection[UUID]) -> frozenset[UUID]:
+        """Those sessions whose report was written, as the latest entry about it says."""
+        ids = {about("session", session_id): session_id for session_id in session_ids}
+        wanted = select(AuditRow).where(AuditRow.subject.in_(ids), AuditRow.action == Action.EXPORT)
+        latest: dict[UUID, bool] = {}
+        with self._unit.reading() as session:
+            for row in session.scalars(wanted.order_by(AuditRow.number)):
+                details = json.loads(row.details)
+                if details.get("format") == REPORT_FORMAT and details.get("is_document", True):
+                    latest[ids[row.subject]] = not details.get("is_broken_off", False)
+        return frozenset(session_id for session_id, is_written in latest.items() if is_written)
 
     def verify(self, checkpoint: Checkpoint = BEGINNING) -> AuditReport:
         """Check every link, and that the chain still holds what `checkpoint` tells of."""

@@ -100,12 +100,15 @@ def _of_home(home: "Home", held: HeldLibrary) -> Iterator[str]:
     if page.patient_id is None:
         return
     told = held.ask("SELECT code FROM patients WHERE id = ?", page.patient_id.hex)
-    if not told or page._code.text() != told[0][0]:
-        yield f"home shows the sessions of {page._code.text()!r}, held is {told}"
+    if not told or page.panel.code.text() != told[0][0]:
+        yield f"home shows the sessions of {page.panel.code.text()!r}, held is {told}"
     shown = [line for line in page.sessions.lines if isinstance(line, SessionLine)]
-    said_of = Counter((line.id.hex, _number(line.amount)) for line in shown)
+    in_recordings = [line for line in shown if "recording" in line.amount]  # the others count strides
+    uncounted = {line.id.hex for line in shown} - {line.id.hex for line in in_recordings}
+    said_of = Counter((line.id.hex, _number(line.amount)) for line in in_recordings)
+    said_of.update((identity, 0) for identity in uncounted)
     rows = held.ask(SESSIONS, page.patient_id.hex)
-    held_of = Counter((str(identity), int(count)) for identity, _, count in rows)
+    held_of = Counter((str(identity), 0 if str(identity) in uncounted else int(count)) for identity, _, count in rows)
     if said_of != held_of:
         yield f"home lists sessions {_only(said_of, held_of)}, held are {_only(held_of, said_of)}"
     simulated = {identity for identity, is_simulated, _ in rows if is_simulated}

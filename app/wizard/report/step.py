@@ -18,10 +18,10 @@ from app.logs import version_of
 from app.pages.sentence_page import SentencePage
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
-from app.storage.audit import about
+from app.storage.audit import REPORT_FORMAT, about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
-from app.storage.stored import Action, LibraryError
+from app.storage.stored import LibraryError
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
@@ -318,8 +318,9 @@ class ReportStep(Step):
             report(0.0, tr("writing"))
             try:
                 check_place(out, opened.folder)
-                opened.library.audit.note(Action.EXPORT, about("session", session_id), format="report")
-                with written_beside(out) as beside:
+                subject, is_document = about("session", session_id), request is not None
+                exporting = opened.library.audit.exporting(subject, format=REPORT_FORMAT, is_document=is_document)
+                with exporting, written_beside(out) as beside:
                     if "csv" in chosen or "rrd" in chosen:
                         write_results(session, analysis, beside)
                     if "rrd" in chosen:

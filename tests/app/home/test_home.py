@@ -164,7 +164,7 @@ def test_a_session_is_opened_by_a_click_and_by_enter(qtbot: QtBot, home: Home) -
 
 
 def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
-    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     assert home.toast.text == "P-0163 is deleted, for good in 30 days."
     home.toast.undo()
@@ -175,7 +175,7 @@ def test_a_deleted_patient_comes_back_by_undo(qtbot: QtBot, home: Home) -> None:
 def test_what_is_taken_back_while_the_settings_are_in_sight_is_not_listed_there_any_more(
     qtbot: QtBot, home: Home
 ) -> None:
-    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     home.show_settings()
     rows = home.settings.page.deleted_rows
@@ -189,7 +189,7 @@ def test_what_was_deleted_earlier_is_restored_in_the_settings(qtbot: QtBot, home
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
     qtbot.waitUntil(lambda: len(sessions(home)) == 2, timeout=WAIT_MS)
-    QTest.mouseClick(home.page.delete_patient, Qt.MouseButton.LeftButton)
+    home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     home.show_settings()
     patient, session = "Restore, P-0163, 1951, female · right affected", "Restore, P-0163, 20 May 2026"
@@ -215,7 +215,7 @@ def test_of_two_deletions_the_last_comes_back_by_its_keys_also_from_the_search(q
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     home.page.sessions.setFocus()
     QTest.keyClick(home.page.sessions, Qt.Key.Key_Delete)
-    home.page.delete_patient.click()
+    home.page.panel.delete_patient.trigger()
     qtbot.waitUntil(lambda: codes(home) == ["P-0147"], timeout=WAIT_MS)
     assert home.toast.text == "P-0163 is deleted, for good in 30 days."
     home.page.search.setFocus()
@@ -469,7 +469,7 @@ def test_nothing_is_left_for_whoever_comes_next(home: Home) -> None:
     home.clear()
     assert codes(home) == []
     assert sessions(home) == []
-    assert home.page._code.text() == ""
+    assert home.page.panel.code.text() == ""
 
 
 def test_light_or_dark_is_set_for_the_next_start_too(home: Home, settings: Settings) -> None:
@@ -612,5 +612,5 @@ def test_under_a_patients_code_stand_no_sessions_of_another_while_theirs_are_rea
     qtbot.waitUntil(lambda: len(sessions(home)) == 3, timeout=WAIT_MS)
     page.patients.choose_line(next(line.id for line in lines(home) if line.code == "P-0147"))
     assert sessions(home) == []
-    assert not page._none_yet.isVisible()
-    qtbot.waitUntil(page._none_yet.isVisible, timeout=WAIT_MS)
+    assert not page.panel.none_yet.isVisible()
+    qtbot.waitUntil(page.panel.none_yet.isVisible, timeout=WAIT_MS)

@@ -72,13 +72,21 @@ def test_the_chosen_patient_stays_chosen_when_the_list_is_read_anew(page: HomePa
 
 def test_an_empty_library_offers_a_patient_and_the_demonstration(qtbot: QtBot, page: HomePage) -> None:
     page.show_patients(())
-    assert page._nobody.isVisible()
-    with qtbot.waitSignal(page.demonstration_wished):
-        QTest.mouseClick(page._nobody.demonstration, Qt.MouseButton.LeftButton)
+    assert page.empty.isVisible()
+    assert not page.search.isVisible()
+    for button, wished in (
+        (page.empty.new_patient, page.new_patient_wished),
+        (page.empty.demonstration, page.demonstration_wished),
+        (page.empty.importing, page.import_wished),
+    ):
+        with qtbot.waitSignal(wished):
+            QTest.mouseClick(button, Qt.MouseButton.LeftButton)
     page.show_patients([patient(1)])
+    assert not page.empty.isVisible()
+    assert not page.nobody.isVisible()
     QTest.keyClicks(page.search, "nobody")
-    assert page._nobody.isVisible()
-    assert not page._nobody.demonstration.isVisible()
+    assert page.nobody.isVisible()
+    assert not page.empty.isVisible()
 
 
 def test_a_line_says_all_of_itself_to_a_reader_of_screens(page: HomePage) -> None:
@@ -119,17 +127,17 @@ def test_no_word_of_a_line_is_cut_or_lies_on_another(
 
 
 def test_nothing_is_said_of_patients_and_sessions_that_are_still_to_be_read(page: HomePage) -> None:
-    assert not page._nobody.isVisible()
+    assert not page.empty.isVisible()
     page.show_patients(())
-    assert page._nobody.isVisible()
+    assert page.empty.isVisible()
     page.show_patients([patient(1)])
     page.show_patient("P-0001", "")
     page.show_sessions(())
-    assert page._none_yet.isVisible()
+    assert page.panel.none_yet.isVisible()
     page.show_sessions([session(1, "barefoot")])
     page.forget_sessions()
     assert len(page.sessions.lines) == 0
-    assert not page._none_yet.isVisible()
+    assert not page.panel.none_yet.isVisible()
     page.forget_patients()
     assert len(page.patients.lines) == 0
-    assert not page._nobody.isVisible()
+    assert not page.empty.isVisible()

@@ -1,5 +1,6 @@
 """Does every page have the room for a language as long as German, at every size of window and letters?"""
 
+import datetime
 from collections.abc import Callable
 from uuid import UUID
 
@@ -12,10 +13,12 @@ from app.pages.first_start_page import FirstStartPage
 from app.pages.help_page import HelpPage
 from app.pages.help_topics import Topic
 from app.pages.home_lists import PatientLine, SessionLine
-from app.pages.home_page import HomePage
+from app.pages.home_page import PATIENT, HomePage
 from app.pages.import_page import ImportPage
 from app.pages.log_in_page import LogInPage
 from app.pages.settings_page import OperatorLine, SettingsPage
+from app.reports.course_lanes import CourseVisit
+from app.reports.course_words import NextStep
 from app.theme import ThemeNotifier, load_fonts
 from app.widgets.gauge import GaugeFace, GaugeMeasure, GaugeState
 from app.widgets.hint import Hint
@@ -34,6 +37,7 @@ from core.body import Joint, Side, Site
 from core.findings import Finding, Severity
 from core.gait.phases import Phase
 from core.samples import Patient
+from tests.app.home.course_library import VISITS
 from tests.app.room import words_cut
 
 # of the window: its size, the size of everything, and whether pages fold
@@ -81,7 +85,18 @@ def home(look: ThemeNotifier) -> QWidget:
     ]
     page.show_patients(lines)
     page.show_patient("P-0100", "1968, male · left prosthetic")
-    page.show_sessions([SessionLine(UUID(int=99), "today 14:20", "Alignment A, B, C", "3 recordings")])
+    step = NextStep(tr("write the report of {day}.").format(day="14 Nov"), tr("Open"), UUID(int=4))
+    missing = CourseVisit(UUID(int=9), datetime.date(2026, 11, 20), None)
+    line = SessionLine(UUID(int=99), "today 14:20", "Alignment A, B, C", "3 recordings")
+    page.show_sessions([line], [*VISITS, missing], step)
+    return page
+
+
+def home_of_a_patient(look: ThemeNotifier) -> QWidget:
+    """Where there is room for the list or the patient only."""
+    page = home(look)
+    assert isinstance(page, HomePage)
+    page.view.choose(PATIENT)
     return page
 
 
@@ -217,6 +232,7 @@ PAGES: dict[str, Callable[[ThemeNotifier], QWidget]] = {
     "log in": log_in,
     "cover": cover,
     "home": home,
+    "home of a patient": home_of_a_patient,
     "empty home": empty_home,
     "import": importing,
     "settings": settings,

@@ -1,0 +1,107 @@
+"""What home shows of one patient: read from the library on its thread, and nothing is evaluated for it."""
+
+import datetime
+import logging
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+from uuid import UUID
+
+from app.pages.home_lists import SessionLine
+from app.patient_words import day_of_session, session_line
+from app.reports.course import Course
+from app.reports.course_lanes import CourseVisit
+from app.reports.course_words import LatestVisit, NextStep, next_step, recovered_step
+from app.storage.journal.header import JournalRefusedError
+from app.storage.stored import LibraryError, SessionSummary
+from app.wizard.resuming import current_course_key, read_analysed
+from app.workers.background import Report
+
+if TYPE_CHECKING:
+    from app.storage.opened import OpenedLibrary
+
+_log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, slots=True)
+class PatientReading:
+    """The sessions of a patient, latest first, and by id what is known of them.
+
+    `recovered`: those with a walk that was recovered and is not decided yet. `courses`: figures that still hold.
+    `reported`: those whose report was written.
+    """
+
+    patient_id: UUID
+    sessions: tuple[SessionSummary, ...]
+    recovered: frozenset[UUID]
+    courses: Mapping[UUID, Course]
+    reported: frozenset[UUID]
+
+    def visits(self, now: datetime.datetime) -> tuple[CourseVisit, ...]:
+        """Those with a day, in order of time; without those that are known to hold no walk."""
+        found = []
+        for session in reversed(self.sessions):
+            day, course = day_of_session(session.started, now), self.courses.get(session.id)
+            if day is not None and session.recordings and (course is None or course.conditions):
+                found.append(CourseVisit(session.id, day, course))
+        return tuple(sorted(found, key=lambda visit: visit.day))
+
+    def lines(self, now: datetime.datetime) -> list[SessionLine]:
+        return [
+            session_line(one, now, self.recovered, self.courses.get(one.id), is_reported=one.id in self.reported)
+            for one in self.sessions
+        ]
+
+    def next_step(self, now: datetime.datetime) -> NextStep | None:
+        """What is to be done next."""
+        days = {one.id: day_of_session(one.started, now) for one in self.sessions}
+        waiting = next((one.id for one in self.sessions if one.id in self.recovered), None)
+        recovered = recovered_step(waiting, days[waiting]) if waiting is not None else None
+        visits = self.visits(now)
+        if not visits:
+            return recovered
+        last = visits[-1]
+        conditions = last.course.conditions if last.course is not None else ()
+        withheld = dict.fromkeys(joint for one in conditions for joint in one.withheld)
+        has_walk = last.course is not None and bool(conditions)
+        latest = LatestVisit(last.id, last.day, tuple(withheld), has_walk, last.id in self.reported)
+        return next_step(recovered, latest, now.date())
+
+
+def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
+    """Read the sessions of a patient, with the figures that were kept of them as far as they still hold."""
+    library = opened.library
+    sessions = library.sessions.list(patient_id)
+    recovered = frozenset(
+        walk.recording.session_id for walk in library.recordings.undecided() if walk.patient_id == patient_id
+    )
+    ids = [session.id for session in sessions]
+    courses = {
+        session_id: course
+        for session_id, (key, course) in library.courses.find(ids).items()
+        if key == current_course_key(library.sessions.get(session_id))
+    }
+    return PatientReading(patient_id, sessions, recovered, courses, library.audit.reported(ids))
+
+
+def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:
+    """Evaluate sessions, so that what of them stands in the course is kept.
+
+    Returns
+    -------
+    int
+        How many could not be read.
+    """
+    unread = 0
+    for number, session_id in enumerate(session_ids):
+        at = number / len(session_ids)
+
+        def told(share: float, what: str, at: float = at) -> None:
+            report(at + share / len(session_ids), what)
+
+        try:
+            read_analysed(opened, session_id, told)
+        except (LibraryError, JournalRefusedError, OSError) as problem:
+            _log.warning("a session could not be computed", exc_info=problem)
+            unread += 1
+    return unread

@@ -1,0 +1,201 @@
+"""How is a patient's course said? Each lane with its unit and its changes, and what is to be done next."""
+
+import datetime
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from uuid import UUID
+
+from app.dates import day_in_words, short_date
+from app.reports.course_lanes import DECIMALS, CourseLane, CourseVisit, LaneChange, LaneKind, LaneLine, LanePoint
+from app.reports.patient_report.numbers_in_words import DAGGER, dagger_note, fixed, signed
+from app.reports.visits import condition_in_words
+from app.wording import joined, later, name_of, side_name, tr, tr_n
+from core.body import Joint
+from core.verdicts.measurement_error import Difference, ErrorSource, Judgement
+
+LONG_AGO = datetime.timedelta(weeks=8)
+
+NAMES = {
+    LaneKind.SPEED: later("Walking speed"),
+    LaneKind.KNEE: later("Knee, stance to swing"),
+    LaneKind.STANCE: later("Stance L \N{MINUS SIGN} R"),
+}
+SPOKEN = {LaneKind.STANCE: later("Stance of the left leg less that of the right")}
+UNITS = {LaneKind.SPEED: later("m/s"), LaneKind.KNEE: later("degrees"), LaneKind.STANCE: later("% of stride")}
+SPOKEN_UNITS = {
+    LaneKind.SPEED: later("{value} metres per second"),
+    LaneKind.KNEE: later("{value} degrees"),
+    LaneKind.STANCE: later("{value} percent of the stride"),
+}
+SHORT_UNITS = {LaneKind.SPEED: "m/s", LaneKind.KNEE: "°", LaneKind.STANCE: "%"}
+
+
+@dataclass(frozen=True, slots=True)
+class NextStep:
+    """What is to be done next, and the session that it is about; `verb` is empty where nothing is pressed."""
+
+    sentence: str
+    verb: str = ""
+    session_id: UUID | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class LatestVisit:
+    """What is known of the latest visit. `withheld`: joints that could not be read."""
+
+    id: UUID
+    day: datetime.date
+    withheld: tuple[Joint, ...]
+    has_walk: bool
+    has_report: bool
+
+
+def day_of(number: int, visits: Sequence[CourseVisit]) -> str:
+    """The day of the visit of this number."""
+    return day_in_words(visits[number].day, [visit.day for visit in visits])
+
+
+def value_in_words(value: float, kind: LaneKind) -> str:
+    return fixed(value, DECIMALS[kind])
+
+
+def change_in_words(found: Difference, kind: LaneKind) -> str:
+    return signed(found.difference, DECIMALS[kind]) + ("°" if kind is LaneKind.KNEE else "")
+
+
+def last_in_words(one: LaneChange, kind: LaneKind) -> str:
+    """The last value with its unit."""
+    last = one.line.points[-1]
+    if not last.is_told:
+        return tr("not readable")
+    value, unit = value_in_words(last.value, kind), SHORT_UNITS[kind]
+    return value + unit if unit == "°" else f"{value}\N{NO-BREAK SPACE}{unit}"
+
+
+def judged_in_words(found: Difference, kind: LaneKind) -> str:
+    """Whether a change is larger than its error; the dagger marks an error whose source could not be read."""
+    if not found.error > 0:
+        return _verdict(found)
+    error = fixed(found.error, max(1, DECIMALS[kind])) + (f" {DAGGER}" if found.is_unverified else "")
+    if ErrorSource.SPEED in found.sources:
+        return tr("{verdict} ({error}; the speed differs)").format(verdict=_verdict(found), error=error)
+    return tr("{verdict} ({error})").format(verdict=_verdict(found), error=error)
+
+
+def since_last_in_words(found: Difference, kind: LaneKind) -> str:
+    """What has changed since the visit before."""
+    said = tr("last visit {change}, {verdict}")
+    return said.format(change=change_in_words(found, kind), verdict=_verdict(found))
+
+
+def _verdict(found: Difference) -> str:
+    if found.judgement is Judgement.TOO_FEW_STRIDES:
+        return tr("too few strides to judge")
+    if not found.error > 0:
+        return tr("not judged")
+    return tr("larger than error") if found.exceeds else tr("inside error")
+
+
+def key_in_words(lanes: Sequence[CourseLane]) -> str:
+    """What is drawn beside the values; empty where nothing of it is."""
+    has_whiskers = any(math.isfinite(point.whisker) for lane in lanes for line in lane.lines for point in line.told)
+    changes = [found for lane in lanes for one in lane.changes if (found := one.since_first) is not None]
+    said = [tr("Whisker: half of the error of a change.")] if has_whiskers else []
+    said += [tr("Grey: first visit \N{PLUS-MINUS SIGN} error.")] if any(lane.band for lane in lanes) else []
+    if any(found.is_unverified for found in changes):
+        said.append(dagger_note())
+    return " ".join(said)
+
+
+def lane_in_words(lane: CourseLane, visits: Sequence[CourseVisit]) -> str:
+    """All of a lane, for who hears it: every value with its day, then what has changed."""
+    name = tr(SPOKEN.get(lane.kind, NAMES[lane.kind]))
+    if not lane.lines:
+        return tr("{name}: no value.").format(name=name)
+    conditions = {line.condition for line in lane.lines}
+    said = []
+    for line in lane.lines:
+        values = [_spoken(point, lane.kind, visits) for point in line.points]
+        said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {', '.join(values)}.")
+    said += [words for one in lane.changes if (words := _change_in_words(one, lane.kind, visits))]
+    return " ".join(said)
+
+
+def visit_in_words(number: int, lanes: Sequence[CourseLane], visits: Sequence[CourseVisit]) -> str:
+    """All values of one visit, for who goes from visit to visit."""
+    said = []
+    for lane in lanes:
+        conditions = {line.condition for line in lane.lines}
+        for line in lane.lines:
+            for point in line.points:
+                if point.visit == number:
+                    value = tr("not readable")
+                    if point.is_told:
+                        value = tr(SPOKEN_UNITS[lane.kind]).format(value=value_in_words(point.value, lane.kind))
+                    said.append(f"{_head(lane.kind, line, has_condition=len(conditions) > 1)}: {value}")
+    if visits[number].course is None:
+        said = [tr("not computed yet")]
+    return f"{day_of(number, visits)}. {'. '.join(said or [tr('no walk')])}."
+
+
+def nothing_between(visits: Sequence[CourseVisit]) -> str:
+    """What a course still lacks; empty where it has a trend."""
+    missing = sum(visit.course is None for visit in visits)
+    walked = sum(bool(visit.course and visit.course.conditions) for visit in visits)
+    if missing:
+        return tr_n("{count} visit is not computed yet.", "{count} visits are not computed yet.", missing).format(
+            count=missing
+        )
+    if walked == 1:
+        return tr("A second visit makes a trend.")
+    return "" if walked else tr("No visit has a walk yet.")
+
+
+def next_step(recovered: NextStep | None, latest: LatestVisit | None, today: datetime.date) -> NextStep | None:
+    """The first that holds: a recovered walk, a joint that cannot be read, no report, a long time without a visit."""
+    if recovered is not None or latest is None:
+        return recovered
+    day = short_date(latest.day)
+    if latest.withheld:
+        names = joined([name_of(joint) for joint in latest.withheld])
+        said = tr("{joints} could not be read on {day}: see why.")
+        return NextStep(said.format(joints=names, day=day), tr("Look"), latest.id)
+    if latest.has_walk and not latest.has_report:
+        return NextStep(tr("write the report of {day}.").format(day=day), tr("Open"), latest.id)
+    if (ago := today - latest.day) >= LONG_AGO:
+        return NextStep(tr("the last visit was {weeks} weeks ago.").format(weeks=ago.days // 7))
+    return None
+
+
+def recovered_step(session_id: UUID, day: datetime.date | None) -> NextStep:
+    """A walk that was recovered, and nobody has said whether it is kept."""
+    said = tr("look at the walk that was recovered.")
+    if day is not None:
+        said = tr("look at the walk of {day} that was recovered.").format(day=short_date(day))
+    return NextStep(said, tr("Look"), session_id)
+
+
+def _head(kind: LaneKind, line: LaneLine, *, has_condition: bool) -> str:
+    """Of what and whom values are told."""
+    name = tr(SPOKEN.get(kind, NAMES[kind]))
+    who = [side_name(line.side)] if line.side is not None else []
+    who += [condition_in_words(line.condition)] if has_condition else []
+    return ", ".join([name, *who])
+
+
+def _spoken(point: LanePoint, kind: LaneKind, visits: Sequence[CourseVisit]) -> str:
+    day = day_of(point.visit, visits)
+    if not point.is_told:
+        return tr("not readable on {day}").format(day=day)
+    value = tr(SPOKEN_UNITS[kind]).format(value=value_in_words(point.value, kind))
+    return tr("{value} on {day}").format(value=value, day=day)
+
+
+def _change_in_words(one: LaneChange, kind: LaneKind, visits: Sequence[CourseVisit]) -> str:
+    found = one.since_first
+    if found is None or one.first is None or not math.isfinite(found.difference):
+        return ""
+    said = tr("{change} since {day}, {judged}.")
+    day = day_of(one.first, visits)
+    return said.format(change=signed(found.difference, DECIMALS[kind]), day=day, judged=judged_in_words(found, kind))

@@ -1,0 +1,189 @@
+"""Home with a patient's course: shown without evaluating anything, computed where it is missing, and what is next."""
+
+import datetime
+import shutil
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QSettings
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.home.home import Home
+from app.home.patient_reading import PatientReading, compute_courses, read_patient
+from app.pages.home_lists import SessionLine
+from app.settings import Settings
+from app.storage.audit import REPORT_FORMAT, about
+from app.storage.database.ids import uuid7
+from app.storage.exchange import import_session
+from app.storage.library import DEMONSTRATOR, Library
+from app.storage.opened import OpenedLibrary, open_library
+from app.storage.stored import Action
+from app.theme import ThemeNotifier, load_fonts
+from app.workers.library_controller import LibraryController
+from core.body import Site
+from core.samples import Patient
+from devices.walker import DEMONSTRATION, Standing, Walk, simulate
+from tests.app.home.course_library import PASSPHRASE, add_visit, course_of_visit, make_course_library
+
+WAIT_MS = 20_000
+
+
+@pytest.fixture(scope="module")
+def untouched(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return make_course_library(tmp_path_factory.mktemp("course"), missing=frozenset({1}))
+
+
+@pytest.fixture
+def controller(qtbot: QtBot) -> Iterator[LibraryController]:
+    controller = LibraryController()
+    yield controller
+    controller.finish()
+
+
+@pytest.fixture
+def home(qtbot: QtBot, qapp: QApplication, controller: LibraryController, untouched: Path, tmp_path: Path) -> Home:
+    load_fonts()
+    settings = Settings(QSettings(str(tmp_path / "settings.ini"), QSettings.Format.IniFormat))
+    home = Home(ThemeNotifier(), controller, settings)
+    home.resize(1280, 800)
+    qtbot.addWidget(home)
+    home.show()
+    folder = shutil.copytree(untouched, tmp_path / "library")
+    with qtbot.waitSignal(controller.opened, timeout=WAIT_MS) as told:
+        controller.open(folder, PASSPHRASE)
+    home.show_library((told.args or [])[0])
+    qtbot.waitUntil(lambda: bool(home.page.sessions.lines), timeout=WAIT_MS)
+    return home
+
+
+@pytest.fixture
+def opened(tmp_path: Path) -> Iterator[OpenedLibrary]:
+    """Of no operator's own."""
+    folder = tmp_path / "opened"
+    with OpenedLibrary(Library.create(folder, None, DEMONSTRATOR), folder, None) as library:
+        yield library
+
+
+def silent(_share: float, _what: str) -> None:
+    """For whom progress is nothing."""
+
+
+def test_the_course_of_the_patient_who_is_chosen_stands_beside_the_list(qtbot: QtBot, home: Home) -> None:
+    card = home.page.panel.course
+    assert [visit.course is not None for visit in card.visits] == [True, False, True, True, True]
+    assert "Walking speed, Shoes: 0.71 metres per second on 20 Jun" in card.accessibleDescription()
+    assert "1 visit is not computed yet." in card.note.text()
+    lines = [line for line in home.page.sessions.lines if isinstance(line, SessionLine)]
+    assert [(line.amount, line.state) for line in lines] == [
+        ("24 strides", "report not written"),
+        ("24 strides", "report written"),
+        ("48 strides", "report written"),
+        ("2 recordings", "report written"),
+        ("48 strides", "report written"),
+    ]
+    assert home.page.panel.next.text() == "Next: write the report of 14 Nov."
+    other = next(line.id for line in home.page.patients.lines if line.id != home.page.patient_id)
+    home.page.patients.choose_line(other)
+    assert not card.isVisible()  # at once: nobody else's course stands under this code
+    qtbot.waitUntil(lambda: home.page.panel.none_yet.isVisible(), timeout=WAIT_MS)
+    assert not card.isVisible()
+
+
+def test_nothing_of_a_course_is_left_for_whoever_comes_next(home: Home) -> None:
+    home.clear()
+    assert home.page.panel.course.visits == ()
+    assert not home.page.panel.course.isVisible()
+    assert not home.page.panel.next.isVisible()
+
+
+def test_visits_that_cannot_be_computed_are_said_and_the_others_stay(qtbot: QtBot, home: Home) -> None:
+    """Of the fixture no samples were recorded: its journal is gone."""
+    home.page.panel.course.compute.click()
+    assert home.current is home.working
+    qtbot.waitUntil(lambda: home.current is home.page, timeout=WAIT_MS)
+    assert home.banner.text.startswith("1 visit could not be computed. Open it to see why.")
+    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
+    assert home.page.panel.course.visits[1].course is None
+
+
+def test_computing_can_be_stopped(qtbot: QtBot, home: Home) -> None:
+    home.page.panel.course.compute.click()
+    home.working.stop.click()
+    assert home.current is home.page
+    assert home.banner.text.startswith("This was stopped. The visits that were computed stay in the course.")
+    qtbot.waitUntil(lambda: len(home.page.panel.course.visits) == 5, timeout=WAIT_MS)
+
+
+def reading(opened: OpenedLibrary) -> PatientReading:
+    (patient,) = opened.library.patients.search()
+    return read_patient(opened, patient.id)
+
+
+def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: OpenedLibrary) -> None:
+    sites = (Site.LEFT_THIGH, Site.LEFT_SHANK, Site.LEFT_FOOT)
+    played = (Standing(duration_s=2.0), Walk(strides=8))
+    told = simulate(replace(DEMONSTRATION, sites=sites, recordings=played)).session
+    told = replace(told, patient=Patient(code="DEMO-1"), started="2026-06-20T09:00:00")
+    session_id = import_session(opened, told, silent).session_id
+    now = day_and_time("2026-06-25T09:00:00")
+    assert [visit.course for visit in reading(opened).visits(now)] == [None]
+    assert compute_courses(opened, [session_id], silent) == 0
+    (visit,) = reading(opened).visits(now)
+    assert visit.course is not None
+    assert visit.course.conditions[0].strides > 0
+    walk = opened.library.sessions.get(session_id).recordings[1]
+    opened.library.recordings.change(walk, replace(walk.told, condition="stick"))
+    assert [visit.course for visit in reading(opened).visits(now)] == [None]
+
+
+def test_a_session_that_is_gone_is_counted(opened: OpenedLibrary) -> None:
+    assert compute_courses(opened, [uuid7()], silent) == 1
+
+
+def day_and_time(moment: str) -> datetime.datetime:
+    return datetime.datetime.fromisoformat(moment).astimezone()
+
+
+def test_what_is_next_of_a_patient(tmp_path: Path) -> None:
+    """In the order of gravity; of the latest visit only."""
+    with open_library(make_course_library(tmp_path, visits=0), PASSPHRASE) as opened:
+        library = opened.library
+        (patient,) = library.patients.search("P-0158")
+        now = day_and_time("2026-07-12T09:00:00")
+
+        def said() -> str:
+            step = read_patient(opened, patient.id).next_step(now)
+            return step.sentence if step is not None else ""
+
+        assert said() == ""
+        first = add_visit(library, patient.id, 0, course_of_visit(0, is_knee_withheld=True))
+        assert said() == "left knee could not be read on 20 Jun: see why."
+        second = add_visit(library, patient.id, 1, course_of_visit(1))
+        assert said() == "write the report of 11 Jul."
+        library.audit.note(Action.EXPORT, about("session", second), format=REPORT_FORMAT, is_document=True)
+        assert said() == ""
+        now = day_and_time("2026-09-12T09:00:00")
+        assert said() == "the last visit was 9 weeks ago."
+        assert first != second
+
+
+def test_a_report_is_written_once_its_export_has_ended_well(opened: OpenedLibrary) -> None:
+    audit, ids = opened.library.audit, [uuid7(), uuid7()]
+    subject = about("session", ids[0])
+    assert audit.reported(ids) == frozenset()
+    with audit.exporting(subject, format=REPORT_FORMAT, is_document=False):
+        """Files only."""
+    assert audit.reported(ids) == frozenset()
+    with pytest.raises(OSError, match="full"), audit.exporting(subject, format=REPORT_FORMAT, is_document=True):
+        raise OSError("the disk is full")
+    assert audit.reported(ids) == frozenset()
+    with audit.exporting(subject, format=REPORT_FORMAT, is_document=True):
+        """All is well."""
+    assert audit.reported(ids) == {ids[0]}
+    audit.note(Action.EXPORT, about("session", ids[1]), format=REPORT_FORMAT)  # as earlier versions noted it
+    audit.note(Action.EXPORT, about("session", ids[1]), format="fhir")
+    assert audit.reported(ids) == set(ids)
+    assert audit.reported([]) == frozenset()

@@ -1,0 +1,121 @@
+"""Lanes of a course: where visits and values lie, which dates find room, no word cut."""
+
+import datetime
+from itertools import pairwise
+from uuid import UUID
+
+import pytest
+from PySide6.QtGui import QColor, QImage
+from PySide6.QtWidgets import QApplication
+from pytestqt.qtbot import QtBot
+
+from app.plots.lane_plot import DateAxis, LanePlot, LaneScale
+from app.reports.course import Course
+from app.reports.course_lanes import CourseVisit, LaneKind, lanes
+from app.theme import ThemeNotifier, load_fonts
+from core.body import Joint
+from tests.app.course_material import course, unsure, walked
+
+SHOES, STICK = "shoes", "stick"
+
+
+@pytest.fixture
+def look(qapp: QApplication) -> ThemeNotifier:
+    load_fonts()
+    look = ThemeNotifier()
+    look.set_dark(False)
+    return look
+
+
+def visit(day: int, found: Course | None) -> CourseVisit:
+    return CourseVisit(UUID(int=day), datetime.date(2026, 1, 1) + datetime.timedelta(days=day), found)
+
+
+def shoes(knee_deg: float) -> Course:
+    return course((walked(knee_deg=knee_deg), SHOES))
+
+
+def knee_plot(qtbot: QtBot, look: ThemeNotifier, *visits: CourseVisit, height: int = 120) -> LanePlot:
+    plot = LanePlot(look)
+    qtbot.addWidget(plot)
+    plot.resize(400, height)
+    found = next(one for one in lanes(visits) if one.kind is LaneKind.KNEE)
+    plot.show_lane(found, visits, list(dict.fromkeys(line.condition for line in found.lines)))
+    return plot
+
+
+def colour_at(plot: LanePlot, x: float, y: float) -> QColor:
+    image = plot.grab().toImage().convertToFormat(QImage.Format.Format_RGB32)
+    return image.pixelColor(round(x), round(y))
+
+
+def is_left(colour: QColor, look: ThemeNotifier) -> bool:
+    wanted = QColor(look.theme.colours.left)
+    channels = (QColor.red, QColor.green, QColor.blue)
+    return all(abs(channel(colour) - channel(wanted)) < 60 for channel in channels)
+
+
+def test_neighbours_are_joined_and_what_lies_beyond_a_gap_is_not(qtbot: QtBot, look: ThemeNotifier) -> None:
+    told = unsure(Joint.LEFT_KNEE)
+    gap = course((walked(told=told), SHOES), told=told)
+    joined = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(100, shoes(50.0)))
+    at = joined.x_of(0) + 0.25 * (joined.x_of(1) - joined.x_of(0)), joined.y_of(50.0)
+    assert is_left(colour_at(joined, *at), look)
+    apart = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(50, gap), visit(100, shoes(50.0)))
+    assert not is_left(colour_at(apart, *at), look)
+    assert is_left(colour_at(apart, apart.x_of(2), apart.y_of(50.0)), look)
+
+
+def test_conditions_are_never_joined(qtbot: QtBot, look: ThemeNotifier) -> None:
+    other = course((walked(knee_deg=50.0), STICK))
+    plot = knee_plot(qtbot, look, visit(0, shoes(50.0)), visit(100, other))
+    at = plot.x_of(0) + 0.25 * (plot.x_of(1) - plot.x_of(0))
+    assert not is_left(colour_at(plot, at, plot.y_of(50.0)), look)
+
+
+def test_visits_lie_as_far_apart_as_their_days(qtbot: QtBot, look: ThemeNotifier) -> None:
+    plot = knee_plot(qtbot, look, *(visit(day, shoes(50.0)) for day in (0, 10, 100)))
+    first, second, last = (plot.x_of(number) for number in range(3))
+    assert (second - first) / (last - first) == pytest.approx(0.1)
+    alone = knee_plot(qtbot, look, visit(0, shoes(50.0)))
+    assert alone.x_of(0) == pytest.approx(alone.plot.center().x())
+
+
+@pytest.mark.parametrize("values", [(50.0, 50.1), (20.0, 75.0), (38.4, 49.3), (4.0, 4.0)])
+def test_all_that_is_drawn_lies_between_round_values(values: tuple[float, ...]) -> None:
+    visits = [visit(30 * k, shoes(value)) for k, value in enumerate(values)]
+    for lane in lanes(visits):
+        scale = LaneScale.of(lane)
+        assert scale.low <= min(lane.values, default=0.0) + 1e-6
+        assert scale.high >= max(lane.values, default=0.0) - 1e-6
+        assert 3 <= len(scale.ticks) <= 5
+        assert all(round(tick, scale.decimals) == pytest.approx(tick) for tick in scale.ticks)
+
+
+@pytest.mark.parametrize("scale", [0.8, 1.0, 2.0])
+def test_figures_at_the_lines_have_room_and_do_not_touch(qtbot: QtBot, look: ThemeNotifier, scale: float) -> None:
+    look.set_scale(scale)
+    plot = knee_plot(qtbot, look, visit(0, shoes(38.0)), visit(90, shoes(60.0)))
+    plot.resize(plot.minimumSizeHint())
+    boxes = sorted((text.box for text in plot.painted_texts()), key=lambda box: box.top())
+    assert all(above.bottom() <= below.top() + 1 for above, below in pairwise(boxes))
+    for text in plot.painted_texts():
+        assert text.needed.width() <= text.box.width()
+        assert text.box.top() >= -1
+        assert text.box.bottom() <= plot.height() + 1
+    look.set_scale(1.0)
+
+
+def test_dates_that_would_touch_are_left_out_but_for_the_first_and_the_last(qtbot: QtBot, look: ThemeNotifier) -> None:
+    axis = DateAxis(look)
+    qtbot.addWidget(axis)
+    axis.resize(400, 28)
+    axis.show_visits([visit(day, None) for day in (0, 3, 6, 150, 297, 300)])
+    assert list(axis.labels()) == [0, 3, 5]
+    assert [text.text for text in axis.labels().values()] == ["1 Jan", "31 May", "28 Oct"]
+    axis.resize(4000, 28)
+    assert list(axis.labels()) == [0, 2, 3, 5]
+    for text in axis.painted_texts():
+        assert text.box.left() >= 0
+        assert text.box.right() <= axis.width()
+        assert text.needed.width() <= text.box.width()
