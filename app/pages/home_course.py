@@ -1,7 +1,7 @@
 """A patient's course: lanes over the dates of the visits, with what has changed beside them."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QAccessible, QAccessibleAnnouncementEvent, QKeyEvent
@@ -80,14 +80,16 @@ class CourseCard(Card):
         self.compute.clicked.connect(self.computing_wished)
         self.set_room(NARROW_BELOW)
 
-    def show_course(self, visits: Sequence[CourseVisit], lanes: Sequence[CourseLane]) -> None:
-        """Show lanes over visits, which are in order of time."""
+    def show_course(
+        self, visits: Sequence[CourseVisit], lanes: Sequence[CourseLane], conditions: Sequence[str]
+    ) -> None:
+        """Show lanes over visits, which are in order of time; `conditions` in the order of their marks."""
         self.visits, self.lanes, self.number = tuple(visits), tuple(lanes), None
-        conditions = list(dict.fromkeys(line.condition for lane in lanes for line in lane.lines))
         for lane in lanes:
             self.rows[lane.kind].show_lane(lane, visits, conditions)
         self.axis.show_visits(visits)
-        self._show_legend(conditions)
+        drawn = {line.condition for lane in lanes for line in lane.lines}
+        self._show_legend({mark: name for mark, name in enumerate(conditions) if name in drawn})
         self._grid_room.setVisible(any(lane.lines for lane in lanes))
         self.note.setText(" ".join(filter(None, [nothing_between(visits), key_in_words(lanes)])))
         self.note.setVisible(bool(self.note.text()))
@@ -120,13 +122,13 @@ class CourseCard(Card):
     def _open(self, number: int) -> None:
         self.visit_opened.emit(self.visits[number].id)
 
-    def _show_legend(self, conditions: Sequence[str]) -> None:
-        """The mark of each condition, where there are several."""
+    def _show_legend(self, conditions: Mapping[int, str]) -> None:
+        """The conditions by their marks, where there are several."""
         while (item := self._legend.takeAt(0)) is not None:
             if (widget := item.widget()) is not None:
                 widget.hide()
                 widget.deleteLater()
-        for mark, condition in enumerate(conditions):
+        for mark, condition in conditions.items():
             self._legend.addWidget(ConditionMark(self._look, mark))
             self._legend.addWidget(Text(self._look, condition_in_words(condition), size=12, tone="ink2", wraps=True))
         self._legend.addStretch(1)

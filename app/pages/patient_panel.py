@@ -22,7 +22,7 @@ from app.widgets.themed import Themed
 from app.wording import tr, tr_n
 
 SESSION_ROW = 48
-SESSIONS_SEEN = 3  # the others are scrolled to
+SESSIONS_SEEN, SESSIONS_AT_LEAST = 3, 2  # the others are scrolled to
 ALL = "\N{ASTERISK}"  # no condition is called so
 
 
@@ -150,7 +150,8 @@ class PatientPanel(Themed):
 
     def _show_lanes(self) -> None:
         chosen = self.condition.currentData()
-        self.course.show_course(self._visits, lanes(self._visits, None if chosen in (ALL, None) else chosen))
+        shown = lanes(self._visits, None if chosen in (ALL, None) else chosen)
+        self.course.show_course(self._visits, shown, list(conditions_of_visits(self._visits)))
 
     def _on_more(self) -> None:
         self.menu.popup(self.more.mapToGlobal(QPoint(0, self.more.height())))
@@ -170,12 +171,12 @@ class PatientPanel(Themed):
         self.none_yet.setMinimumHeight(px(72))
         self._above.setMinimumHeight(px(48))
         rows = min(len(self.sessions.lines), SESSIONS_SEEN)
-        self.sessions.setMinimumHeight(rows * px(SESSION_ROW))
+        self.sessions.setMinimumHeight(min(rows, SESSIONS_AT_LEAST) * px(SESSION_ROW))
         self.sessions.setMaximumHeight(max(1, rows) * px(SESSION_ROW))
 
 
 def _counted(found: dict[str, int], visits: int) -> str:
     """How many visits there are, and of each condition but the most frequent one."""
     said = [tr_n("{count} visit", "{count} visits", visits).format(count=visits)]
-    said += [f"{condition_in_words(name)} {count}" for name, count in list(found.items())[1:]]
+    said += [f"{condition_in_words(name)}: {count}" for name, count in list(found.items())[1:]]
     return " · ".join(said)

@@ -54,7 +54,7 @@ def test_what_has_changed_stands_beside_the_lanes(page: HomePage) -> None:
     assert "larger than error (0.20 †)" in found
     assert "last visit +0.06, inside error" in found
     assert "49°" in found
-    assert page.panel.count.text() == "5 visits · Shoes, stick 3"
+    assert page.panel.count.text() == "5 visits · Shoes, stick: 3"
     assert page.panel.next.text() == "Next: write the report of 14 Nov."
 
 
