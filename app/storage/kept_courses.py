@@ -22,25 +22,25 @@ if TYPE_CHECKING:  # the database takes long to load
 _log = logging.getLogger(__name__)
 
 
-def course_key(told: Session, stored: Sequence[StoredRecording]) -> str:
+def course_key(details: Session, stored: Sequence[StoredRecording]) -> str:
     """SHA-256 of all that a course depends on but the samples.
 
     Parameters
     ----------
-    told
+    details
         The session as it is evaluated; its samples are not looked at.
     stored
         Recordings of the library, those that are evaluated among them.
     """
-    placements = {recording.told.name: recording.placement for recording in stored}
+    placements = {recording.details.name: recording.placement for recording in stored}
     return hashlib.sha256(
         json.dumps(
             {
                 "algorithm": algorithm(),
-                "sides": [told.patient.affected_side, told.patient.prosthetic_side],
-                "zero_rad": {str(joint): value for joint, value in told.zero_rad.items()},
-                "turned_sign": {str(joint): sign for joint, sign in told.turned_sign.items()},
-                "findings": sorted({f"{finding.key} {finding.where}" for finding in told.findings}),
+                "sides": [details.patient.affected_side, details.patient.prosthetic_side],
+                "zero_rad": {str(joint): value for joint, value in details.zero_rad.items()},
+                "turned_sign": {str(joint): sign for joint, sign in details.turned_sign.items()},
+                "findings": sorted({f"{finding.key} {finding.where}" for finding in details.findings}),
                 "recordings": [
                     {
                         "name": one.name,
@@ -52,7 +52,7 @@ def course_key(told: Session, stored: Sequence[StoredRecording]) -> str:
                         },
                         "worn": _worn(placements, one.name),
                     }
-                    for one in told.recordings
+                    for one in details.recordings
                 ],
             },
             sort_keys=True,

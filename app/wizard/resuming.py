@@ -65,7 +65,7 @@ def read_analysed(opened: "OpenedLibrary", session_id: UUID, report: Report) -> 
 
 def current_course_key(session: StoredSession) -> str:
     """The key that what is kept of a session's course has to have, to hold as the session is told now."""
-    read_back = tuple(SessionRecording(one, one.told) for one in session.recordings if one.state in USABLE)
+    read_back = tuple(SessionRecording(one, one.details) for one in session.recordings if one.state in USABLE)
     return course_key(evaluated(session, read_back), session.recordings)
 
 

@@ -135,7 +135,7 @@ def test_a_visit_is_computed_and_a_change_takes_it_out_of_the_course(opened: Ope
     assert visit.course is not None
     assert visit.course.conditions[0].strides > 0
     walk = opened.library.sessions.get(session_id).recordings[1]
-    opened.library.recordings.change(walk, replace(walk.told, condition="stick"))
+    opened.library.recordings.change(walk, replace(walk.details, condition="stick"))
     assert [visit.course for visit in reading(opened).visits(now)] == [None]
 
 

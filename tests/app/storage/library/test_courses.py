@@ -38,22 +38,22 @@ def visit(opened: OpenedLibrary, told: Session) -> StoredSession:
 
 
 def corrected(opened: OpenedLibrary, visit: StoredSession, change: Callable[[Session], Session]) -> None:
-    opened.library.sessions.change(visit, change(visit.told))
+    opened.library.sessions.change(visit, change(visit.details))
 
 
 def relabelled(opened: OpenedLibrary, visit: StoredSession) -> None:
     walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.told, condition="barefoot"))
+    opened.library.recordings.change(walk, replace(walk.details, condition="barefoot"))
 
 
 def left_out(opened: OpenedLibrary, visit: StoredSession) -> None:
     walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.told, left_out_s={Side.LEFT: (4.0,)}))
+    opened.library.recordings.change(walk, replace(walk.details, left_out_s={Side.LEFT: (4.0,)}))
 
 
 def not_kept(opened: OpenedLibrary, visit: StoredSession) -> None:
     walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.told, is_kept=False))
+    opened.library.recordings.change(walk, replace(walk.details, is_kept=False))
 
 
 def swapped(opened: OpenedLibrary, visit: StoredSession) -> None:
@@ -73,12 +73,12 @@ def zeroed(opened: OpenedLibrary, visit: StoredSession) -> None:
 
 
 def without_ankle(opened: OpenedLibrary, visit: StoredSession) -> None:
-    opened.library.sessions.change(visit, visit.told, limits=Limits(frozenset({Side.LEFT})))
+    opened.library.sessions.change(visit, visit.details, limits=Limits(frozenset({Side.LEFT})))
 
 
 def other_side(opened: OpenedLibrary, visit: StoredSession) -> None:
     patient = opened.library.patients.get(visit.patient_id)
-    opened.library.patients.change(patient, replace(patient.told, affected_side="right"))
+    opened.library.patients.change(patient, replace(patient.details, affected_side="right"))
 
 
 @pytest.mark.parametrize(
@@ -95,9 +95,9 @@ def test_what_was_found_no_longer_holds_once_something_is_put_right(
 
 def test_what_is_said_to_people_leaves_it_as_it_is(opened: OpenedLibrary, visit: StoredSession) -> None:
     before = current_course_key(visit)
-    opened.library.sessions.change(visit, replace(visit.told, notes="walked well"), comment="for the prosthetist")
+    opened.library.sessions.change(visit, replace(visit.details, notes="walked well"), comment="for the prosthetist")
     walk = visit.recordings[1]
-    opened.library.recordings.change(walk, replace(walk.told, note="slow"))
+    opened.library.recordings.change(walk, replace(walk.details, note="slow"))
     assert current_course_key(opened.library.sessions.get(visit.id)) == before
 
 
