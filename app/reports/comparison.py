@@ -59,6 +59,7 @@ ERROR_SOURCES = {
     ErrorSource.EVENTS: later("events that come early or late"),
     ErrorSource.ZERO: later("the zero"),
 }
+CADENCE = "cadence_steps_min"  # of both legs; of one, two steps in each of its strides
 LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 
 
@@ -66,7 +67,7 @@ LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZ"
 class Measure:
     """One figure that is compared; `column` is a quantity of strides, `kind` knee, ankle or empty.
 
-    `is_of_walk`: both legs have the same, so it is told once, from the first leg that was measured.
+    `is_of_walk`: both legs have the same, so it is told once, of both.
     """
 
     column: str
@@ -89,7 +90,7 @@ class Measure:
     @property
     def needs_height(self) -> bool:
         """Whether it says something only with a zero of the same kind."""
-        return QUANTITIES[self.column] is QuantityClass.HEIGHT
+        return QUANTITIES.get(self.column) is QuantityClass.HEIGHT
 
 
 MEASURES = (
@@ -103,7 +104,7 @@ MEASURES = (
     Measure("stance_percent", later("Stance time, % of stride"), "", "%"),
     Measure("stride_length_m", later("Stride length, m"), "", "m", 2),
     Measure("speed_m_s", later("Walking speed, m/s"), "", "m/s", 2, is_of_walk=True),
-    Measure("stride_time_s", later("Stride time, s"), "", "s", 2, is_of_walk=True),
+    Measure(CADENCE, later("Cadence, steps/min"), "", "steps/min", 0, is_of_walk=True),
 )
 
 
@@ -119,6 +120,7 @@ class Contrast(StrEnum):
     CONDITIONS = "conditions"
     VISITS = "visits"
     SIDES = "sides"
+    CHOSEN = "chosen"  # any conditions of any visits
 
 
 class Reservation(StrEnum):
@@ -135,6 +137,7 @@ class Part:
     """One condition or walk, of this visit or another: its walks, whose strides are taken together.
 
     `attachment` numbers how often the sensors had been strapped on anew before; equal numbers of one visit share it.
+    `visit` numbers the visits of a comparison of several.
     """
 
     letter: str
@@ -142,6 +145,7 @@ class Part:
     walks: tuple[RecordingAnalysis, ...]
     calibrated: Mapping[Joint, JointCalibration]
     attachment: int = 0
+    visit: int = 0
 
     @property
     def sides(self) -> tuple[Side, ...]:
@@ -159,10 +163,12 @@ class Part:
         return pooled(walk.verdicts for walk in self.walks)
 
     def assessment(self, side: Side, column: str) -> Assessment:
-        return assessment_of(self.verdicts, side, column)
+        return assessment_of(self.verdicts, side, "stride_time_s" if column == CADENCE else column)
 
     def values(self, side: Side, column: str) -> FloatArray:
         """Of the strides used of all walks (k,), degrees, percent, metres or seconds; none where withheld."""
+        if column == CADENCE:
+            return 120.0 / self.values(side, "stride_time_s")
         found = [
             raw_values(walk.gait[side], column)[walk.gait[side].strides.is_used]
             for walk in self.walks
@@ -227,6 +233,27 @@ class Part:
             return math.nan
         known = [value for walk in self.walks if math.isfinite(value := getattr(both_sides(walk), name))]
         return fmean(known) if known else math.nan
+
+    def of_walk(self, column: str, kind: ComparisonKind) -> MeanOfStrides:
+        """Speed or cadence of both legs, as sure as one leg's strides are: neighbours step alike."""
+        value, one = self.of_both(column), self.mean(self.sides[0], column, kind)
+        if not math.isfinite(value):
+            return mean_of_strides(np.empty(0))
+        share = value / one.mean
+        of_one = (one.standard_error, one.drift, one.clock_error)
+        return MeanOfStrides(value, share * one.sd, one.n, *(share * uncertainty for uncertainty in of_one))
+
+    def assessment_of_walk(self, column: str) -> Assessment:
+        """What may be said of speed or cadence."""
+        return assessment_of_both(self.verdicts, column)
+
+    def figure(self, measure: Measure, side: Side) -> tuple[MeanAndSd, Verdict]:
+        """A measure of one leg, or of the walk, and how far it can be trusted."""
+        if measure.is_of_walk:
+            found = self.of_walk(measure.column, ComparisonKind.VISITS)
+            return MeanAndSd(found.mean, found.sd, found.n), self.assessment_of_walk(measure.column).verdict
+        verdict = self.assessment(side, measure.column).verdict
+        return self.value(side, measure.column), verdict if self.is_measured(side, measure) else Verdict.NOT_MEASURED
 
     def is_toe_off_biased(self, side: Side) -> bool:
         return any(walk.gait[side].is_toe_off_biased for walk in self.walks if side in walk.gait)
@@ -313,14 +340,34 @@ class Comparison:
     def rows(self) -> tuple[Compared, ...]:
         """Every measure of each side of each part but the one told against."""
         return tuple(
-            self.compare(measure, side, part)
+            self._row(measure, side, part)
             for measure in MEASURES
             for side in (self.sides[:1] if measure.is_of_walk else self.sides)
             for part in self.others
         )
 
+    def first_readable(self, measure: Measure, side: Side) -> Part:
+        """The part that a measure is told against: of visits, if the base cannot be read, the next that can."""
+        if self.kind in (Contrast.VISITS, Contrast.CHOSEN):
+            for part in self.parts[self.base :]:
+                found, verdict = part.figure(measure, side)
+                if found.n and verdict in (Verdict.READ, Verdict.CARE):
+                    return part
+        return self.against
+
+    def _row(self, measure: Measure, side: Side, part: Part) -> Compared:
+        against = self.first_readable(measure, side)
+        if part is against:
+            against = self.against  # which cannot be read, so that there is no difference
+        return (
+            self.compare_walks(measure, part, against)
+            if measure.is_of_walk
+            else self.compare(measure, side, part, against)
+        )
+
     def is_same_attachment(self, part: Part) -> bool:
-        return self.kind is Contrast.CONDITIONS and part.attachment == self.against.attachment
+        same = (part.visit, part.attachment) == (self.against.visit, self.against.attachment)
+        return self.kind is not Contrast.VISITS and same
 
     def has_one_zero(self, joint: Joint) -> bool:
         """Whether all parts that have the joint measured its height from the same kind of zero, and from one."""
@@ -329,31 +376,43 @@ class Comparison:
 
     def error_kind(self, part: Part) -> ComparisonKind:
         """What lies between a part and the one it is told against."""
-        if self.kind is Contrast.VISITS:
+        if self.kind is Contrast.VISITS or part.visit != self.against.visit:
             return ComparisonKind.VISITS
         return ComparisonKind.ATTACHED if self.is_same_attachment(part) else ComparisonKind.STRAPPINGS
 
-    def compare(self, measure: Measure, side: Side, part: Part) -> Compared:
-        kind, column, pair = self.error_kind(part), measure.column, (part, self.against)
+    def compare(self, measure: Measure, side: Side, part: Part, against: Part | None = None) -> Compared:
+        """A measure of one leg against that of `against`, None: of the part that all are told against."""
+        other = against or self.against
+        kind, column, pair = self.error_kind(part), measure.column, (part, other)
         means = [one.mean(side, column, kind) for one in pair]
-        speeds = [one.of_both("speed_m_s") for one in pair]
-        speed_apart_m_s = abs(speeds[0] - speeds[1]) if all(map(math.isfinite, speeds)) else 0.0
         assessments = tuple(one.assessment(side, column) for one in pair)
         return Compared(
             measure,
             side,
             part,
-            self.against,
+            other,
             part.value(side, column),
-            self.against.value(side, column),
-            compare(column, kind, means[0], means[1], assessments, speed_apart_m_s=speed_apart_m_s),
-            self._reservation(measure, side, part, assessments),
+            other.value(side, column),
+            compare(column, kind, means[0], means[1], assessments, speed_apart_m_s=_speed_apart_m_s(part, other)),
+            self._reservation(measure, side, pair, assessments),
         )
 
+    def compare_walks(self, measure: Measure, part: Part, against: Part) -> Compared:
+        """A measure of both legs together."""
+        kind, column, side = self.error_kind(part), measure.column, self.sides[0]
+        one, other = (of.of_walk(column, kind) for of in (part, against))
+        assessments = part.assessment_of_walk(column), against.assessment_of_walk(column)
+        reservation = Reservation.NONE if one.n and other.n else Reservation.NOT_MEASURED
+        if any(found.verdict is Verdict.WITHHELD for found in assessments):
+            reservation = Reservation.WITHHELD
+        difference = compare(column, kind, one, other, assessments)
+        values = (part.figure(measure, side)[0], against.figure(measure, side)[0])
+        return Compared(measure, side, part, against, *values, difference, reservation)
+
     def _reservation(
-        self, measure: Measure, side: Side, part: Part, assessments: tuple[Assessment, ...]
+        self, measure: Measure, side: Side, pair: tuple[Part, Part], assessments: tuple[Assessment, ...]
     ) -> Reservation:
-        joint, pair = measure.joint(side), (part, self.against)
+        joint = measure.joint(side)
         if not all(side in one.sides and (joint is None or joint in one.joints) for one in pair):
             return Reservation.NOT_MEASURED
         if joint is not None and measure.needs_height and not self.has_one_zero(joint):
@@ -361,6 +420,12 @@ class Comparison:
         if not all(found.is_told for found in assessments):
             return Reservation.WITHHELD
         return Reservation.NONE if all(one.value(side, measure.column).n for one in pair) else Reservation.NOT_MEASURED
+
+
+def _speed_apart_m_s(one: Part, other: Part) -> float:
+    """By how much the walks' speeds differ; 0 where one is not known."""
+    speeds = [part.of_both("speed_m_s") for part in (one, other)]
+    return abs(speeds[0] - speeds[1]) if all(map(math.isfinite, speeds)) else 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,6 @@ from core.results import Analysis
 from core.samples import Recording
 from core.verdicts.measurement_error import ComparisonKind, Difference, MeanOfStrides, compare, whisker
 from core.verdicts.model import Assessment, GateReason, Verdict, together
-from core.verdicts.quantities import assessment_of_both
 
 FORMAT = "gaitwright-course/1"
 SPEED = "speed_m_s"
@@ -129,13 +128,8 @@ def _condition(name: str, part: Part) -> CourseCondition:
 
 
 def _speed(part: Part) -> CourseFigure:
-    """Of the first leg, as comparisons take it, where the distance of both may be told."""
-    return _figure(
-        SPEED,
-        None,
-        part.mean(part.sides[0], SPEED, ComparisonKind.VISITS),
-        assessment_of_both(part.verdicts, SPEED),
-    )
+    """Of both legs, as comparisons take it."""
+    return _figure(SPEED, None, part.of_walk(SPEED, ComparisonKind.VISITS), part.assessment_of_walk(SPEED))
 
 
 def _figure(column: str, side: Side | None, found: MeanOfStrides, assessment: Assessment) -> CourseFigure:

@@ -9,7 +9,16 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.reports.comparison import Comparison, Contrast, Measure, Part, Reservation, compare_legs, conditions_of
+from app.reports.comparison import (
+    MEASURES,
+    Comparison,
+    Contrast,
+    Measure,
+    Part,
+    Reservation,
+    compare_legs,
+    conditions_of,
+)
 from app.reports.csv_report import typed_cell, write_table
 from app.reports.status import status_of
 from app.reports.visits import by_condition
@@ -38,6 +47,7 @@ HEADER = (
     *("left_out_by_hand", "against_left_out_by_hand"),
 )
 
+OF_WALKS = {measure.column: measure for measure in MEASURES if measure.is_of_walk}
 
 WITHHELD = Difference(math.nan, math.nan, Judgement.WITHHELD)
 
@@ -116,7 +126,7 @@ def rows_of(comparison: Comparison) -> Iterator[Row]:
                 else:
                     yield Row(part, against, side, column, found.value, found.other, WITHHELD, Verdict.WITHHELD)
             yield from _curves(comparison, part, side)
-        yield from _of_both(part, against)
+        yield from _of_both(comparison, part)
 
 
 def write_differences(found: Iterable[Row], path: Path) -> None:
@@ -199,7 +209,8 @@ def _curves(comparison: Comparison, part: Part, side: Side) -> Iterator[Row]:
             yield Row(part, comparison.against, side, name, nothing, nothing, found, said.verdict)
 
 
-def _of_both(part: Part, against: Part) -> Iterator[Row]:
+def _of_both(comparison: Comparison, part: Part) -> Iterator[Row]:
+    against = comparison.against
     for name in OF_BOTH:
         value, other = (MeanAndSd(one.of_both(name), math.nan, 0) for one in (part, against))
         status = together(assessment_of_both(one.verdicts, name) for one in (part, against)).verdict
@@ -207,6 +218,8 @@ def _of_both(part: Part, against: Part) -> Iterator[Row]:
             yield Row(part, against, None, name, value, other, WITHHELD, status)
         elif math.isfinite(difference := value.mean - other.mean):
             found = Difference(difference, math.nan, Judgement.NO_PUBLISHED_FIGURE)
+            if name in OF_WALKS:
+                found = comparison.compare_walks(OF_WALKS[name], part, against).difference
             yield Row(part, against, None, name, value, other, found, status)
 
 

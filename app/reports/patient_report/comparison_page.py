@@ -229,7 +229,7 @@ def _measure(column: str) -> str:
         "stance_percent": tr("Stance, % of stride"),
         "stride_length_m": tr("Stride length, m"),
         "speed_m_s": tr("Speed, m/s"),
-        "stride_time_s": tr("Stride time, s"),
+        "cadence_steps_min": tr("Cadence, steps/min"),
     }
     if column in of_leg:
         return of_leg[column]

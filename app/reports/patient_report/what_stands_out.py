@@ -376,6 +376,8 @@ def unit_and_decimals(column: str) -> tuple[str, int]:
         return "°", 1
     if column.endswith("_m_s"):
         return "\u00a0m/s", 2
+    if column.endswith("_steps_min"):
+        return f"\u00a0{tr('steps/min')}", 0
     return ("\u00a0%", 1) if column.endswith("_percent") else (f"\u00a0{column.rsplit('_', 1)[1]}", 2)
 
 
@@ -386,7 +388,7 @@ def measure_in_words(column: str) -> str:
         "step_time_s": tr("step time"),
         "stride_length_m": tr("stride length"),
         "speed_m_s": tr("walking speed"),
-        "stride_time_s": tr("stride time"),
+        "cadence_steps_min": tr("cadence"),
         "knee_stance_to_swing_deg": tr("knee bend from stance to swing"),
         "knee_while_loading_deg": tr("knee bend while loading"),
         "knee_straightening_deg": tr("knee straightening in stance"),

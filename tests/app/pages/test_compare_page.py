@@ -157,7 +157,8 @@ def test_every_number_of_the_comparison_is_in_its_files(page: ResultPage, tmp_pa
     judged = [row for row in found.rows if row.is_told]
     assert judged
     for row in judged:
-        told = rows[row.measure.column, str(row.side), row.part.letter]
+        side = "both" if row.measure.is_of_walk else str(row.side)
+        told = rows[row.measure.column, side, row.part.letter]
         assert float(told["difference"]) == pytest.approx(row.difference.difference, abs=DIGITS)
         assert float(told["error"]) == pytest.approx(row.difference.error, abs=DIGITS)
         assert told["verdict"] == row.difference.judgement
