@@ -21,7 +21,6 @@ from app.charts.drawing import (
     box,
     curve,
     line,
-    marker,
     mixed,
     picture,
     text,
@@ -34,11 +33,11 @@ from app.colours import PAPER
 from app.gates_in_words import verdict_word
 from app.wording import capitalised, tr
 from core.body import Side
+from core.gait.cycles import POINTS
 from core.samples import FloatArray
 from core.verdicts.model import Verdict
 
 LEFT_MARGIN, RIGHT_MARGIN, TOP, TOP_LABELS, FOOT = 27.0, 9.0, 13.0, 14.0, 30.0
-SPAN_HEIGHT, SPAN_ROW = 9.0, 11.0
 MIN_BADGE_DISTANCE = 14.0
 PLAIN, FINE = 1.9, 1.4
 LONG_DASHES = "6 1.6"  # of the right leg's mean over its single strides
@@ -46,6 +45,7 @@ STRIDE, ONLY_STRIDES = 0.32, 0.8
 
 
 BRACKET_WIDTH, BRACKET_CAP, NUMBER_RADIUS = 1.4, 2.5, 4.4
+LETTERS_FROM, LETTERS_APART = 24, 44  # percent of the stride
 NARROW, NARROW_FOOT = 60 * MM, 17.0  # narrower, what the axis is has no room, and stands above the charts
 HATCH_APART, LINE_OF_WORDS = 6.0, 8.6
 SIZE_OF_WORDS, PER_LETTER = 7.0, 0.6  # a letter's width on its height; an SVG cannot be asked
@@ -60,8 +60,7 @@ class _Paper(Frame):
 
 def frame_of(chart: StrideChart, plot_width: float) -> Frame:
     """Where the chart's plot lies on its picture, points."""
-    top = TOP + (2 * SPAN_ROW if chart.spans else TOP_LABELS)
-    return _Paper(LEFT_MARGIN, top, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
+    return _Paper(LEFT_MARGIN, TOP + TOP_LABELS, plot_width, 0.75 * plot_width, chart.axis.low, chart.axis.high)
 
 
 def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
@@ -75,7 +74,7 @@ def compared_look(k: int, count: int, side: Side) -> tuple[str, float]:
 def _look(one: StrideCurve) -> tuple[str, float]:
     if one.order is not None:
         return compared_look(*one.order, one.side)
-    return COLOURS[one.side], FINE if one.is_fine else PLAIN
+    return COLOURS[one.side], PLAIN
 
 
 def _dash(one: StrideCurve) -> str:
@@ -95,24 +94,24 @@ def draw(chart: StrideChart, plot_width: float) -> Picture:
     if chart.band is not None:
         parts += _band(frame, chart.band)
     parts += _axes(frame, chart.axis, is_narrow=is_narrow)
-    parts += _spans(frame, chart) if chart.spans else _toe_offs(frame, chart.curves, is_narrow=is_narrow)
+    parts += _toe_offs(frame, [one for one in chart.curves if not one.is_bare], is_narrow=is_narrow)
+    drawn = [one for one in chart.curves if not one.is_bare]
     for one in chart.curves:
         thin = STRIDE if one.is_known else ONLY_STRIDES
         parts += [curve(frame.x(PERCENT), frame.y(stride), _look(one)[0], thin) for stride in one.strides_deg]
-    for one in chart.curves:
+        if not one.is_known:
+            parts += _letters_of_strides(frame, one)
+    for one in drawn:
         x, y = frame.x(PERCENT), frame.y(one.angle_deg)
         colour, width = _look(one)
         casing = 0.9 if one.order is not None else 1.7
         parts += [curve(x, y, PAPER.paper, width + casing), curve(x, y, colour, width, _dash(one))]
         parts += _beyond(frame, chart.axis, one)
-    for one in chart.curves:
-        parts += _peaks(frame, one)
-    parts += _ticks(frame, chart.ticks)
-    parts += _words(frame, chart)
+    parts += _words(frame, chart) if drawn else _simulated(frame, chart)
     places = places_of(frame, chart)
     for deviation, place in zip(chart.deviations, places, strict=True):
         parts += _bracket(frame, deviation, place)
-    parts += _badges(frame, chart.curves, _points_of(frame, chart, places))
+    parts += _badges(frame, drawn, _points_of(frame, chart, places))
     alt = " ".join(filter(None, [chart.alt, *(deviation.in_words() for deviation in chart.deviations)]))
     return picture(parts, frame.right + RIGHT_MARGIN, frame.bottom + foot, alt)
 
@@ -229,21 +228,13 @@ def _axes(frame: Frame, axis: Axis, *, is_narrow: bool) -> list[str]:
     return parts
 
 
-def _spans(frame: Frame, chart: StrideChart) -> list[str]:
-    """A row of boxes for the highest, one for the lowest, and a dotted line down to each peak that was found."""
+def _letters_of_strides(frame: Frame, one: StrideCurve) -> list[str]:
+    """A letter on each of few strides, which no mean names, each farther along so that none covers another."""
     parts = []
-    for row, said in ((0, tr("max")), (1, tr("min"))):
-        y = TOP + SPAN_ROW * row
-        parts.append(text(frame.left - 4, y + 6.8, said, 6.6, anchor="end", fill=PAPER.note))
-        for span in chart.spans:
-            if span.is_maximum is (row == 0):
-                left, right = float(frame.x(span.first)), float(frame.x(span.last))
-                parts.append(box(left, y, right - left, SPAN_HEIGHT, PAPER.band_2sd, PAPER.band_2sd_edge, 0.5))
-                parts.append(text((left + right) / 2, y + 6.8, span.name, 6.6, anchor="middle"))
-    for one in chart.curves:
-        for peak in one.peaks:
-            x, y, top = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg)), frame.top + 12.5  # below the words
-            parts += [line(x, top, x, y, PAPER.note, 0.5, "0.8 1.6")] if y > top else []
+    for number, stride in enumerate(one.strides_deg):
+        at = int(LETTERS_FROM + number * LETTERS_APART) % POINTS
+        x, y = float(frame.x(at)), float(frame.y(float(stride[at])))
+        parts.append(badge(x, y, one.letter, one.side, _look(one)[0]))
     return parts
 
 
@@ -273,18 +264,6 @@ def _toe_offs(frame: Frame, curves: Sequence[StrideCurve], *, is_narrow: bool) -
     return parts
 
 
-def _peaks(frame: Frame, one: StrideCurve) -> list[str]:
-    parts = []
-    for peak in one.peaks:
-        x, y = float(frame.x(peak.percent)), float(frame.y(peak.mean_deg))
-        if np.isfinite(peak.sd_deg):
-            low, high = (float(frame.y(peak.mean_deg + sign * peak.sd_deg)) for sign in (-1, 1))
-            parts.append(line(x, low, x, high, PAPER.ink, 0.8))
-            parts += [line(x - 2.2, end, x + 2.2, end, PAPER.ink, 0.8) for end in (low, high)]
-        parts.append(marker(x, y, one.side))
-    return parts
-
-
 def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
     """A small arrow in the middle of each stretch that leaves the axes."""
     parts = []
@@ -297,16 +276,6 @@ def _beyond(frame: Frame, axis: Axis, one: StrideCurve) -> list[str]:
             x = float(frame.x((first + last - 1) / 2))
             tip = f"{x:.2f},{y + step:.2f} {x - 2.6:.2f},{y:.2f} {x + 2.6:.2f},{y:.2f}"
             parts.append(f'<polygon points="{tip}" fill="{_look(one)[0]}"/>')
-    return parts
-
-
-def _ticks(frame: Frame, ticks: Sequence[tuple[float, Side]]) -> list[str]:
-    parts = []
-    for percent, side in ticks:
-        low = frame.bottom if side is Side.LEFT else frame.bottom - 8
-        x = float(frame.x(percent))
-        dash = "1.6 0.8" if DASHES[side] else ""
-        parts.append(line(x, low, x, low - 7, COLOURS[side], 1.1, dash))
     return parts
 
 
@@ -328,8 +297,7 @@ def _badges(frame: Frame, curves: Sequence[StrideCurve], marks: Sequence[tuple[f
     drawn = [one for one in curves if one.is_known]
     x = frame.x(PERCENT)
     heights = [frame.y(one.angle_deg) for one in drawn]
-    taken = [(float(frame.x(p.percent)), float(frame.y(p.mean_deg))) for one in drawn for p in one.peaks]
-    taken += marks
+    taken = list(marks)
     parts = []
     for half in (range(7, 49), range(52, 94)):
         for one, y in zip(drawn, heights, strict=True):

@@ -31,31 +31,12 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
-class PeakMark:
-    """A peak: where in the stride, percent, its mean and SD, degrees."""
-
-    percent: float
-    mean_deg: float
-    sd_deg: float
-
-
-@dataclass(frozen=True, slots=True)
-class Span:
-    """Where in the stride, percent, the highest or the lowest angle is looked for."""
-
-    name: str
-    first: float
-    last: float
-    is_maximum: bool
-
-
-@dataclass(frozen=True, slots=True)
 class StrideCurve:
     """One leg in one walk, condition or visit: its mean `angle_deg` (101,), NaN where it is not known or not shown.
 
     `order` is its place among how many are compared, the earliest first. `sd_deg` (101,) is shown where it is given,
     `strides_deg` (k, 101) are single strides; of a withheld curve they are evidence, not to be read. `is_few`: of too
-    few strides for a mean. `is_fine`: thin, since much stands on it.
+    few strides for a mean. `is_bare`: its single strides alone, without mean and letters.
     """
 
     letter: str
@@ -67,10 +48,9 @@ class StrideCurve:
     order: tuple[int, int] | None = None
     sd_deg: FloatArray | None = None
     strides_deg: FloatArray = field(default_factory=lambda: NO_STRIDES)
-    peaks: tuple[PeakMark, ...] = ()
     is_withheld: bool = False
     is_few: bool = False
-    is_fine: bool = False
+    is_bare: bool = False
 
     @property
     def is_known(self) -> bool:
@@ -81,8 +61,7 @@ class StrideCurve:
 class StrideChart:
     """One joint over 0 to 100 % of the stride.
 
-    `ticks` are percent and side of the other foot's events; `spans` stand above the frame, where toe-off is named
-    otherwise. `chosen` is one stride (101,) over all others. `withheld` says why nothing of it may be read, and is
+    `chosen` is one stride (101,) over all others. `withheld` says why nothing of it may be read, and is
     empty where something may. `alt` are the chart's words, for who cannot see it.
     """
 
@@ -92,8 +71,6 @@ class StrideChart:
     is_simulated: bool
     title: str = ""
     alt: str = ""
-    ticks: tuple[tuple[float, Side], ...] = ()
-    spans: tuple[Span, ...] = ()
     chosen: tuple[Side, FloatArray] | None = None
     withheld: str = ""
     deviations: tuple[Deviation, ...] = ()

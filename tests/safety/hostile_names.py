@@ -117,15 +117,14 @@ def named(plain_visit: AnalysedVisit, name: str) -> ReportRequest:
 
 
 def numbers_and_figures(data: dict[str, Any]) -> list[Any]:
-    """Give what nobody typed: every table's cells, every picture, the quality box but for its names."""
-    found: list[Any] = [data["quality"]["heading"], data["quality"]["rows"]]
-    for block in (*data["first_page"], *(block for page in data["pages"] for block in page)):
+    """Give what nobody typed: every table's cells, every picture, what page one tells but of whom."""
+    first = data["first_page"]
+    found: list[Any] = [first[name] for name in ("readable", "curves", "quality")]
+    for block in (*first["key_numbers"], *(block for page in data["pages"] for block in page)):
         if block["kind"] == "table":
             found.append(block)
         elif block["kind"] == "figures":
             found.append(block["pictures"])
-        elif block["kind"] == "beside":
-            found.append([block["picture"], block["said"]])
         elif block["kind"] == "two_columns":
             found.append(block)
     return found
@@ -136,8 +135,8 @@ def texts(pdf: bytes) -> tuple[int, str]:
     import pypdf
 
     pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
-    text = pages[2].extract_text()
-    return len(pages), text[text.index("Peaks and range") : text.index("Research use.")]
+    text = pages[1].extract_text()
+    return len(pages), text[text.index("All curves and peaks") : text.index("Research use.")]
 
 
 def alive_in(pdf: bytes) -> set[str]:

@@ -10,13 +10,14 @@ Block = dict[str, object]
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One cell's words; over `span` columns."""
+    """One cell's words, over `span` columns, or a picture in their place."""
 
     said: str
     is_bold: bool = False
     is_grey: bool = False
     span: int = 1
     is_centred: bool = False
+    picture: Picture | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,12 +58,6 @@ def legend(items: Sequence[tuple[Picture, str]], columns: int = 3) -> Block:
     return {"kind": "legend", "items": entries, "columns": columns}
 
 
-def figure_with_words(one: Picture, items: Sequence[tuple[Picture, str]], title: str, said: Sequence[str]) -> Block:
-    """A large figure with its legend and read-out beside it."""
-    entries = [{"picture": swatch.as_data(), "said": words} for swatch, words in items]
-    return {"kind": "beside", "picture": one.as_data(), "items": entries, "title": title, "said": list(said)}
-
-
 def if_room(blocks: Sequence[Block]) -> Block:
     """What is told only where its page has the room: it explains, and what it explains can be read without it."""
     return {"kind": "if_room", "blocks": list(blocks)}
@@ -85,4 +80,5 @@ def _cell(cell: Cell | str) -> dict[str, object]:
         "grey": one.is_grey,
         "span": one.span,
         "centred": one.is_centred,
+        "picture": one.picture.as_data() if one.picture is not None else None,
     }

@@ -8,26 +8,22 @@ from typing import Any
 
 import typst
 
-from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block
 from app.reports.patient_report.comparison_page import comparison_of, comparison_page, not_compared_page
-from app.reports.patient_report.consistency_page import consistency_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import Facts
-from app.reports.patient_report.first_page import fields, measured, time_distance_table
-from app.reports.patient_report.key_numbers import key_numbers
+from app.reports.patient_report.first_page import first_page
 from app.reports.patient_report.method_page import words_page
-from app.reports.patient_report.peaks_page import peaks_page
-from app.reports.patient_report.plain_text import CONDITION_LENGTH, isolated, plain, shortened, typed
+from app.reports.patient_report.plain_text import isolated, plain, shortened
 from app.reports.patient_report.request import ReportRequest
-from app.reports.patient_report.what_stands_out import in_short
+from app.reports.patient_report.time_page import time_page
 from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
-WORDS_PAGE = -1  # of the pages after the first
 CODE_LENGTH = 16  # of the running head
 TITLE_CODE_LENGTH = 24
+PAGES_OF_WALK = 2  # after the first
 
 
 def make_report(request: ReportRequest) -> bytes:
@@ -75,7 +71,8 @@ class ReportPreview:
         if self._known is None or not _differ_in_words_only(self._known[0], request):
             self._known = request, facts_of(request), report_data(request)
         _, facts, data = self._known
-        return data | {"pages": [*data["pages"][:WORDS_PAGE], words_page(request, facts)]}
+        pages, at = data["pages"], 0 if data["is_brief"] else PAGES_OF_WALK
+        return data | {"pages": [*pages[:at], words_page(request, facts), *pages[at + 1 :]]}
 
 
 def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
@@ -98,14 +95,12 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     session = request.visit.session
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
-    condition = typed(request.visit.recording(request.shown).condition or request.shown, CONDITION_LENGTH)
+    of_walk = pages_of_walk(facts)
     pages: list[list[Block]] = [
-        curves_page(facts, condition),
-        peaks_page(facts),
+        *of_walk,
+        words_page(request, facts),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
-        consistency_page(facts),
-        words_page(request, facts),
     ]
     title = ", ".join(
         filter(
@@ -134,16 +129,15 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "software": f"Gaitwright {plain(request.software_version)[:CODE_LENGTH]}",
             "page": tr("Page {page} of {pages}"),
         },
-        "measured": measured(facts, comparison),
-        "answer": in_short(facts, comparison),
-        "fields": [list(field) for field in fields(request, facts)],
-        "quality": quality.box(facts),
-        "first_page": [
-            *key_numbers(facts, comparison),
-            *time_distance_table(facts),
-        ],
+        "first_page": first_page(request, facts, comparison),
+        "is_brief": not of_walk,
         "pages": pages,
     }
+
+
+def pages_of_walk(facts: Facts) -> list[list[Block]]:
+    """All figures of the walk; of one without a stride there is nothing to tell, and what is said fits on page one."""
+    return [curves_page(facts), time_page(facts)] if facts.gait else []
 
 
 def facts_of(request: ReportRequest) -> Facts:

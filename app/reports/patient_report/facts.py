@@ -22,7 +22,7 @@ from core.gait.spatiotemporal import BothFeet, MeanAndSd, mean_and_sd
 from core.norms import Bands, ReferenceCurves, ReferenceValues, height_offset_deg, peak_away_sd
 from core.results import JointCalibration, RecordingAnalysis, SideGait
 from core.samples import FloatArray
-from core.verdicts.model import Assessment, Verdicts
+from core.verdicts.model import Assessment, Verdict, Verdicts
 from core.verdicts.quantities import WINDOWS, assessment_of, both_sides, mean_curve, peak_percent
 
 KINDS = ("knee", "ankle")
@@ -159,10 +159,12 @@ class Facts:
         return curve_deg - np.mean(curve_deg) if self.has_no_zero(kind) else curve_deg
 
     def strides_deg(self, side: Side, kind: str) -> FloatArray:
-        """Every stride used that is known, (k, 101), as `mean_curve_deg` has their mean."""
+        """Every stride used that is known, (k, 101), as `mean_curve_deg` has their mean, or would with more of them."""
         joint = joint_of(kind, side)
         found = self.walk.verdicts.joint(joint)
-        if not self.is_measured(joint) or not (found.shape.is_told and found.sign.is_told):
+        reasons = (*found.shape.reasons, *found.sign.reasons)
+        are_few = {one.gate for one in reasons if one.verdict is Verdict.WITHHELD} == {"strides"}
+        if not self.is_measured(joint) or not ((found.shape.is_told and found.sign.is_told) or are_few):
             return np.empty((0, POINTS))
         strides_deg = side_cycle(self.walk, joint).strides_deg
         if self.has_no_zero(kind) and len(strides_deg):

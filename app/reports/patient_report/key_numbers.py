@@ -4,13 +4,13 @@ from app.charts.cycles import is_spread_enough
 from app.reports.comparison import Comparison
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, heading, note, table
 from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.key_strips import strip
 from app.reports.patient_report.numbers_in_words import (
     DAGGER,
     NOTHING,
     band_in_figures,
     dagger_note,
     fixed,
-    judged_in_words,
     marked,
     signed,
     spread,
@@ -36,14 +36,14 @@ def key_numbers(facts: Facts, comparison: Comparison | None) -> list[Block]:
         *(Column(facts.counted(side)) for side in Side),
         Column(f"{one[0].upper()} − {other[0].upper()}"),
         Column(tr("Error")),
-        Column(tr("In words"), "29mm", is_number=False),
-        Column(tr("Band [2]")),
+        Column(tr("Band")),
+        Column(tr("L above, R below, ± half the error"), "48mm", is_number=False),
     ]
     cells: list[Row] = [_cells(row) for row in rows]
     said = []
     if any(row.is_judged for row in rows):
-        said.append(tr("Error: what a difference between the legs has to exceed to be more than measurement error."))
-    if any(DAGGER in judged_in_words(row.difference) for row in rows):
+        said.append(tr("Bold: larger than the error of a comparison between the legs (95 %)."))
+    if any(row.is_judged and row.difference.is_unverified for row in rows):
         said.append(dagger_note())
     notes = [note(" ".join(said))] if said else []
     return [heading(tr("Key numbers")), table(columns, cells), *notes]
@@ -61,13 +61,14 @@ def _cells(row: LegsRow) -> list[Cell | str]:
     found = row.difference
     values = [_value(row, side) for side in Side]
     unit = row.unit.strip()
+    dagger = DAGGER if found.is_unverified else ""
     return [
         f"{row.name}, {unit}",
         *values,
-        signed(found.difference, row.decimals),
-        fixed(found.error, row.decimals),
-        Cell(judged_in_words(found), is_bold=found.exceeds) if found.is_told else NOTHING,
+        Cell(signed(found.difference, row.decimals) if found.is_told else NOTHING, is_bold=found.exceeds),
+        f"{fixed(found.error, row.decimals)}{dagger}" if row.is_judged else NOTHING,
         _band(row),
+        Cell("", picture=strip(row)),
     ]
 
 

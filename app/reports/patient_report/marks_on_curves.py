@@ -3,11 +3,18 @@
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough
-from app.charts.marks import BAND_SDS, Deviation, Gap, extreme_of, gaps_outside, laid_at_height_of
+from app.charts.marks import BAND_SDS, Deviation, Gap, Point, extreme_of, gaps_outside, laid_at_height_of
+from app.reports.comparison import Comparison
 from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
 from app.reports.patient_report.what_differs import LegsRow, what_differs
-from app.reports.patient_report.what_stands_out import BANDS_ON_SCREEN, ranked_findings
+from app.reports.patient_report.what_stands_out import (
+    BANDS_ON_PAPER,
+    BANDS_ON_SCREEN,
+    Candidate,
+    printed_findings,
+    ranked_findings,
+)
 from app.wording import tr
 from core.body import Joint, Side
 from core.norms import KNEE_OVERREAD
@@ -29,6 +36,36 @@ def deviations_of(facts: Facts) -> list[Deviation]:
     return found
 
 
+def brackets_of(facts: Facts, comparison: Comparison | None) -> dict[Joint, Deviation]:
+    """The same for paper, which has a panel for each leg: the first leg's has the number of its sentence.
+
+    The other leg's bracket shows the same movement, without a number.
+    """
+    printed = [one.said for one in printed_findings(facts, comparison)]
+    found: dict[Joint, Deviation] = {}
+    for candidate, row in _told_between_legs(facts):
+        kind = next((kind for kind in KINDS if _has_extremes(row, kind)), None)
+        if kind is None or joint_of(kind, Side.LEFT) in found or joint_of(kind, Side.RIGHT) in found:
+            continue
+        number = printed.index(candidate.said) + 1 if candidate.said in printed else None
+        for side in facts.first_and_second:
+            if np.isfinite(facts.mean_curve_deg(side, kind)).all():
+                size = fixed(row.values[side].mean, row.decimals) + row.unit
+                low, high = _extremes(facts, row, kind, side)
+                is_first = side is facts.first_and_second[0]
+                words = f"{side[0].upper()} {size}"
+                found[joint_of(kind, side)] = Deviation(
+                    low, high, words=words, size=size, number=number if is_first else None
+                )
+    return found
+
+
+def _told_between_legs(facts: Facts) -> list[tuple[Candidate, LegsRow]]:
+    """The findings between the legs, each with its figures."""
+    rows = {row.column: row for row in what_differs(facts)}
+    return [(one, rows[one.column]) for one in ranked_findings(facts, None, BANDS_ON_PAPER) if one.column in rows]
+
+
 def _has_extremes(row: LegsRow, kind: str) -> bool:
     return row.column.startswith(kind) and QUANTITIES[row.column] in (QuantityClass.SHAPE, QuantityClass.EXCURSION)
 
@@ -36,19 +73,25 @@ def _has_extremes(row: LegsRow, kind: str) -> bool:
 def _on_leg(facts: Facts, row: LegsRow, kind: str) -> Deviation:
     """The extremes of the first leg's mean curve; the sizes are means of the strides, as everywhere."""
     first, second = facts.first_and_second
-    joint, curve = joint_of(kind, first), facts.mean_curve_deg(first, kind)
-    high, low = _windows(row.column)
+    low, high = _extremes(facts, row, kind, first)
     size = fixed(row.values[first].mean, row.decimals) + row.unit
     pattern = tr("{size} less than {other}") if row.difference.difference < 0 else tr("{size} more than {other}")
     apart = fixed(abs(row.difference.difference), row.decimals) + row.unit
     return Deviation(
-        extreme_of(joint, curve, *low, is_maximum=False),
-        extreme_of(joint, curve, *high, is_maximum=True),
+        low,
+        high,
         words=f"{first[0].upper()} {size}",
         more=pattern.format(size=apart, other=second[0].upper()),
         is_larger_than_error=True,
         size=size,
     )
+
+
+def _extremes(facts: Facts, row: LegsRow, kind: str, side: Side) -> tuple[Point, Point]:
+    """The lowest and the highest point of a leg's mean curve that a movement goes between."""
+    joint, curve = joint_of(kind, side), facts.mean_curve_deg(side, kind)
+    high, low = _windows(row.column)
+    return extreme_of(joint, curve, *low, is_maximum=False), extreme_of(joint, curve, *high, is_maximum=True)
 
 
 def _windows(column: str) -> tuple[tuple[float, float], tuple[float, float]]:

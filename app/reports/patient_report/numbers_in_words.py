@@ -94,6 +94,13 @@ def in_words(verdict: Judgement) -> str:
     }[verdict]
 
 
+def in_brief(verdict: Judgement) -> str:
+    """The same in a narrow column, whose head says what is judged against what."""
+    return {Judgement.EXCEEDS_ERROR: tr("exceeds"), Judgement.INSIDE_ERROR: tr("inside")}.get(
+        verdict, in_words(verdict)
+    )
+
+
 def judged_in_words(found: Difference) -> str:
     """The same with a mark where the error rests on a figure whose source could not be read."""
     return (

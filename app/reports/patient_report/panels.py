@@ -2,22 +2,28 @@
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from app.charts.cycles import Band, is_mean_enough, is_spread_enough
-from app.charts.drawing import COLOURS, DASHES, Picture, box, line, marker, picture, text
-from app.charts.on_paper import PLAIN, STRIDE
-from app.charts.stride_chart import NO_STRIDES, Axis, PeakMark, Span, StrideCurve, usual_range_deg
+from app.charts.drawing import COLOURS, DASHES, Picture, box, line, picture, text
+from app.charts.marks import Deviation, laid_at_height_of
+from app.charts.on_paper import PLAIN
+from app.charts.stride_chart import NO_STRIDES, Axis, StrideChart, StrideCurve, usual_range_deg
 from app.colours import PAPER
-from app.reports.patient_report.facts import Facts, joint_of
+from app.reports.patient_report import quality
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import fixed
-from app.wording import side_name, tr
-from core.body import Side
+from app.reports.reference_bands import OTHER_AGES, WHY_NO_BAND
+from app.wording import capitalised, joined, name_of, side_name, tr
+from core.body import Joint, Side
+from core.norms import NoBand
 from core.verdicts.model import Verdict
-from core.verdicts.quantities import WINDOWS
 
 SWATCH_WIDTH, SWATCH_HEIGHT = 30.0, 9.0
+DOT = 6.4
+HEIGHT_GATES = ("zero", "plausible_height")  # these leave the shape alone
 PEAK_COLUMNS = {
     "knee": ("knee_loading_peak_deg", "knee_swing_peak_deg"),
     "ankle": ("ankle_stance_dorsiflexion_deg", "ankle_push_off_plantarflexion_deg"),
@@ -72,8 +78,8 @@ def band_of(facts: Facts, kind: str, sides: Sequence[Side]) -> Band | None:
     return Band(*group.mean_and_sd_deg(kind))
 
 
-def curve_of(facts: Facts, side: Side, kind: str, *, peaks: Sequence[str] = (), is_fine: bool = False) -> StrideCurve:
-    """One leg of one walk, with marks at the peaks of these columns of strides.csv."""
+def curve_of(facts: Facts, side: Side, kind: str) -> StrideCurve:
+    """One leg of one walk: its mean, or its single strides where they are too few for one."""
     letter = side[0].upper()
     off = facts.value(side, "stance_percent")
     is_known = is_mean_enough(off.n)
@@ -85,10 +91,116 @@ def curve_of(facts: Facts, side: Side, kind: str, *, peaks: Sequence[str] = (), 
         toe_off_percent=off.mean if is_known else math.nan,
         toe_off_sd=off.sd if is_spread_enough(off.n) else math.nan,
         toe_off_label=label,
-        peaks=_marks(facts, side, peaks) if not facts.has_no_zero(kind) else (),
         strides_deg=NO_STRIDES if is_known else facts.strides_deg(side, kind),
-        is_fine=is_fine,
     )
+
+
+def leg_chart(facts: Facts, joint: Joint, bracket: Deviation | None) -> StrideChart:
+    """One leg's joint with the band laid at its curve's height, so that the picture judges its shape alone."""
+    side, kind = joint.side, "knee" if joint.is_knee else "ankle"
+    own = curve_of(facts, side, kind)
+    band, said = None, [curve_alt(facts, kind, [side])]
+    group = facts.curves_group
+    if group is not None and own.is_known and side in facts.sides_with_band:
+        band = laid_at_height_of(own.angle_deg, Band(*group.mean_and_sd_deg(kind)))
+    return StrideChart(
+        title=joint_title(facts, side, kind),
+        axis=axis_of(facts, kind),
+        curves=(replace(own, toe_off_label=toe_off_in_words(own.toe_off_percent)),),
+        band=band,
+        is_simulated=facts.is_simulated,
+        alt=" ".join(said),
+        withheld=why_withheld(facts, joint),
+        deviations=(bracket,) if bracket is not None and own.is_known else (),
+    )
+
+
+def toe_off_in_words(percent: float) -> str:
+    return tr("toe\u2011off {percent} %").format(percent=fixed(percent, 0)) if math.isfinite(percent) else ""
+
+
+def joint_title(facts: Facts, side: Side, kind: str) -> str:
+    """Of a narrow panel."""
+    name = capitalised(name_of(joint_of(kind, side)))
+    return tr("{joint}, ° from its mean").format(joint=name) if facts.has_no_zero(kind) else f"{name}, °"
+
+
+def why_withheld(facts: Facts, joint: Joint) -> str:
+    """Why neither mean nor single strides of a joint may be drawn; empty where one of them may."""
+    kind = "knee" if joint.is_knee else "ankle"
+    if np.isfinite(facts.mean_curve_deg(joint.side, kind)).any() or len(facts.strides_deg(joint.side, kind)):
+        return ""
+    for cause in quality.causes(facts, (Verdict.WITHHELD,), is_of_joints=True):
+        if joint in cause.places and cause.gate not in HEIGHT_GATES:
+            return cause.words.why
+    return tr("No stride of this joint could be used.")
+
+
+def why_missing(facts: Facts, joint: Joint) -> str:
+    """What stands in a joint's place beside those that were measured."""
+    if joint.side not in facts.gait:
+        return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
+    worn = facts.visit.recording(facts.walk.name).imu
+    missing = [name_of(site) for site in (joint.proximal, joint.distal) if site not in worn]
+    if missing:
+        said = tr("{joint}: not measured, no sensor on {sites}.")
+        return said.format(joint=capitalised(name_of(joint)), sites=joined(missing))
+    return tr("{joint}: not measured.").format(joint=capitalised(name_of(joint)))
+
+
+def why_no_joint(facts: Facts, kind: str) -> str:
+    """Why neither leg has a kind of joint."""
+    worn = facts.visit.recording(facts.walk.name).imu
+    without = [side_name(side) for side in Side if joint_of(kind, side).distal not in worn]
+    if kind == "ankle":
+        if without:
+            return tr("Ankle not measured: no sensor on the {sides} foot.").format(sides=joined(without))
+        return tr("Ankle not measured.")
+    return tr("Knee not measured.")
+
+
+def why_no_band(facts: Facts, why: NoBand | None) -> str:
+    """Why no band stands beside this walk; empty where one does."""
+    if facts.gait and not facts.sides_with_band:
+        return tr("No band: a prosthetic leg is not compared with other people's.")
+    return tr(WHY_NO_BAND[why]) if why is not None else ""
+
+
+def band_in_words(facts: Facts, *, is_at_height: bool) -> str:
+    """Whose band is drawn and how it is laid, or why there is none."""
+    group = facts.curves_group
+    if group is None:
+        return why_no_band(facts, facts.bands.why_no_curves)
+    if not is_at_height and all(facts.has_no_zero(kind) for kind in KINDS if facts.has_joint(kind)):
+        return tr("No band: without a zero there is no height to compare.")
+    said = [
+        tr("Grey: mean, ±1 and ±2 SD of {n} young adults, barefoot, on a treadmill at {speed} m/s [1].").format(
+            n=group.n, speed=fixed(group.speed_m_s, 2)
+        )
+    ]
+    if is_at_height:
+        said.append(tr("It is laid at the height of each curve, so the picture judges shape; height stands beside it."))
+    if facts.bands.are_curves_of_other_ages:
+        said.append(tr(OTHER_AGES))
+    if not facts.sides_with_band.issuperset(facts.gait):
+        sides = joined([side_name(side) for side in Side if side in facts.sides_with_band])
+        said.append(tr("It is for the {side} leg alone.").format(side=sides))
+    return " ".join(said)
+
+
+def dot(verdict: Verdict) -> Picture:
+    """Full where something can be read, half where with care, empty where it is withheld, a dash where not measured."""
+    x = y = DOT / 2
+    radius = DOT / 2 - 0.6
+    if verdict is Verdict.NOT_MEASURED:
+        return picture([line(1, y, DOT - 1, y, PAPER.note, 1.0)], DOT, DOT)
+    ring = f'<circle cx="{x}" cy="{y}" r="{radius}" fill="{{fill}}" stroke="{PAPER.ink}" stroke-width="0.9"/>'
+    if verdict is Verdict.READ:
+        return picture([ring.format(fill=PAPER.ink)], DOT, DOT)
+    parts = [ring.format(fill=PAPER.paper)]
+    if verdict is Verdict.CARE:
+        parts.append(f'<path d="M{x} {y - radius}A{radius} {radius} 0 0 0 {x} {y + radius}Z" fill="{PAPER.ink}"/>')
+    return picture(parts, DOT, DOT)
 
 
 def swatch(side: Side, colour: str | None = None, width: float = PLAIN) -> Picture:
@@ -107,12 +219,6 @@ def pair_swatch(letter: str, looks: Sequence[tuple[Side, str, float]]) -> Pictur
     return picture(parts, 53, SWATCH_HEIGHT)
 
 
-def stride_swatch() -> Picture:
-    """Thin lines, as single strides are drawn."""
-    parts = [line(0, y, SWATCH_WIDTH, y, COLOURS[Side.LEFT], STRIDE) for y in (2.5, 4.5, 6.5)]
-    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
-
-
 def band_swatches() -> list[tuple[Picture, str]]:
     inner = [
         box(0.2, 1, SWATCH_WIDTH - 0.4, 7, PAPER.band_1sd, PAPER.band_1sd_edge, 0.35),
@@ -123,51 +229,6 @@ def band_swatches() -> list[tuple[Picture, str]]:
         (picture(inner, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Band mean, ±1 SD [1]")),
         (picture(outer, SWATCH_WIDTH, SWATCH_HEIGHT), tr("±2 SD [1]")),
     ]
-
-
-def leg_swatches(facts: Facts) -> list[tuple[Picture, str]]:
-    said = {Side.LEFT: tr("Left: solid line, circle"), Side.RIGHT: tr("Right: dashed line, square")}
-    return [(swatch(side), said[side]) for side in Side if side in facts.gait]
-
-
-def event_swatches(*, has_other_foot: bool, has_peaks: bool) -> list[tuple[Picture, str]]:
-    x = SWATCH_WIDTH / 2
-    left = COLOURS[Side.LEFT]
-    toe_off = [line(x, 0, x, SWATCH_HEIGHT, left, 0.9), line(x - 5, 0.8, x + 5, 0.8, PAPER.ink, 1.4)]
-    other = [line(x, 1, x, 8, left, 1.1)]
-    found = [(picture(toe_off, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Toe\u2011off, bar on top ±1 SD"))]
-    if has_other_foot:
-        found.append((picture(other, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Other foot: toe\u2011off, contact")))
-    return [*found, peak_swatch()] if has_peaks else found
-
-
-def peak_swatch() -> tuple[Picture, str]:
-    x = SWATCH_WIDTH / 2
-    parts = [line(x, 0.5, x, 8.5, PAPER.ink, 0.8), marker(x, 4.5, Side.LEFT)]
-    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT), tr("Mean of single peaks, ±1 SD")
-
-
-def cross_swatch() -> Picture:
-    x = SWATCH_WIDTH / 2
-    parts = [line(x - 1.8, 4.5 - 1.8 * way, x + 1.8, 4.5 + 1.8 * way, PAPER.ink, 0.9) for way in (1, -1)]
-    return picture(parts, SWATCH_WIDTH, SWATCH_HEIGHT)
-
-
-def other_foot(facts: Facts) -> tuple[tuple[float, Side], ...]:
-    """When in a leg's stride the other foot leaves and meets the ground, percent; each half a stride away in time.
-
-    Told by the step time, so that an uneven walk is drawn as it is.
-    """
-    ticks = []
-    for side in facts.gait:
-        other = Side.RIGHT if side is Side.LEFT else Side.LEFT
-        step, stride = facts.value(side, "step_time_s"), facts.value(side, "stride_time_s")
-        swing = facts.value(other, "swing_percent")
-        if not all(is_mean_enough(value.n) for value in (step, stride, swing)):
-            continue  # too few, or instants of both legs are not to be compared
-        contact = 100 - 100 * step.mean / stride.mean  # the other foot's contact begins this foot's step
-        ticks += [(contact, other), (contact - swing.mean, other)]
-    return tuple((percent, side) for percent, side in ticks if 0 < percent < 100)
 
 
 def not_drawn(facts: Facts, kind: str) -> list[str]:
@@ -226,27 +287,3 @@ def excursion_name(column: str) -> str:
         "ankle_push_off_deg": tr("push\u2011off"),
         "ankle_toes_lifted_deg": tr("toes lifted"),
     }[column]
-
-
-def spans_of(kind: str) -> dict[str, Span]:
-    """Where each peak of a joint is looked for, by its column of strides.csv."""
-    names = {
-        "knee_loading_peak_deg": tr("loading"),
-        "knee_stance_minimum_deg": tr("stance"),
-        "knee_swing_peak_deg": tr("swing"),
-        "ankle_loading_plantarflexion_deg": tr("loading"),
-        "ankle_stance_dorsiflexion_deg": tr("stance"),
-        "ankle_push_off_plantarflexion_deg": tr("push\u2011off"),
-        "ankle_swing_dorsiflexion_deg": tr("swing"),
-    }
-    windows = {column: window for column, window in WINDOWS.items() if column.startswith(kind)}
-    return {column: Span(names[column], one.first, one.last, one.is_maximum) for column, one in windows.items()}
-
-
-def _marks(facts: Facts, side: Side, columns: Sequence[str]) -> tuple[PeakMark, ...]:
-    marks = []
-    for column in columns:
-        value, at = facts.value(side, column), facts.peak_percent(side, column)
-        if is_mean_enough(value.n) and math.isfinite(at.mean):
-            marks.append(PeakMark(at.mean, value.mean, value.sd if is_spread_enough(value.n) else math.nan))
-    return tuple(marks)

@@ -5,47 +5,21 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from app.gates_in_words import GateWords, gate_words, verdict_word
-from app.reports.patient_report.facts import Facts, joint_of
-from app.reports.patient_report.numbers_in_words import CARE, NOTHING, fixed
+from app.gates_in_words import GateWords, gate_words
+from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.numbers_in_words import NOTHING, fixed
 from app.wording import NAMES, capitalised, joined, name_of, side_name, tr, tr_n
-from core.body import Joint, Side, Site, ankle_of, knee_of
+from core.body import Joint, Side, Site
 from core.findings import Finding
 from core.gait.strides import Reason
 from core.quality import MIN_LOSS_PERCENT
 from core.results import JointCalibration, Method, ZeroKind
-from core.verdicts.model import Assessment, GateReason, Verdict, Verdicts, worst
+from core.verdicts.model import GateReason, Verdict, Verdicts, worst
 
-MAX_SENTENCES = 3  # more would push the first page over its foot
+MAX_SENTENCES = 3  # more would push a page over its foot
+MAX_TO_DO = 2  # beside a panel
 Place = Joint | Side | None
 """What a reason is about: a joint, a leg, or what lies between both legs."""
-
-
-def matrix(verdicts: Verdicts) -> list[list[str]]:
-    """What may be read of each leg, a head first: each joint's shape and height, timing, distance; then of both."""
-    head = [
-        "",
-        tr("Knee: shape"),
-        tr("Knee: height"),
-        tr("Ankle: shape"),
-        tr("Ankle: height"),
-        tr("Timing"),
-        tr("Distance"),
-        tr("Between legs"),
-    ]
-    return [head, *(_row(verdicts, side) for side in Side)]
-
-
-def _row(verdicts: Verdicts, side: Side) -> list[str]:
-    knee, ankle, leg = verdicts.joint(knee_of(side)), verdicts.joint(ankle_of(side)), verdicts.leg(side)
-    parts = (knee.shape, knee.height, ankle.shape, ankle.height, leg.timing, leg.distance, verdicts.between)
-    return [capitalised(side_name(side)), *(_word(part) for part in parts)]
-
-
-def _word(found: Assessment) -> str:
-    """The verdict; what is to be read with care bears the mark that its figures have in the tables."""
-    word = verdict_word(found.verdict)
-    return f"{word}\u00a0{CARE}" if found.verdict is Verdict.CARE else word
 
 
 def caveats(
@@ -127,32 +101,32 @@ def _where(facts: Facts, places: Sequence[Place]) -> str:
     return capitalised(joined([*legs, *(name_of(joint) for joint in joints)]))
 
 
-def box(facts: Facts) -> dict[str, object]:
-    """The frame on page one: the verdicts, the gravest reasons, and what they rest on."""
+def gravest(facts: Facts) -> list[str]:
+    """What weighs most against reading something, in one sentence; how many more there are."""
     sentences = caveats(facts)
-    shown, more = sentences[:MAX_SENTENCES], len(sentences) - MAX_SENTENCES
-    if more > 0:
-        said = tr_n("{count} more remark is in the file of results.", "{count} more are in the file of results.", more)
-        shown[-1] += " " + said.format(count=more)
-    return {
-        "heading": tr("What can be read"),
-        "matrix": matrix(facts.verdicts),
-        "sentences": shown,
-        "rows": [list(row) for row in rows(facts)],
-    }
+    if len(sentences) < 2:
+        return sentences
+    more = len(sentences) - 1
+    said = tr_n("{count} more remark on page 4.", "{count} more remarks on page 4.", more)
+    return [f"{sentences[0]} {said.format(count=more)}"]
 
 
-def rows(facts: Facts) -> list[tuple[str, str]]:
+def to_do(facts: Facts, joint: Joint) -> list[str]:
+    """What makes a joint that is withheld readable the next time."""
+    found = [one.words.to_do for one in causes(facts, (Verdict.WITHHELD,)) if {joint, joint.side} & set(one.places)]
+    return list(dict.fromkeys(filter(None, found)))[:MAX_TO_DO]
+
+
+def cells(facts: Facts) -> list[tuple[str, str]]:
     """What the verdicts rest on, as label and value."""
     return [
         (tr("Strides used"), _each(facts, lambda side: str(facts.strides(side)))),
         (tr("Left out"), _left_out(facts)),
-        (tr("Samples lost, worst sensor"), _loss_in_words(facts)),
-        (tr("Lag between sensors, largest"), _lag(facts)),
-        (tr("Certainty of joint axes (1 SD), knee"), _axes(facts, "knee")),
-        (tr("Certainty of joint axes (1 SD), ankle"), _axes(facts, "ankle")),
-        (tr("How zero was set"), _zero(facts)),
-        (tr("Straps during the walk"), _straps(facts)),
+        (tr("Samples lost"), _loss_in_words(facts)),
+        (tr("Joint axes, 1 SD"), _axes(facts)),
+        (tr("Lag of sensors"), _lag(facts)),
+        (tr("Zero"), _zero(facts)),
+        (tr("Straps"), _straps(facts)),
     ]
 
 
@@ -211,13 +185,12 @@ def _lag(facts: Facts) -> str:
     return tr("{lag} ms, corrected").format(lag=fixed(worst_ms, 1)) if round(worst_ms, 1) else tr("none found")
 
 
-def _axes(facts: Facts, kind: str) -> str:
-    parts = []
-    for side in Side:
-        found = facts.calibrated.get(joint_of(kind, side))
-        if found is not None and found.axis_sd_rad is not None:
-            parts.append(f"{side[0].upper()}\u00a0{fixed(math.degrees(found.axis_sd_rad), 1)}°")
-    return ", ".join(parts) or tr("not measured")
+def _axes(facts: Facts) -> str:
+    found = [one.axis_sd_rad for one in facts.calibrated.values() if one.axis_sd_rad is not None]
+    if not found:
+        return tr("not measured")
+    low, high = (fixed(math.degrees(one), 1) for one in (min(found), max(found)))
+    return f"{low}°" if low == high else f"{low}–{high}°"
 
 
 def _zero(facts: Facts) -> str:

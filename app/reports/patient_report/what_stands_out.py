@@ -7,11 +7,10 @@ from enum import IntEnum
 
 from app.reports.comparison import Compared, Comparison, Contrast, compare_legs
 from app.reports.patient_report import quality
-from app.reports.patient_report.blocks import Block, bullets, heading
 from app.reports.patient_report.facts import KINDS, Facts, joint_of, role
 from app.reports.patient_report.numbers_in_words import band_in_figures, fixed, signed
 from app.reports.patient_report.panels import peak_name
-from app.reports.patient_report.peaks_page import HEIGHTS
+from app.reports.patient_report.peaks_table import HEIGHTS
 from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
 from app.wording import capitalised, later, name_of, tr
 from core.body import Joint, Side
@@ -88,16 +87,9 @@ class Candidate:
         return self.rank, -round(self.ratio, 1), among
 
 
-def in_short(facts: Facts, comparison: Comparison | None) -> list[Block]:
-    """At most three findings and one caveat; without any, that there is none."""
-    said = findings(facts, comparison) or [" ".join(nothing_found(facts, comparison))]
-    return [heading(tr("In short")), bullets([*said, *caveat(facts, comparison)])]
-
-
-def findings(facts: Facts, comparison: Comparison | None) -> list[str]:
-    """The sentences of the findings that are told on paper, the weightiest first."""
-    ranked = ranked_findings(facts, comparison, BANDS_ON_PAPER)
-    return [" ".join(filter(None, (one.said, one.evidence))) for one in ranked]
+def printed_findings(facts: Facts, comparison: Comparison | None) -> list[Candidate]:
+    """The findings that are told on paper, the weightiest first."""
+    return ranked_findings(facts, comparison, BANDS_ON_PAPER)
 
 
 def ranked_findings(facts: Facts, comparison: Comparison | None, bands: tuple[str, str]) -> list[Candidate]:

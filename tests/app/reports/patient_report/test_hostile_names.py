@@ -44,11 +44,11 @@ def with_text(request: ReportRequest, text: str) -> ReportRequest:
 
 
 def figures_of(pdf: bytes) -> tuple[int, list[str]]:
-    """Give the pages' count, and the words of the table on the third but for head and foot."""
+    """Give the pages' count, and the words of the table on the second but for head and foot."""
     pages = pypdf.PdfReader(io.BytesIO(pdf)).pages
-    lines = pages[2].extract_text().splitlines()
-    first = lines.index("Peaks and range")
-    last = next(k for k, line in enumerate(lines) if "Differences are formed" in line)
+    lines = pages[1].extract_text().splitlines()
+    first = next(k for k, line in enumerate(lines) if line.startswith("Measure, °"))
+    last = next(k for k, line in enumerate(lines) if "Windows in brackets" in line)
     return len(pages), lines[first:last]
 
 

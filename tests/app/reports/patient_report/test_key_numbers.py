@@ -1,9 +1,14 @@
 """Which rows stand among the key numbers? What the findings tell, then the same for everybody, never the unknown."""
 
+from dataclasses import replace
+
 import pytest
 
+from app.charts.drawing import COLOURS
+from app.colours import PAPER
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.key_numbers import ALWAYS, MOST_ROWS, key_numbers, key_rows
+from app.reports.patient_report.key_strips import strip
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from core.body import Joint, Side
 from core.results import Analysis
@@ -44,13 +49,38 @@ def test_a_row_tells_both_legs_their_difference_its_error_and_whether_it_exceeds
     analysis = with_more(request_of_demonstration.visit.analysis, Side.LEFT, "knee_stance_to_swing_rad", -20.0)
     said = cells(facts(request_of_demonstration, analysis), 0)
     assert said[:4] == ["Knee bend from stance to swing, °", "40.7 ± 0.8", "62.0 ± 1.0", "\u221221.3"]
-    assert 9.2 < float(said[4]) < 9.6
-    assert said[5:] == ["exceeds error\u00a0\u2020", "no band"]
+    assert said[4].endswith("\u2020")
+    assert 9.2 < float(said[4][:-1]) < 9.6
+    assert said[5:] == ["no band", ""]
+    assert is_bold(facts(request_of_demonstration, analysis), 0)
+    assert not is_bold(facts(request_of_demonstration), 0)
+
+
+def is_bold(shown: Facts, row: int) -> bool:
+    """Whether the difference is set as larger than its error."""
+    (table,) = (block for block in key_numbers(shown, None) if block["kind"] == "table")
+    rows = table["rows"]
+    assert isinstance(rows, list)
+    return bool(rows[row]["cells"][3]["bold"])
+
+
+def test_a_strip_draws_both_legs_with_half_of_the_error_over_the_band(request_of_demonstration: ReportRequest) -> None:
+    rows = {row.column: row for row in key_rows(facts(request_of_demonstration), None)}
+    stance, swing = strip(rows["stance_percent"]), strip(rows["knee_stance_to_swing_deg"])
+    assert PAPER.band_2sd in stance.svg
+    assert PAPER.band_2sd not in swing.svg  # no SD between people can be had
+    assert COLOURS[Side.LEFT] in swing.svg
+    assert COLOURS[Side.RIGHT] in swing.svg
+    assert swing.svg.count(f'stroke="{PAPER.ink}" stroke-width="0.9"') == 6  # two whiskers with two caps each
+    found = rows["knee_stance_to_swing_deg"]
+    alone = replace(found, values={Side.LEFT: found.values[Side.LEFT]}, difference=replace(found.difference, error=0.0))
+    assert COLOURS[Side.RIGHT] not in strip(alone).svg
+    assert f'stroke="{PAPER.ink}" stroke-width="0.9"' not in strip(alone).svg
 
 
 def test_the_band_of_stance_is_that_of_the_table_of_time(request_of_demonstration: ReportRequest) -> None:
     place = ALWAYS.index("stance_percent")
-    assert cells(facts(request_of_demonstration), place)[-1] == "60.3 ± 1.1"
+    assert cells(facts(request_of_demonstration), place)[-2] == "60.3 ± 1.1"
 
 
 def test_a_measure_withheld_on_one_leg_says_so_and_on_both_is_left_out(request_of_demonstration: ReportRequest) -> None:
@@ -64,4 +94,4 @@ def test_a_measure_withheld_on_one_leg_says_so_and_on_both_is_left_out(request_o
 def test_one_leg_has_rows_without_a_difference(request_of_one_leg: ReportRequest) -> None:
     shown = facts(request_of_one_leg)
     assert columns(shown)[0] == "knee_stance_to_swing_deg"
-    assert cells(shown, 0)[2:6] == ["not measured", "–", "–", "–"]
+    assert cells(shown, 0)[2:6] == ["not measured", "–", "–", "no band"]

@@ -5,17 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.reports.comparison import MEASURES
+from app.reports.comparison import MEASURES, Comparison
 from app.reports.patient_report.comparison_page import comparison_of
 from app.reports.patient_report.document import facts_of
 from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.first_page import answer
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest
 from app.reports.patient_report.what_stands_out import (
     BETWEEN_LEGS,
     MAX_FINDINGS,
-    findings,
-    in_short,
     measure_in_words,
+    printed_findings,
     unit_and_decimals,
 )
 from core.body import Joint, Side
@@ -33,10 +33,16 @@ def said(request: ReportRequest, analysis: Analysis | None = None) -> list[str]:
     """The sentences of a report, of another analysis where one is given."""
     if analysis is not None:
         request = replace(request, visit=AnalysedVisit(request.visit.session, analysis))
-    _, bullets = in_short(facts_of(request), comparison_of(request))
-    sentences = bullets["said"]
-    assert isinstance(sentences, list)
-    return [str(sentence).replace("\u00a0", " ").replace("\u2212", "-") for sentence in sentences]
+    told = answer(facts_of(request), comparison_of(request))
+    numbered, caveats = told["sentences"], told["caveats"]
+    assert isinstance(numbered, list)
+    assert isinstance(caveats, list)
+    sentences = [" ".join(filter(None, words)) for _, *words in numbered] + caveats
+    return [sentence.replace("\u00a0", " ").replace("\u2212", "-") for sentence in sentences]
+
+
+def findings(facts: Facts, comparison: Comparison | None) -> list[str]:
+    return [" ".join(filter(None, (one.said, one.evidence))) for one in printed_findings(facts, comparison)]
 
 
 def of_a_child(request: ReportRequest, analysis: Analysis) -> ReportRequest:
