@@ -25,7 +25,6 @@ from core.verdicts.model import Assessment, Verdict, worst
 from core.verdicts.quantities import WINDOWS
 
 NOT_STATED = ("", "none")
-END = "\u00a0"  # behind what was typed, which ends with a mark of direction: no glyph used elsewhere carries it along
 PLOT_WIDTH, ONE_LEG_WIDTH = 53 * MM, 68 * MM  # four panels, or two
 
 
@@ -57,7 +56,7 @@ def who(request: ReportRequest) -> str:
         tr("no aids") if patient.aids == "none" else patient.aids,
         session.surface,
     ]
-    return " · ".join(typed(one) for one in known if one) + END
+    return " · ".join(typed(one) for one in known if one)
 
 
 def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) -> str:
@@ -76,12 +75,10 @@ def what(request: ReportRequest, facts: Facts, comparison: Comparison | None) ->
         tr("by {operator}").format(operator=typed(operator, CONDITION_LENGTH)) if operator else "",
         typed(clinic, CONDITION_LENGTH) if clinic else "",
     ]
-    said = [" · ".join(filter(None, parts)) + END]
+    said = [" · ".join(filter(None, parts))]
     if comparison is not None:
         names = " · ".join(f"{part.letter}\u00a0{typed(part.name, CONDITION_LENGTH)}" for part in comparison.parts)
-        said.append(
-            tr("Compared, {last} shown here: {parts}").format(parts=names + END, last=comparison.parts[-1].letter)
-        )
+        said.append(tr("Compared, {last} shown here: {parts}").format(parts=names, last=comparison.parts[-1].letter))
     return " ".join(said)
 
 
