@@ -9,7 +9,7 @@ To add a finding's message, add its key to `SENTENCES`: the figures in braces ar
 
 import gettext
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from core.body import Joint, Side, Site
@@ -275,6 +275,11 @@ def use_language(language: str) -> None:
         _catalogue = PseudoLanguage()
     else:
         _catalogue = gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True)
+
+
+def spoken_in(language: str) -> Callable[[str], str]:
+    """Give what says a message in another language than the user's, as a page for somebody else; else English."""
+    return gettext.translation(DOMAIN, LOCALE, languages=[language], fallback=True).gettext
 
 
 def spoken_language() -> str:

@@ -1,18 +1,20 @@
 """Gather every sentence of the screen for the translators: `python packaging/catalogue.py`.
 
-Writes `resources/locale/gaitwright.pot`, the template of all catalogues. It names the file of a sentence and not its
-line, so that it changes only when a sentence does.
+Writes `resources/locale/gaitwright.pot`, the template of all catalogues, and compiles the catalogue of each language.
+The template names the file of a sentence and not its line, so that it changes only when a sentence does.
 """
 
 import ast
 import io
 import sys
 from collections.abc import Iterator
+from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
-from babel.messages.pofile import write_po
+from babel.messages.mofile import write_mo
+from babel.messages.pofile import read_po, write_po
 
 ROOT = Path(__file__).resolve().parents[1]
 TEMPLATE = ROOT / "resources" / "locale" / "gaitwright.pot"
@@ -31,6 +33,7 @@ REFUSALS = {
     "JournalRefusedError": 1,
 }
 
+UNDATED = datetime(2026, 1, 1, tzinfo=UTC)  # the same sentences give the same file
 HEAD = b"""\
 # Every sentence that Gaitwright shows. Made by packaging/catalogue.py; change the sentences in the code.
 msgid ""
@@ -96,7 +99,25 @@ def template() -> bytes:
     return HEAD + text.getvalue()
 
 
+def translations() -> list[Path]:
+    """Give the catalogues that translators write."""
+    return sorted(TEMPLATE.parent.glob("*/LC_MESSAGES/*.po"))
+
+
+def compiled(catalogue: Path) -> bytes:
+    """Give a catalogue as the program reads it."""
+    with catalogue.open("rb") as file:
+        found = read_po(file, abort_invalid=True)
+    found.creation_date = found.revision_date = UNDATED
+    text = io.BytesIO()
+    write_mo(text, found)
+    return text.getvalue()
+
+
 if __name__ == "__main__":
     TEMPLATE.parent.mkdir(exist_ok=True)
     TEMPLATE.write_bytes(template())
     print(TEMPLATE.relative_to(ROOT))
+    for one in translations():
+        one.with_suffix(".mo").write_bytes(compiled(one))
+        print(one.with_suffix(".mo").relative_to(ROOT))

@@ -14,7 +14,7 @@ from app.reports.course_lanes import CourseVisit
 from app.reports.course_words import LatestVisit, NextStep, next_step, recovered_step
 from app.storage.journal.header import JournalRefusedError
 from app.storage.stored import LibraryError, SessionSummary
-from app.wizard.resuming import current_course_key, read_analysed
+from app.wizard.resuming import current_courses, read_analysed
 from app.workers.background import Report
 
 if TYPE_CHECKING:
@@ -76,12 +76,7 @@ def read_patient(opened: "OpenedLibrary", patient_id: UUID) -> PatientReading:
         walk.recording.session_id for walk in library.recordings.undecided() if walk.patient_id == patient_id
     )
     ids = [session.id for session in sessions]
-    courses = {
-        session_id: course
-        for session_id, (key, course) in library.courses.find(ids).items()
-        if key == current_course_key(library.sessions.get(session_id))
-    }
-    return PatientReading(patient_id, sessions, recovered, courses, library.audit.reported(ids))
+    return PatientReading(patient_id, sessions, recovered, current_courses(library, ids), library.audit.reported(ids))
 
 
 def compute_courses(opened: "OpenedLibrary", session_ids: Sequence[UUID], report: Report) -> int:

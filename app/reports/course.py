@@ -21,7 +21,8 @@ FORMAT = "gaitwright-course/1"
 SPEED = "speed_m_s"
 KNEE = "knee_stance_to_swing_deg"  # what stands for the knee: an excursion, which needs no zero
 STANCE = "stance_percent"
-OF_A_LEG = (KNEE, STANCE)
+PUSH_OFF = "ankle_push_off_deg"
+OF_A_LEG = (KNEE, PUSH_OFF, STANCE)
 
 
 @dataclass(frozen=True, slots=True)

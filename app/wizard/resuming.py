@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 from uuid import UUID
 
-from app.reports.course import course_of
+from app.reports.course import Course, course_of
 from app.storage.exchange import recording_with_samples
 from app.storage.kept_analyses import bare, find_analysis, keep_analysis
 from app.storage.kept_courses import course_key, keep_course
@@ -21,6 +21,7 @@ from core.samples import RecordingKind, Session
 from devices.decoders import DECODERS
 
 if TYPE_CHECKING:
+    from app.storage.library import Library
     from app.storage.opened import OpenedLibrary
     from core.calibration.rest import Rest
     from core.results import Analysis
@@ -67,6 +68,15 @@ def current_course_key(session: StoredSession) -> str:
     """The key that what is kept of a session's course has to have, to hold as the session is told now."""
     read_back = tuple(SessionRecording(one, one.details) for one in session.recordings if one.state in USABLE)
     return course_key(evaluated(session, read_back), session.recordings)
+
+
+def current_courses(library: "Library", session_ids: Sequence[UUID]) -> dict[UUID, Course]:
+    """What is kept of sessions' courses, as far as it still holds."""
+    return {
+        session_id: course
+        for session_id, (key, course) in library.courses.find(session_ids).items()
+        if key == current_course_key(library.sessions.get(session_id))
+    }
 
 
 def evaluated(session: StoredSession, recordings: Sequence[SessionRecording]) -> Session:

@@ -254,7 +254,7 @@ def _of_results(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator
 def _of_report(wizard: "Wizard", visit: "Visit", held: HeldLibrary) -> Iterator[str]:
     note = wizard.shell.bar.state.note
     step: Any = wizard.current
-    if (said := SAVED_AS.search(note)) is not None and not (step.saved / "report.pdf").exists():
+    if (said := SAVED_AS.search(note)) is not None and not any(step.saved.glob("*.pdf")):
         yield f"the bar says {said[0]!r}, there is no report in it"
     if step._comment is not None and visit.session is not None:
         rows = held.ask("SELECT comment FROM sessions WHERE id = ?", visit.session.id.hex)

@@ -15,9 +15,11 @@ from app.reports.patient_report.dates import day
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.first_page import first_page
 from app.reports.patient_report.method_page import words_page
+from app.reports.patient_report.patient_page import patient_page
 from app.reports.patient_report.plain_text import isolated, plain, shortened
 from app.reports.patient_report.request import ReportRequest
 from app.reports.patient_report.time_page import time_page
+from app.reports.patient_report.trend_page import trend_page
 from app.wording import spoken_language, tr
 
 TEMPLATE = files("resources") / "report" / "report.typ"
@@ -79,7 +81,7 @@ def _differ_in_words_only(one: ReportRequest, other: ReportRequest) -> bool:
     are_same = one.visit.session is other.visit.session and one.visit.analysis is other.visit.analysis
     if not (are_same and one.earlier is other.earlier and one.made_at.date() == other.made_at.date()):
         return False
-    named = ("walks", "software_version", "operator", "clinic", "paper")
+    named = ("walks", "software_version", "operator", "clinic", "paper", "course", "patient_language")
     return all(getattr(one, name) == getattr(other, name) for name in named)
 
 
@@ -95,12 +97,14 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
     session = request.visit.session
     code = plain(session.patient.code)
     recorded = day(request.visit.recording(request.shown).started or session.started)
-    of_walk = pages_of_walk(facts)
+    of_walk, condition = pages_of_walk(facts), request.visit.recording(request.shown).condition
     pages: list[list[Block]] = [
         *of_walk,
         words_page(request, facts),
         *([comparison_page(comparison, facts)] if comparison is not None else []),
         *([alone] if (alone := not_compared_page(request)) else []),
+        *([course] if (course := trend_page(request.course, condition, facts)) else []),
+        *([[patient_page(request, facts)]] if request.patient_language else []),
     ]
     title = ", ".join(
         filter(

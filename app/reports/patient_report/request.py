@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 
+from app.reports.course_lanes import CourseVisit
 from core.results import Analysis, RecordingAnalysis
 from core.samples import Recording, RecordingKind, Session
 
@@ -52,6 +53,10 @@ class ReportRequest:
         When the report is made; must know its time zone.
     earlier
         A visit before this one to compare with, in place of the conditions.
+    course
+        The patient's visits in order of time, this one the last; of two and more a page tells the course.
+    patient_language
+        In which language a page for the patient is added, as "de"; empty: none is.
     """
 
     visit: AnalysedVisit
@@ -63,6 +68,8 @@ class ReportRequest:
     clinic: str = ""
     paper: str = "a4"
     earlier: AnalysedVisit | None = None
+    course: tuple[CourseVisit, ...] = ()
+    patient_language: str = ""
 
     def __post_init__(self) -> None:
         if self.made_at.tzinfo is None:

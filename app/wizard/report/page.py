@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from uuid import UUID
 
-from PySide6.QtCore import QBuffer, QEvent, QObject, QRectF, QSignalBlocker, QSize, Qt, QTimer, Signal
-from PySide6.QtGui import QImage, QImageReader, QKeyEvent, QPainter, QPaintEvent
-from PySide6.QtWidgets import QBoxLayout, QFrame, QPlainTextEdit, QScrollArea, QSizePolicy, QVBoxLayout, QWidget
+from PySide6.QtCore import QEvent, QObject, QSignalBlocker, Qt, QTimer, Signal
+from PySide6.QtGui import QKeyEvent
+from PySide6.QtWidgets import QBoxLayout, QFrame, QHBoxLayout, QPlainTextEdit, QScrollArea, QWidget
 
 from app.theme import ThemeNotifier
 from app.widgets.card import Card
@@ -14,14 +14,11 @@ from app.widgets.choice import Choice
 from app.widgets.segmented import Segmented
 from app.widgets.text import SEMIBOLD, Text
 from app.widgets.themed import Themed
+from app.wizard.report.sheets import Sheet, Sheets, SmallSheets
 from app.wording import tr
 
 WORDS_WIDTH = 320
-WORDS_HEIGHT = 176
-PAGE_WIDTH = 560  # a page of A4 that can be read
-PAPER_INCH = 8.27  # how wide A4 is
-LEAST_PPI, MOST_PPI = 60.0, 220.0
-SHARP_ENOUGH = 0.9
+WORDS_HEIGHT = 100
 REBUILT_AFTER_MS = 300  # without a key pressed
 NARROW_BELOW = 900
 QWIDGETSIZE_MAX = (1 << 24) - 1  # as Qt has it, and does not hand out
@@ -48,16 +45,16 @@ class ReportPage(Themed):
     def __init__(self, look: ThemeNotifier) -> None:
         super().__init__()
         self._look, self._is_narrow = look, False
-        self.sheets = _Sheets(look)
-        self._scroll = QScrollArea()
-        self._scroll.setFrameShape(QFrame.Shape.NoFrame)
-        self._scroll.setWidgetResizable(True)
-        self._scroll.setWidget(self.sheets)
-        self._scroll.setAccessibleName(tr("The report's pages"))
+        self.sheets, self.small = Sheets(look), SmallSheets(look)
+        self.reading = QScrollArea()
+        self.reading.setFrameShape(QFrame.Shape.NoFrame)
+        self.reading.setWidgetResizable(True)
+        self.reading.setWidget(self.sheets)
+        self.reading.setAccessibleName(tr("The report's pages"))
         self.comment = QPlainTextEdit()
         self.comment.setAccessibleName(tr("Your words, optional, printed"))
         self.comment.setTabChangesFocus(True)
-        self.comment.setPlaceholderText(tr("Printed on the last page, above the signature."))
+        self.comment.setPlaceholderText(tr("Printed above the signature."))
         self.comment.installEventFilter(self)
         self.formats = Chips(
             look,
@@ -78,17 +75,31 @@ class ReportPage(Themed):
         self._title = Text(look, tr("Your words"), size=20, weight=SEMIBOLD)
         self._also = Text(look, tr("Also save"), size=16, weight=SEMIBOLD)
         self._sheet = Text(look, tr("Paper"), size=16, weight=SEMIBOLD)
-        self._note = Text(look, tr("Only the code stands on the report, no name."), tone="ink2", wraps=True)
+        self.added = Chips(
+            look,
+            tr("Pages added"),
+            [
+                ("course", tr("Course")),
+                ("en", tr("Patient, English")),
+                ("de", tr("Patient, German")),
+            ],
+            rivals=("en", "de"),
+        )
+        self.added.choose(("course",))
+        self._added_title = Text(look, tr("Pages added"), size=16, weight=SEMIBOLD)
         self._card = Card(look, padding=20, spacing=12)
         for parts in (
-            (self._title, self.comment, self._earlier_title, self.earlier),
-            (self._also, self.formats, self._sheet, self.paper, self._note),
+            (self._title, self.comment, self._added_title, self.added, self._earlier_title, self.earlier),
+            (self._also, self.formats, self._sheet, self.paper),
         ):
             for part in parts:
                 self._card.column.addWidget(part)
         self._card.column.addStretch(1)
         self._row = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
-        self._row.addWidget(self._scroll, 1)
+        self._pages = QHBoxLayout()
+        self._pages.addWidget(self.small)
+        self._pages.addWidget(self.reading, 1)
+        self._row.addLayout(self._pages, 1)
         self._row.addWidget(self._card)
         self._pause = QTimer(self)
         self._pause.setSingleShot(True)
@@ -96,6 +107,9 @@ class ReportPage(Themed):
         self._pause.timeout.connect(self._on_paused)
         self.comment.textChanged.connect(self._pause.start)
         self.formats.turned.connect(self.options_changed)
+        self.added.turned.connect(self.options_changed)
+        self.small.wished.connect(self._go_to)
+        self.reading.verticalScrollBar().valueChanged.connect(self._on_scrolled)
         self.paper.chosen.connect(self.options_changed)
         self.earlier.activated.connect(self.options_changed)
         self.sheets.sharper_wanted.connect(self.sharper_wanted)
@@ -104,18 +118,20 @@ class ReportPage(Themed):
 
     @property
     def tab_order(self) -> list[QWidget]:
-        return [self._scroll, self.comment, self.earlier, *self.formats.buttons, *self.paper.segments]
+        choices = [*self.added.buttons, self.earlier]
+        return [self.reading, self.small, self.comment, *choices, *self.formats.buttons, *self.paper.segments]
 
     def focus(self) -> None:
         """Give the focus to the pages: the words are optional, and Enter belongs to the report."""
-        self._scroll.setFocus()
+        self.reading.setFocus()
 
     def set_room(self, width: float, _height: float) -> None:
         """Put the words under the pages where both do not stand side by side."""
         self._is_narrow = is_narrow = width < NARROW_BELOW
         way = QBoxLayout.Direction.TopToBottom if is_narrow else QBoxLayout.Direction.LeftToRight
         self._row.setDirection(way)
-        self._scroll.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
+        self.small.setVisible(not is_narrow)
+        self.reading.setMinimumHeight(self._look.theme.px(360) if is_narrow else 0)
         self._fit_card()
 
     def _fit_card(self) -> None:
@@ -154,7 +170,26 @@ class ReportPage(Themed):
 
     def show_pages(self, pages: Sequence[bytes]) -> None:
         """Show pages, each a PNG."""
-        self.sheets.show_pages(pages)
+        sheets = [Sheet(page) for page in pages]
+        self.sheets.show_pages(sheets)
+        self.small.show_pages(sheets)
+
+    @property
+    def patient_language(self) -> str:
+        """The language of the page for the patient; empty where none is added."""
+        return next((key for key in self.added.chosen if key in ("en", "de")), "")
+
+    def _go_to(self, number: int) -> None:
+        with QSignalBlocker(self.reading.verticalScrollBar()):
+            self.reading.verticalScrollBar().setValue(round(self.sheets.top_of(number)))
+        self.sheets.update()
+
+    def _on_scrolled(self, value: int) -> None:
+        """Mark the page that stands at the upper third of what is seen."""
+        at = value + self.reading.viewport().height() / 3
+        begun = [number for number in range(self.sheets.count) if self.sheets.top_of(number) <= at]
+        if begun and begun[-1] != self.small.number:
+            self.small.mark(begun[-1])
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         """Let Esc and Ctrl Enter leave the words: Enter then saves the report."""
@@ -180,90 +215,7 @@ class ReportPage(Themed):
         px = self._look.theme.px
         self._row.setContentsMargins(px(24), px(16), px(24), px(16))
         self._row.setSpacing(px(16))
+        self._pages.setSpacing(px(8))
         self._fit_card()
         self.comment.setFixedHeight(px(WORDS_HEIGHT))
         self.comment.setFont(self._look.theme.font(14))
-
-
-class _Sheet:
-    """A page as PNG: a picture once it is looked at."""
-
-    def __init__(self, png: bytes) -> None:
-        self._png: bytes | None = png
-        self._picture = QImage()
-        file = QBuffer()
-        file.setData(png)
-        size = QImageReader(file).size()
-        self.width = size.width()
-        self.height_per_width = size.height() / max(size.width(), 1)
-
-    def picture(self) -> QImage:
-        if self._png is not None:
-            self._picture, self._png = QImage.fromData(self._png), None
-        return self._picture
-
-
-class _Sheets(QWidget):
-    """The pages under each other, as wide as there is room for."""
-
-    sharper_wanted = Signal()
-
-    def __init__(self, look: ThemeNotifier) -> None:
-        super().__init__()
-        self._look = look
-        self._pages: list[_Sheet] = []
-        self._settled = QTimer(self)
-        self._settled.setSingleShot(True)
-        self._settled.setInterval(REBUILT_AFTER_MS)
-        self._settled.timeout.connect(self.sharper_wanted)
-        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.MinimumExpanding)
-        self.setAccessibleName(tr("No pages yet"))
-        column = QVBoxLayout(self)
-        column.setContentsMargins(0, 0, 0, 0)
-
-    @property
-    def count(self) -> int:
-        return len(self._pages)
-
-    @property
-    def ppi(self) -> float:
-        return min(max(self._width() * self.devicePixelRatioF() / PAPER_INCH, LEAST_PPI), MOST_PPI)
-
-    def show_pages(self, pages: Sequence[bytes]) -> None:
-        self._pages = [_Sheet(page) for page in pages]
-        self.setAccessibleName(tr("The report, {count} pages").format(count=len(pages)))
-        self._fit()
-        self.update()
-
-    def sizeHint(self) -> QSize:
-        return QSize(self._look.theme.px(PAGE_WIDTH), self._height())
-
-    def resizeEvent(self, _event: object) -> None:
-        self._fit()
-        if self._pages and self._pages[0].width < SHARP_ENOUGH * self.ppi * PAPER_INCH:
-            self._settled.start()
-
-    def paintEvent(self, _event: QPaintEvent) -> None:
-        theme = self._look.theme
-        painter = QPainter(self)
-        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform)
-        top, width = 0.0, self._width()
-        left = (self.width() - width) / 2
-        for page in self._pages:
-            place = QRectF(left, top, width, width * page.height_per_width)
-            if place.intersects(QRectF(self.visibleRegion().boundingRect())):
-                painter.drawImage(place, page.picture())
-                painter.setPen(theme.pen(theme.colours.control, 1))
-                painter.setBrush(Qt.BrushStyle.NoBrush)
-                painter.drawRect(place.adjusted(0.5, 0.5, -0.5, -0.5))
-            top += place.height() + theme.px(16)
-
-    def _width(self) -> float:
-        return min(float(self.width()), 1.5 * self._look.theme.px(PAGE_WIDTH))
-
-    def _height(self) -> int:
-        heights = (self._width() * page.height_per_width for page in self._pages)
-        return round(sum(height + self._look.theme.px(16) for height in heights))
-
-    def _fit(self) -> None:
-        self.setMinimumHeight(self._height())

@@ -16,19 +16,22 @@ from PySide6.QtWidgets import QFileDialog, QStackedWidget
 from app.icons import Icon
 from app.logs import version_of
 from app.pages.sentence_page import SentencePage
-from app.reports.patient_report.dates import day
+from app.reports.course import course_of
+from app.reports.course_lanes import CourseVisit
+from app.reports.patient_report.dates import date_of, day
 from app.reports.patient_report.request import AnalysedVisit, ReportRequest, default_walks
 from app.storage.audit import REPORT_FORMAT, about
 from app.storage.operators import CLINIC
 from app.storage.pseudonyms import Typed
-from app.storage.stored import LibraryError
+from app.storage.stored import Action, LibraryError
 from app.theme import ThemeNotifier
 from app.widgets.action_bar import BarAction, BarState
 from app.widgets.rail_row import StepState
 from app.wizard.keys import Intent, KeyAction
 from app.wizard.report.leaving_dialog import LeavingDialog
 from app.wizard.report.page import ReportPage
-from app.wizard.resuming import read_analysed
+from app.wizard.report.printing import PRINTED_PPI, ReportPrinter
+from app.wizard.resuming import current_courses, read_analysed
 from app.wizard.step import Step
 from app.wording import capitalised, filled, tr
 from app.workers.background import Report, Work
@@ -70,6 +73,7 @@ class ReportStep(Step):
         self._comment: str | None = None  # typed here, not yet known to the session's row
         self._clinic = ""
         self._earlier: tuple[UUID, AnalysedVisit] | None = None  # as was read last
+        self._before: tuple[CourseVisit, ...] = ()  # earlier visits of the course, in order of time
         self._reading: UUID | None = None
         self._preview: ReportPreview | None = None  # of its threads
         visit.preview.done.connect(self._on_previewed)
@@ -83,6 +87,8 @@ class ReportStep(Step):
             self._frame.report.comment_edited.connect(self._on_comment_edited)
             self._frame.report.options_changed.connect(self._on_options_changed)
             self._frame.report.sharper_wanted.connect(self._draw)
+            self.printer = ReportPrinter(self._frame)
+            self.printer.confirmed.connect(self._on_print_confirmed)
         return self._frame
 
     @property
@@ -118,11 +124,12 @@ class ReportStep(Step):
 
     def bar(self) -> BarState:
         save = BarAction(tr("Save the report"), tr("Ctrl S"), Icon.FOLDER, is_enabled=self.can_save())
+        put = BarAction(tr("Print"), tr("Ctrl P"), Icon.PRINT, is_wished=False, is_enabled=self.can_save())
         if self.saved is None:
-            return BarState(primary=save, note=tr("Only the code stands in it, no name."))
+            return BarState(primary=save, others=(put,), note=tr("Only the code stands in it, no name."))
         note = tr("Saved as {folder}. Saving again asks where.").format(folder=self.saved.name)
         show = BarAction(tr("Open the folder"), is_wished=False)
-        return BarState(primary=replace(save, is_wished=False), others=(show,), note=note)
+        return BarState(primary=replace(save, is_wished=False), others=(put, show), note=note)
 
     def on_primary(self) -> None:
         if not self.can_save() or self.is_saving:
@@ -157,14 +164,45 @@ class ReportStep(Step):
         self.dialog.open()
 
     def on_other(self, number: int) -> None:
-        if self.saved is not None:
+        if number == 0:
+            self.print()
+        elif self.saved is not None:
             QDesktopServices.openUrl(QUrl.fromLocalFile(str(self.saved)))
 
     def on_intent(self, intent: Intent) -> bool:
         if intent.action is KeyAction.SAVE:
             self.on_primary()
             return True
+        if intent.action is KeyAction.PRINT:
+            self.print()
+            return True
         return False
+
+    def print(self) -> None:
+        """Ask for a printer, and put the pages on it as they are shown."""
+        if not self.can_save() or self._visit.session is None:
+            return
+        self.page.report.flush()
+        told = self._visit.session.details
+        self.printer.ask(folder_name(told.patient.code, told.started), self.page.report.paper.choice)
+
+    def _on_print_confirmed(self) -> None:
+        request, stored = self._request(), self._visit.session
+        if request is None or stored is None:
+            return
+        session_id = stored.id
+
+        def work(opened: "OpenedLibrary", _report: Report) -> list[bytes]:
+            from app.reports.patient_report.document import ReportPreview
+
+            opened.library.audit.note(Action.PRINT, about("session", session_id), format=REPORT_FORMAT)
+            return ReportPreview().pages(request, PRINTED_PPI)
+
+        self._controller.run_long(work, self._on_printable, self._on_refused, None, self)
+
+    def _on_printable(self, pages: list[bytes]) -> None:
+        if not self.printer.put(pages):
+            self.told.emit(tr("The printer did not take the report."), tr("Save it, and print the file."))
 
     def can_save(self) -> bool:
         return self._has_results() and self._reading is None
@@ -195,6 +233,7 @@ class ReportStep(Step):
         walks = default_walks(visit)
         if not walks:
             return None
+        chosen = self.page.report.added.chosen
         return ReportRequest(
             visit=visit,
             walks=walks,
@@ -204,8 +243,17 @@ class ReportStep(Step):
             operator=evaluation.session.operator,
             clinic=self._clinic,
             earlier=self._earlier_chosen(),
+            course=self._course(visit) if "course" in chosen else (),
+            patient_language=self.page.report.patient_language,
             paper=self.page.report.paper.choice,
         )
+
+    def _course(self, visit: AnalysedVisit) -> tuple[CourseVisit, ...]:
+        """The patient's visits up to this one, as far as their figures are known."""
+        stored, day = self._visit.session, date_of(visit.session.started)
+        if stored is None or day is None or not self._before:
+            return ()
+        return (*self._before, CourseVisit(stored.id, day, course_of(visit.analysis, visit.session.recordings)))
 
     def _draw(self) -> None:
         """Set the pages anew, beside the screen."""
@@ -259,18 +307,24 @@ class ReportStep(Step):
             return
         current = session
 
-        def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary]]":
+        def read(opened: "OpenedLibrary") -> "tuple[str, list[SessionSummary], tuple[CourseVisit, ...]]":
             lines = opened.library.sessions.list(current.patient_id)  # latest first
             before = [line for line in lines if line.id != current.id and line.started < current.details.started]
-            return str(opened.library.settings.get(CLINIC, "")), before
+            found = current_courses(opened.library, [line.id for line in before])
+            visits = [
+                CourseVisit(line.id, day_of, found.get(line.id))
+                for line in reversed(before)
+                if (day_of := date_of(line.started)) is not None
+            ]
+            return str(opened.library.settings.get(CLINIC, "")), before, tuple(visits)
 
         self._controller.run(read, self._on_choices, self._on_refused, self)
 
-    def _on_choices(self, found: "tuple[str, list[SessionSummary]]") -> None:
-        clinic, lines = found
+    def _on_choices(self, found: "tuple[str, list[SessionSummary], tuple[CourseVisit, ...]]") -> None:
+        clinic, lines, before = found
         self.page.report.show_visits([(line.id, _words_of(line)) for line in lines])
-        if clinic != self._clinic:
-            self._clinic = clinic
+        if (clinic, before) != (self._clinic, self._before):
+            self._clinic, self._before = clinic, before
             self._show()
 
     def _earlier_chosen(self) -> AnalysedVisit | None:
@@ -306,13 +360,14 @@ class ReportStep(Step):
             return
         out, session_id = Path(folder), stored.id
         chosen, kept = self.page.report.formats.chosen, self._kept
+        name = f"{folder_name(stored.details.patient.code, stored.details.started)}.pdf"
         self.is_saving = True
 
         def save(opened: "OpenedLibrary", report: Report) -> Path:
             from app.exports.exports import Format, export_from_library
             from app.reports.patient_report.document import make_report
             from app.reports.patient_report.report_file import write_visits
-            from app.reports.result_folder import LOG, REPORT, check_place, write_results, written_beside
+            from app.reports.result_folder import LOG, check_place, write_results, written_beside
 
             typed = [Typed(one) for one in sorted(kept)]
             report(0.0, tr("writing"))
@@ -328,7 +383,7 @@ class ReportStep(Step):
 
                         write_log(session, analysis, beside / LOG)
                     if request is not None:
-                        (beside / REPORT).write_bytes(make_report(request))
+                        (beside / name).write_bytes(make_report(request))
                         if "csv" in chosen:
                             write_visits(request, beside)
                     formats = [Format(name) for name in OTHERS if name in chosen]

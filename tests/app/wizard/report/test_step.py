@@ -66,7 +66,7 @@ def step(
 
 def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: ReportStep, visit: Visit) -> None:
     sheets = step.page.report.sheets
-    qtbot.waitUntil(lambda: sheets.count >= 5, timeout=WAIT_MS)
+    qtbot.waitUntil(lambda: sheets.count >= 4, timeout=WAIT_MS)
     step.page.report.comment.setPlainText("Keep alignment C.")
     step.leave()
     assert step.comment == "Keep alignment C."
@@ -77,13 +77,20 @@ def test_pages_are_shown_and_made_anew_with_the_words(qtbot: QtBot, step: Report
     qtbot.waitUntil(lambda: sessions.get(session_id).comment == "Keep alignment C.", timeout=WAIT_MS)
 
 
-def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, tmp_path: Path) -> None:
+def report_name(visit: Visit) -> str:
+    """By the patient's code and the day."""
+    assert visit.session is not None
+    return f"{folder_name(visit.session.details.patient.code, visit.session.details.started)}.pdf"
+
+
+def test_the_chosen_files_are_saved(qtbot: QtBot, step: ReportStep, visit: Visit, tmp_path: Path) -> None:
     out = tmp_path / "results"
     step.page.report.formats.choose(["csv"])
     chosen: Callable[[str], None] = step.save_in
     chosen(str(out))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
-    assert (out / "report.pdf").read_bytes().startswith(b"%PDF-")
+    assert [file.name for file in out.glob("*.pdf")] == [report_name(visit)]
+    assert (out / report_name(visit)).read_bytes().startswith(b"%PDF-")
     assert (out / "summary.json").exists()
     assert not (out / "session.rrd").exists()
 
@@ -193,7 +200,7 @@ def test_an_earlier_visit_is_compared_with_and_the_clinic_named(
     chosen: Callable[[str], None] = step.save_in
     chosen(str(tmp_path / "results"))
     qtbot.waitUntil(lambda: step.state is StepState.DONE, timeout=WAIT_MS)
-    text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / "report.pdf").pages)
+    text = "".join(page.extract_text() for page in pypdf.PdfReader(tmp_path / "results" / report_name(visit)).pages)
     assert "Comparison of visits" in text
     assert "1 Mar 2020" in text
     assert "Clinic North" in text

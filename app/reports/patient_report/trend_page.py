@@ -1,0 +1,223 @@
+"""The patient's course over the visits under one condition: what has changed, and whether beyond its error."""
+
+import datetime
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from app.charts.drawing import Picture
+from app.dates import date
+from app.reports.course import KNEE, PUSH_OFF, SPEED, STANCE, CourseCondition, change
+from app.reports.course_lanes import CourseVisit
+from app.reports.patient_report.blocks import Block, Cell, Column, Row, bullets, figures, heading, note, table
+from app.reports.patient_report.facts import Facts, role
+from app.reports.patient_report.numbers_in_words import DAGGER, NOTHING, dagger_note, fixed, in_brief, signed
+from app.reports.patient_report.plain_text import CONDITION_LENGTH, typed
+from app.reports.patient_report.trend_chart import TrendValue, trend_chart
+from app.reports.patient_report.what_stands_out import unit_and_decimals
+from app.reports.visits import condition_in_words
+from app.wording import capitalised, tr
+from core.body import Side
+from core.verdicts.measurement_error import Difference
+from core.verdicts.model import Verdict
+
+MOST_COLUMNS = 6  # of visits in the table: the first, and the latest
+MOST_SENTENCES = 3
+MEASURES = (KNEE, PUSH_OFF, STANCE, SPEED)
+
+
+@dataclass(frozen=True, slots=True)
+class _TrendLine:
+    """One measure of one leg, or of the walk, at all visits."""
+
+    column: str
+    side: Side | None
+    values: tuple[TrendValue, ...]
+    since_first: Difference | None
+    since_last: Difference | None
+    first: int
+    before: int
+
+    @property
+    def told(self) -> list[TrendValue]:
+        return [one for one in self.values if math.isfinite(one.value)]
+
+
+def trend_page(visits: Sequence[CourseVisit], condition: str, facts: Facts) -> list[Block]:
+    """A page of its own; nothing where fewer than two visits have a value under this condition.
+
+    Parameters
+    ----------
+    visits
+        In order of time; the last is that of the report.
+    """
+    walked = [visit for visit in visits if visit.course is not None and visit.course.condition(condition) is not None]
+    lines = _lines(walked, condition)
+    shown = [line for line in lines if len(line.told) > 1]
+    if not shown:
+        return []
+    days = [visit.day for visit in walked]
+    title = tr("Course over {count} visits, {first} to {last}").format(
+        count=len(walked), first=date(days[0]), last=date(days[-1])
+    )
+    stated = typed(condition, CONDITION_LENGTH) if condition else condition_in_words("")
+    said = [
+        tr("Condition: {condition}. Sensors put on anew at each visit.").format(condition=stated),
+        tr("Whisker: half of the error of a change, so that whiskers apart are a change larger than its error."),
+        tr("Dates to scale. A gap: withheld at that visit."),
+    ]
+    if without := len(visits) - len(walked):
+        said.append(tr("Visits without a walk of this condition, or not computed: {count}.").format(count=without))
+    return [
+        heading(title),
+        note(" ".join(said)),
+        bullets(_sentences(shown, facts, len(walked))),
+        figures([_chart(column, shown, days, facts) for column in MEASURES if _of(shown, column)], columns=2),
+        heading(tr("The numbers"), level=2),
+        _table(shown, len(walked)),
+        note(_below(shown)),
+    ]
+
+
+def _lines(walked: Sequence[CourseVisit], condition: str) -> list[_TrendLine]:
+    parts = [visit.course.condition(condition) if visit.course is not None else None for visit in walked]
+    at = [part for part in parts if part is not None]
+    found = []
+    for column in MEASURES:
+        for side in (None,) if column == SPEED else tuple(Side):
+            values = [value for number, part in enumerate(at) if (value := _value(part, column, side, number))]
+            told = [value.visit for value in values if math.isfinite(value.value)]
+            if not told:
+                continue
+            last = len(at) - 1
+            before = [visit for visit in told if visit < last]
+            first, previous = (before[0], before[-1]) if before else (0, 0)
+            is_changed = bool(before) and told[-1] == last
+            since = [change(at[last], at[k], column, side) if is_changed else None for k in (first, previous)]
+            found.append(_TrendLine(column, side, tuple(values), since[0], since[1], first, previous))
+    return found
+
+
+def _value(part: CourseCondition, column: str, side: Side | None, number: int) -> TrendValue | None:
+    """None where it was not measured."""
+    figure = part.figure(column, side)
+    if figure is None or figure.verdict is Verdict.NOT_MEASURED:
+        return None
+    return TrendValue(number, figure.found.mean if figure.is_told else math.nan, figure.whisker)
+
+
+def _of(lines: Sequence[_TrendLine], column: str) -> list[_TrendLine]:
+    return [line for line in lines if line.column == column]
+
+
+def _chart(column: str, lines: Sequence[_TrendLine], days: Sequence[datetime.date], facts: Facts) -> Picture:
+    _, decimals = unit_and_decimals(column)
+    drawn = {line.side: line.values for line in _of(lines, column)}
+    return trend_chart(_name(column), decimals, days, drawn, is_simulated=facts.is_simulated)
+
+
+def _name(column: str) -> str:
+    return {
+        KNEE: tr("Knee, stance to swing, °"),
+        PUSH_OFF: tr("Ankle push\u2011off, °"),
+        STANCE: tr("Stance, % of stride"),
+        SPEED: tr("Walking speed, m/s"),
+    }[column]
+
+
+def _sentences(lines: Sequence[_TrendLine], facts: Facts, visits: int) -> list[str]:
+    """The changes since the first visit that are large enough for a sentence, the largest against its error first."""
+    first, _ = facts.first_and_second
+    worth = [
+        line
+        for line in lines
+        if line.since_first is not None and line.since_first.is_worth_a_sentence and line.side in (None, first)
+    ]
+    if not worth:
+        judged = [line.since_first for line in lines if line.since_first is not None and line.since_first.error > 0]
+        if not judged:
+            return [tr("No change could be judged.")]
+        if any(one.exceeds for one in judged):
+            said = tr(
+                "No change is so much larger than its error that it is told here; the table marks what exceeds it."
+            )
+            return [said]
+        return [tr("No change is larger than its error.")]
+    ordered = sorted(worth, key=lambda line: -line.since_first.ratio if line.since_first is not None else 0.0)
+    return [_sentence(line, facts, visits) for line in ordered[:MOST_SENTENCES]]
+
+
+def _sentence(line: _TrendLine, facts: Facts, visits: int) -> str:
+    found, last = line.since_first, line.values[-1]
+    assert found is not None  # those without one are not told
+    unit, decimals = unit_and_decimals(line.column)
+    first = next(one for one in line.values if one.visit == line.first)
+    name = {
+        KNEE: tr("knee bend from stance to swing"),
+        PUSH_OFF: tr("ankle push\u2011off"),
+        STANCE: tr("stance, share of the stride"),
+        SPEED: tr("walking speed"),
+    }[line.column]
+    who = name if line.side is None else f"{role(facts, line.side)}, {name}"
+    said = tr("{who}: {a} at visit {first}, {b} at visit {last}; {change}, error between visits {error}.").format(
+        who=capitalised(who),
+        a=fixed(first.value, decimals) + unit,
+        b=fixed(last.value, decimals) + unit,
+        first=line.first + 1,
+        last=visits,
+        change=signed(found.difference, decimals) + unit,
+        error=fixed(found.error, decimals) + unit,
+    )
+    since = line.since_last
+    if since is None or line.before == line.first:
+        return said
+    if not since.error > 0:
+        return said
+    words = (
+        tr("Since visit {number} {change}: larger than the error.")
+        if since.exceeds
+        else tr("Since visit {number} {change}: inside the error.")
+    )
+    return f"{said} {words.format(number=line.before + 1, change=signed(since.difference, decimals) + unit)}"
+
+
+def _table(lines: Sequence[_TrendLine], visits: int) -> Block:
+    shown = list(range(visits)) if visits <= MOST_COLUMNS else [0, *range(visits - MOST_COLUMNS + 1, visits)]
+    columns = [
+        Column(tr("Measure"), "1fr", is_number=False),
+        Column("", is_number=False),
+        *(Column(str(visit + 1)) for visit in shown),
+        Column(tr("since last")),
+        Column(tr("since first")),
+        Column(tr("Error")),
+        Column(tr("since first is"), is_number=False),
+    ]
+    rows: list[Row] = []
+    for line in lines:
+        _, decimals = unit_and_decimals(line.column)
+        values = {one.visit: one.value for one in line.values}
+        cells: list[Cell | str] = [_name(line.column), line.side[0].upper() if line.side is not None else ""]
+        for visit in shown:
+            is_withheld = visit in values and not math.isfinite(values[visit])
+            cells.append(tr("withheld") if is_withheld else fixed(values.get(visit, math.nan), decimals))
+        found, since = line.since_first, line.since_last
+        is_told = found is not None and found.is_told
+        cells.append(signed(since.difference, decimals) if since is not None and line.before != line.first else NOTHING)
+        if found is None or not is_told:
+            rows.append([*cells, NOTHING, NOTHING, NOTHING])
+            continue
+        dagger = DAGGER if found.is_unverified else ""
+        cells += [
+            Cell(signed(found.difference, decimals), is_bold=found.exceeds),
+            f"{fixed(found.error, decimals)}{dagger}" if found.error > 0 else NOTHING,
+            Cell(in_brief(found.judgement), is_bold=found.exceeds),
+        ]
+        rows.append(cells)
+    return table(columns, rows, is_dense=True)
+
+
+def _below(lines: Sequence[_TrendLine]) -> str:
+    said = [tr("Heights are left out: each visit has a zero of its own. First: the first visit that can be read.")]
+    if any(line.since_first is not None and line.since_first.is_unverified for line in lines):
+        said.append(dagger_note())
+    return " ".join(said)

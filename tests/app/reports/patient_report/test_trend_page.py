@@ -1,0 +1,117 @@
+"""The page of the course: values and errors are those of the visits, and a sentence comes beyond the error only."""
+
+import datetime
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from uuid import UUID
+
+import pytest
+
+from app.reports.course import Course
+from app.reports.course_lanes import CourseVisit
+from app.reports.patient_report.blocks import Block
+from app.reports.patient_report.document import facts_of, report_data
+from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.trend_chart import TrendValue, trend_chart
+from app.reports.patient_report.trend_page import trend_page
+from core.body import Joint, Side
+from tests.app.course_material import course, unsure, walked
+
+DAYS = ("2026-09-02", "2026-09-16", "2026-09-30", "2026-10-28", "2026-11-25")
+
+
+def visits(*courses: Course | None) -> list[CourseVisit]:
+    return [
+        CourseVisit(UUID(int=number), datetime.date.fromisoformat(day), found)
+        for number, (day, found) in enumerate(zip(DAYS, courses, strict=False))
+    ]
+
+
+def walk(knee_deg: float = 50.0, speed_m_s: float = 1.0, condition: str = "", *, is_withheld: bool = False) -> Course:
+    told = unsure(Joint.LEFT_KNEE) if is_withheld else None
+    return course((walked(knee_deg=knee_deg, speed_m_s=speed_m_s, told=told), condition), told=told)
+
+
+def page(request: ReportRequest, seen: Sequence[CourseVisit], condition: str = "") -> list[Block]:
+    return trend_page(seen, condition, facts_of(request))
+
+
+def sentences(blocks: list[Block]) -> list[str]:
+    (found,) = (block["said"] for block in blocks if block["kind"] == "bullets")
+    assert isinstance(found, list)
+    return [str(one).replace("\u2212", "-").replace("\u00a0", " ") for one in found]
+
+
+def rows(blocks: list[Block]) -> dict[tuple[str, str], list[str]]:
+    (table,) = (block for block in blocks if block["kind"] == "table")
+    found = table["rows"]
+    assert isinstance(found, list)
+    cells = [[cell["said"].replace("\u2212", "-") for cell in row["cells"]] for row in found]
+    return {(name, side): rest for name, side, *rest in cells}
+
+
+def test_one_visit_or_two_without_a_common_condition_make_no_page(request_of_demonstration: ReportRequest) -> None:
+    assert page(request_of_demonstration, visits(walk())) == []
+    assert page(request_of_demonstration, visits(walk(condition="stick"), walk(condition="shoes")), "shoes") == []
+    assert page(request_of_demonstration, visits(None, walk())) == []
+
+
+def test_a_change_beyond_the_error_is_a_sentence_with_both_values(request_of_demonstration: ReportRequest) -> None:
+    found = sentences(page(request_of_demonstration, visits(walk(31), walk(36), walk(52))))
+    assert len(found) == 1
+    pattern = r"Left, knee bend from stance to swing: 31\.0° at visit 1, 52\.0° at visit 3; \+21\.0°, error"
+    assert re.search(pattern, found[0])
+    assert "Since visit 2 +16.0°: larger than the error." in found[0]
+
+
+def test_a_change_inside_the_error_is_none(request_of_demonstration: ReportRequest) -> None:
+    found = sentences(page(request_of_demonstration, visits(walk(50), walk(54))))
+    assert found == ["No change is larger than its error."]
+
+
+def test_a_withheld_visit_is_a_gap_and_the_change_counts_from_the_first_that_can_be_read(
+    request_of_demonstration: ReportRequest,
+) -> None:
+    seen = visits(walk(20, is_withheld=True), walk(31), walk(33), walk(35, is_withheld=True), walk(52))
+    blocks = page(request_of_demonstration, seen)
+    knee = rows(blocks)["Knee, stance to swing, °", "L"]
+    assert knee[:5] == ["withheld", "31.0", "33.0", "withheld", "52.0"]
+    assert knee[5:7] == ["+19.0", "+21.0"]
+    assert "31.0° at visit 2" in sentences(blocks)[0]
+
+
+def test_where_the_last_visit_is_withheld_nothing_is_said_of_a_change(request_of_demonstration: ReportRequest) -> None:
+    blocks = page(request_of_demonstration, visits(walk(31), walk(52), walk(52, is_withheld=True)))
+    assert rows(blocks)["Knee, stance to swing, °", "L"][3:] == ["–", "–", "–", "–"]
+    assert not any("knee" in one for one in sentences(blocks))
+
+
+def test_of_many_visits_the_table_has_the_first_and_the_latest(request_of_demonstration: ReportRequest) -> None:
+    days = [datetime.date(2026, 1, 1) + datetime.timedelta(weeks=k) for k in range(9)]
+    seen = [CourseVisit(UUID(int=k), day, walk(30 + k)) for k, day in enumerate(days)]
+    (table,) = (block for block in page(request_of_demonstration, seen) if block["kind"] == "table")
+    columns = table["columns"]
+    assert isinstance(columns, list)
+    assert [column["title"] for column in columns[2:8]] == ["1", "5", "6", "7", "8", "9"]
+
+
+def test_the_page_is_in_the_report_where_visits_were_given(request_of_demonstration: ReportRequest) -> None:
+    seen = visits(walk(31), walk(52))
+    without, with_it = (report_data(replace(request_of_demonstration, course=tuple(course))) for course in ((), seen))
+    assert len(with_it["pages"]) == len(without["pages"]) + 1
+    assert with_it["pages"][-1][0]["said"].startswith("Course over 2 visits, 2 Sep 2026 to 16 Sep 2026")
+
+
+@pytest.mark.parametrize("value", [0.7, 31.0, 60.0])
+def test_a_chart_says_its_values_and_joins_none_over_a_gap(value: float) -> None:
+    days = [datetime.date(2026, 9, 1), datetime.date(2026, 9, 8), datetime.date(2026, 9, 15)]
+    whole = [TrendValue(k, value * (1 + 0.1 * k), 0.05 * value) for k in range(3)]
+    gap = [whole[0], TrendValue(1, math.nan, math.nan), whole[2]]
+    drawn, broken = (trend_chart("Knee", 1, days, {Side.LEFT: values}, is_simulated=False) for values in (whole, gap))
+    assert f"1: {value:.1f}" in drawn.alt
+    assert "withheld" in broken.svg
+    assert "withheld" not in drawn.svg
+    joins = [svg.count('stroke-width="1.2"') for svg in (drawn.svg, broken.svg)]
+    assert joins == [2, 0]
