@@ -32,8 +32,7 @@ Doubts = dict[tuple[Side, str], Said]
 
 NUMBER = r"\u2212?\d+\.\d+(?: ± \d+\.\d+)?(?: \*)?"
 CELL = rf"({NUMBER}|withheld|not measured|no peak|–)"
-AT = r"(?:\d+|–)"
-PEAKS = {  # rows of the table on page three by the beginning of their names, in each group
+PEAKS = {  # rows of the table on page two by the beginning of their names, in each group
     "knee": {
         "Most flexed, loading (5–30 %)": "knee_loading_peak_deg",
         "Least flexed, stance (25–60 %)": "knee_stance_minimum_deg",
@@ -48,11 +47,10 @@ PEAKS = {  # rows of the table on page three by the beginning of their names, in
         "Range over the stride": "ankle_range_deg",
     },
 }
-TIMES = {  # rows of the table on page one
+TIMES = {  # rows of the table on page three
     "Stride time, s": "stride_time_s",
     "Stride length, m": "stride_length_m",
     "Stance, % of stride": "stance_percent",
-    "Swing, % of stride": "swing_percent",
 }
 OF_BOTH = {
     "Walking speed, m/s": "speed_m_s",
@@ -62,20 +60,20 @@ OF_BOTH = {
 
 
 def said_in_report(pdf: bytes) -> Doubts:
-    """Of the figures in the tables on pages one and three; those of both legs stand at each."""
+    """Of the figures in the tables on pages two and three; those of both legs stand at each."""
     pages = [" ".join(page.extract_text().split()) for page in pypdf.PdfReader(io.BytesIO(pdf)).pages]
     found: Doubts = {}
-    times = pages[0].split("Time and distance", 1)[1]
+    times = pages[2].split("Time, distance and strides", 1)[1]
     for name, column in TIMES.items():
         found |= _row(times, rf"{re.escape(name)} {CELL} {CELL} ", column)
     for name, column in OF_BOTH.items():
         match = re.search(rf"{re.escape(name)} (\d+(?:\.\d+)?(?: \*)?|withheld|not measured) ", times)
-        assert match is not None, f"page one has no row {name}"
+        assert match is not None, f"page three has no row {name}"
         found |= {(side, column): _in_report(match[1]) for side in Side}
-    knee, _, ankle = pages[2].partition("Ankle: how far it moves")
+    knee, _, ankle = pages[1].partition("Ankle: how far it moves")
     for kind, group in (("knee", knee), ("ankle", ankle)):
         for name, column in PEAKS[kind].items() if group else ():
-            found |= _row(group, rf"{re.escape(name)} {CELL} {AT} {CELL} {AT} ", column)
+            found |= _row(group, rf"{re.escape(name)} {CELL} {CELL} ", column)
     return found
 
 

@@ -220,7 +220,7 @@ def test_another_language_is_spoken_from_now_on() -> None:
 
 
 def test_without_a_catalogue_english_is_spoken() -> None:
-    use_language("de")
+    use_language("fr")
     assert tr("Stop") == later("Stop") == "Stop"
     assert tr_n("{count} stride", "{count} strides", 2) == "{count} strides"
     assert tr("") == ""
