@@ -618,6 +618,7 @@ def test_a_library_that_goes_is_said_at_home_and_so_is_its_return(
     assert entry.log_in.banner.text == home.banner.text
 
 
+@pytest.mark.endurance
 def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session(
     qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -646,6 +647,7 @@ def test_what_a_visit_that_was_left_recorded_while_it_was_gone_is_in_its_session
     assert [one.details.name for one in library.sessions.get(session_id).recordings] == ["walk 1"]
 
 
+@pytest.mark.endurance
 def test_what_comes_home_under_the_cover_is_in_its_session_after_the_passphrase(
     qtbot: QtBot, open_window: Open, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

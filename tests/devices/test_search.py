@@ -166,6 +166,7 @@ def test_another_datagram_is_no_sensor(datagram: bytes) -> None:
     assert announcement(datagram, "127.0.0.1") is None
 
 
+@pytest.mark.endurance
 def test_the_search_takes_a_second_or_two() -> None:
     begin_s = time.monotonic()
     assert search([], free_port()).sensors == ()

@@ -12,7 +12,7 @@ from app.reports.patient_report.blocks import Block
 from app.reports.patient_report.comparison_page import comparison_of, comparison_page, not_compared_page
 from app.reports.patient_report.curves_page import curves_page
 from app.reports.patient_report.dates import day
-from app.reports.patient_report.facts import Facts
+from app.reports.patient_report.facts import KINDS, Facts
 from app.reports.patient_report.first_page import first_page
 from app.reports.patient_report.method_page import words_page
 from app.reports.patient_report.patient_page import patient_page
@@ -25,7 +25,6 @@ from app.wording import spoken_language, tr
 TEMPLATE = files("resources") / "report" / "report.typ"
 CODE_LENGTH = 16  # of the running head
 TITLE_CODE_LENGTH = 24
-PAGES_OF_WALK = 2  # after the first
 
 
 def make_report(request: ReportRequest) -> bytes:
@@ -73,7 +72,7 @@ class ReportPreview:
         if self._known is None or not _differ_in_words_only(self._known[0], request):
             self._known = request, facts_of(request), report_data(request)
         _, facts, data = self._known
-        pages, at = data["pages"], 0 if data["is_brief"] else PAGES_OF_WALK
+        pages, at = data["pages"], data["pages_of_walk"]
         return data | {"pages": [*pages[:at], words_page(request, facts), *pages[at + 1 :]]}
 
 
@@ -134,14 +133,15 @@ def report_data(request: ReportRequest) -> dict[str, Any]:
             "page": tr("Page {page} of {pages}"),
         },
         "first_page": first_page(request, facts, comparison),
-        "is_brief": not of_walk,
         "pages": pages,
+        "pages_of_walk": len(of_walk),
     }
 
 
 def pages_of_walk(facts: Facts) -> list[list[Block]]:
-    """All figures of the walk; of one without a stride there is nothing to tell, and what is said fits on page one."""
-    return [curves_page(facts), time_page(facts)] if facts.gait else []
+    """All figures of the walk, as far as there are some: of one without a stride page one says why."""
+    has_joint = any(map(facts.has_joint, KINDS))
+    return [*([curves_page(facts)] if has_joint else []), *([time_page(facts)] if facts.gait else [])]
 
 
 def facts_of(request: ReportRequest) -> Facts:

@@ -23,6 +23,11 @@ from core.verdicts.quantities import raw_values
 MARGIN_BEYOND = 100.0  # how many times better says no more from here on
 
 
+def evidence(facts: Facts) -> list[Block]:
+    """What each verdict rests on, and how large a difference must be."""
+    return [*evidence_table(facts), *error_table()]
+
+
 def evidence_table(facts: Facts) -> list[Block]:
     """A row for each gate, a column for each joint that was measured; what fails its limit is bold."""
     joints = [

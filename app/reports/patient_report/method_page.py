@@ -7,12 +7,13 @@ from datetime import datetime
 
 from app.reports.patient_report import quality
 from app.reports.patient_report.blocks import Block, bullets, heading, note
-from app.reports.patient_report.evidence import error_table, evidence_table
+from app.reports.patient_report.evidence import evidence
 from app.reports.patient_report.facts import Facts
 from app.reports.patient_report.numbers_in_words import fixed, signed_error
 from app.reports.patient_report.panels import why_no_band
 from app.reports.patient_report.plain_text import plain, plain_lines
 from app.reports.patient_report.request import ReportRequest
+from app.reports.patient_report.time_page import is_evidence_beside_time
 from app.wording import sentence, tr
 from core.calibration.certainty import AXIS_FLOOR_HUMAN_RAD, AXIS_FLOOR_WALKING_RAD
 from core.findings import Finding, Severity
@@ -38,8 +39,7 @@ def words_page(request: ReportRequest, facts: Facts) -> list[Block]:
     method = _method(facts)
     return [
         heading(tr("How sure, how measured")),
-        *evidence_table(facts),
-        *error_table(),
+        *([] if is_evidence_beside_time(facts) else evidence(facts)),
         *_remarks(request, facts),
         {"kind": "two_columns", "columns": [_texts(method[:3]), _texts(method[3:])]},
         note(" ".join([*_sources(facts), _made(request.made_at)])),

@@ -11,7 +11,8 @@ from app.gates_in_words import verdict_word
 from app.reports.comparison import compare_legs
 from app.reports.patient_report import panels
 from app.reports.patient_report.blocks import Block, Cell, Column, Row, figures, heading, note, table
-from app.reports.patient_report.facts import KINDS, Facts
+from app.reports.patient_report.evidence import evidence
+from app.reports.patient_report.facts import KINDS, Facts, joint_of
 from app.reports.patient_report.numbers_in_words import (
     CARE,
     DAGGER,
@@ -46,7 +47,14 @@ def time_page(facts: Facts) -> list[Block]:
         *time_distance_table(facts),
         *_phases(facts),
         *_every_stride(facts),
+        *(evidence(facts) if is_evidence_beside_time(facts) else []),
     ]
+
+
+def is_evidence_beside_time(facts: Facts) -> bool:
+    """Whether no stride of any joint may be shown, so that this page has room and its reader asks why."""
+    joints = [(side, kind) for side in facts.gait for kind in KINDS if facts.is_measured(joint_of(kind, side))]
+    return bool(joints) and not any(_has_strides(facts, side, kind) for side, kind in joints)
 
 
 def time_distance_table(facts: Facts) -> list[Block]:
@@ -227,7 +235,7 @@ def _every_stride(facts: Facts) -> list[Block]:
     kinds = [kind for kind in KINDS if facts.has_joint(kind)]
     told = [kind for kind in kinds if any(facts.value(side, f"{kind}_range_deg").n for side in facts.gait)]
     rails = [figures([stride_rail(facts, kind)]) for kind in told]
-    if not kinds:
+    if not kinds or is_evidence_beside_time(facts):
         return []
     said = [
         tr("In order of time. Lines: means of the first and of the second half of the walk."),

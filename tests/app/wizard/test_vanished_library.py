@@ -95,6 +95,7 @@ def test_renamed_amid_a_walk_it_goes_on_and_is_read_back_whole(
     assert record(qtbot, looked_at, RecordingKind.WALKING, 2.0).stored.state is RecordingState.CLOSED
 
 
+@pytest.mark.endurance
 def test_renamed_between_two_walks_the_next_begins_all_the_same(
     qtbot: QtBot, controller: LibraryController, looked_at: Visit, tmp_path: Path
 ) -> None:

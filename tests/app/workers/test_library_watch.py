@@ -151,6 +151,7 @@ def test_a_library_that_stays_is_not_missed(qtbot: QtBot, controller: LibraryCon
         opened_of(controller).library.patients.create(Patient(code="P-002"))
 
 
+@pytest.mark.endurance
 def test_what_cannot_be_brought_home_is_said_once_and_kept(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -212,6 +213,7 @@ class Asker(QObject):
         return bool(self.results or self.refusals)
 
 
+@pytest.mark.endurance
 def test_after_a_change_of_the_key_the_library_is_watched_as_before(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
@@ -252,6 +254,7 @@ def test_the_key_is_not_changed_while_the_library_is_gone(
     assert opened_of(controller) is opened
 
 
+@pytest.mark.endurance
 def test_the_key_is_not_changed_while_what_was_recorded_waits_and_nobody_is_removed(
     qtbot: QtBot, controller: LibraryController, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -292,6 +295,7 @@ def test_a_library_that_is_closed_while_its_key_changes_stays_closed(
         assert not asker.has_heard
 
 
+@pytest.mark.endurance
 def test_under_the_lock_files_come_home_and_reading_them_waits_for_the_key(
     qtbot: QtBot, controller: LibraryController, folder: Path
 ) -> None:
@@ -333,6 +337,7 @@ def test_a_passphrase_for_a_library_that_is_gone_counts_as_no_wrong_one(
     qtbot.waitUntil(lambda: asker.results == [None], timeout=WAIT_MS)
 
 
+@pytest.mark.endurance
 def test_a_demonstration_that_is_gone_promises_no_shelter(qtbot: QtBot, controller: LibraryController) -> None:
     with qtbot.waitSignal(controller.opened, timeout=WAIT_MS):
         controller.open_demonstration()

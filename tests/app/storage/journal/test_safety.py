@@ -17,6 +17,7 @@ from tests.safety.journal_tails import DAMAGES, Original, tear_often, unnoticed_
 needs_posix = pytest.mark.skipif(os.name == "nt", reason="SIGKILL, fork and limits of files are POSIX's")
 
 
+@pytest.mark.endurance
 @needs_posix
 def test_a_kill_leaves_a_journal_that_is_whole_up_to_its_last_record(tmp_path: Path) -> None:
     kills = kill_often(tmp_path, 3, seed=1)

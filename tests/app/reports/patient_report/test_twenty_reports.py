@@ -1,0 +1,30 @@
+"""Every report that the script makes is whole, and what its sentences say is in a file; strangers are the script's."""
+
+import os
+
+import pytest
+
+from tests.app.wizard.report.test_page import png
+from tests.safety.twenty_reports import ink_heights, sessions, tried, unknown_numbers
+
+pytestmark = pytest.mark.endurance
+
+
+def test_reports_are_whole_and_their_sentences_hold(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delitem(os.environ, "GAITWRIGHT_TEST_DATA", raising=False)
+    trials = [tried(name, request) for name, request in sessions()]
+    assert len(trials) >= 17
+    assert min(trial.sentences for trial in trials) >= 2
+    assert {trial.name: trial.faults for trial in trials if trial.faults} == {}
+
+
+def test_a_number_that_no_file_holds_is_found() -> None:
+    said = "The knee bends 20.3° less: 41.7° against 62.0°, on 23 November 2026."
+    assert unknown_numbers(said, {20.31, 41.68, 62.04}) == []
+    assert unknown_numbers(said, {20.31, 41.68}) == ["62.0"]
+    assert unknown_numbers("Sie gehen 1,2 Meter.", {1.18}) == []
+    assert unknown_numbers("Sie gehen 1,2 Meter.", {1.3}) == ["1,2"]
+
+
+def test_an_empty_page_is_found() -> None:
+    assert ink_heights([png(40)]) == [0.0]
